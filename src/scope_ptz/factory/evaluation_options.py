@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from scope_ptz.bench.engine.context import Watcher
+from scope_ptz.bench.engine.context import HostedAgent, Watcher
 from scope_ptz.factory.models import ModelOptions
 
 if TYPE_CHECKING:
@@ -71,6 +71,7 @@ class EvaluationOptions:
         resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
         judge: Settings of the judge that scores each run; None for no judge.
+        hosted_agent: How runs reach an agent that runs elsewhere; ``agent`` is then only its name.
     """
 
     models: ModelOptions = field(default_factory=ModelOptions)
@@ -92,6 +93,7 @@ class EvaluationOptions:
     resume: Path | None = None
     price: Price | None = None
     judge: JudgeSettings | None = None
+    hosted_agent: HostedAgent | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,7 +55,7 @@ class EvaluationSession:
 
         self.options, self.pair, self.progress = options, pair, progress
         self.judge: JudgeServer | None = None
-        self.agent_source = source_digest(options.agent) if options.agent != BUILT_IN_AGENT else ""
+        self.agent_source = source_digest(options.agent) if options.agent != BUILT_IN_AGENT and options.hosted_agent is None else ""
         self.planner = planner_for(pair.planner) if options.agent == BUILT_IN_AGENT else None
         self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
         self.entries: tuple[Entry, ...] = select(
@@ -165,7 +165,7 @@ class EvaluationSession:
         from scope_ptz.bench.engine.benchmark_task import benchmark_task
 
         options = self.options
-        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries)
+        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries, hosted_agent=self.options.hosted_agent)
         if judge is not None:
             context = with_judge(context, judge)
         return benchmark_task(lambda _: context)(
@@ -185,6 +185,7 @@ class EvaluationSession:
             pair, self.planner, self.entries, agent=options.agent, agent_source=self.agent_source,
             concurrency=self.concurrency, contended=not options.latency, variant=options.variant, price=options.price,
             split=Path(options.tasks).name, seed=options.seed, max_steps=options.max_steps, epochs=options.epochs,
+            **({"isolation": "hosted"} if options.hosted_agent is not None else {}),
         )  # fmt: skip
         connections = self.concurrency * PERCEPTION_CALLS_PER_STEP
         endpoint, spec = pair.planner.endpoint, pair.perception.spec
@@ -196,8 +197,9 @@ class EvaluationSession:
         perception = inspect_model(pair.perception.name, connections, url=url)
         judging = judge_model(judge, self.concurrency * 2) if judge is not None else None
         return EngineSetup(
-            options.out, planner, perception, judging, self.concurrency, self.identity, card, realtime=not _is_built_in(pair)
-        )
+            options.out, planner, perception, judging, self.concurrency, self.identity, card,
+            realtime=options.hosted_agent is not None or not _is_built_in(pair),
+        )  # fmt: skip
 
     def _plan(self, finished: tuple[Trial, ...], stored: Sequence[StoredLog]) -> EvaluationPlan:
         from scope_ptz.bench.engine.entries import digest

@@ -8,6 +8,7 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, RunLabels, RunResult
 from scope_ptz.agent.store import NoImages
+from scope_ptz.bench.agents.planner import ChannelPlanner
 from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
@@ -61,16 +62,12 @@ def agent_solver(
         async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - Inspect's signature
             entry = Entry.of_metadata(state.metadata)
             context.watcher.run_began(sample_name(entry.facts.id, state.epoch), entry)
-            planner: Planner = (
-                await LoggedPlanner.of(get_model(role="planner", required=True), context)
-                if agent == BUILT_IN_AGENT
-                else ExternalPlanner(load_external_agent(agent), agent)
-            )
+            planner = await _planner(context, agent)
             run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
             try:
                 result = await run.run(Budgets(max_steps=max_steps, time_s=time_s))
             finally:
-                if isinstance(planner, ExternalPlanner):
+                if isinstance(planner, ExternalPlanner | ChannelPlanner):
                     await planner.close()
                 await run.store(state)
             state.output = ModelOutput.from_content(planner.name, result.ended.text)
@@ -83,6 +80,15 @@ def agent_solver(
         return solve
 
     return scope_agent(agent, pictures, max_steps, time_s, seed)
+
+
+async def _planner(context: EvalContext, agent: str) -> Planner:
+    """Return the planner of a run: that of the built-in loop, a hosted agent, or an external agent."""
+    if context.hosted_agent is not None:
+        return await context.hosted_agent.open()
+    if agent == BUILT_IN_AGENT:
+        return await LoggedPlanner.of(get_model(role="planner", required=True), context)
+    return ExternalPlanner(load_external_agent(agent), agent)
 
 
 class _SampleRun:

@@ -62,8 +62,11 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         """
         context = provide_context(seed)
         entries = select(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
+        hosted = context.hosted_agent
+        ordered = viewpoint_order(entries, context.open_scene) if hosted is None else hosted.order(entries)
+        source = source_digest(agent) if agent != BUILT_IN_AGENT and hosted is None else None
         return Task(
-            dataset=dataset_of(viewpoint_order(entries, context.open_scene), name=f"{datasets(entries)} {Path(split).name}"),
+            dataset=dataset_of(ordered, name=f"{datasets(entries)} {Path(split).name}"),
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
             scorer=[checks_scorer(context), *(judge_scorer(context, repeat) for repeat in range(judgements))],
             epochs=Epochs(epochs, "mean"),
@@ -71,7 +74,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             continue_on_fail=True,
             score_on_error=True,
             version=datasets(entries),
-            metadata=_log_metadata(entries, split, agent=agent, max_steps=max_steps, seed=seed),
+            metadata=_log_metadata(entries, split, agent=agent, source=source, max_steps=max_steps, seed=seed),
         )
 
     return bench
@@ -83,7 +86,9 @@ def _name_list(names: str | list[str] | None) -> list[str]:
     return names or []
 
 
-def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:
+def _log_metadata(
+    entries: Sequence[Entry], split: str, *, agent: str, source: str | None, max_steps: int, seed: int
+) -> dict[str, Any]:
     """Return the metadata that a log records about its tasks and the agent loop."""
     return {
         "scope": {
@@ -94,6 +99,6 @@ def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps
             "agent": agent,
             "max_steps": max_steps,
             "seed": seed,
-            **({AGENT_SOURCE: source_digest(agent)} if agent != BUILT_IN_AGENT else {}),
+            **({AGENT_SOURCE: source} if source is not None else {}),
         }
     }

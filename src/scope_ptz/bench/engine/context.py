@@ -5,7 +5,7 @@ Inspect creates solvers and scorers from names. The context provides the objects
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,23 @@ OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
 """Starts or connects an external agent for one run."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
 """Returns the entries of a split, given by its name, or of a task file, given by its path."""
+OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
+"""Connects an external agent for one run."""
+Order = Callable[[Sequence[Entry]], list[Entry]]
+"""Returns entries in the order in which they are run."""
+
+
+@dataclass(frozen=True, slots=True)
+class HostedAgent:
+    """How runs reach an agent that runs elsewhere.
+
+    Attributes:
+        open: Waits until the agent begins the next run, and connects it.
+        order: The order of the entries, which the agent must not be able to foresee.
+    """
+
+    open: OpenAgent
+    order: Order
 
 
 class Watcher:
@@ -68,6 +85,7 @@ class EvalContext:
         open_agent: Starts or connects the external agent for a run; None to start the agent that the task names.
         perception_note: Note for the trace about the origin of the perception backend.
         perception: A perception backend that was created in advance, if any. Its creator closes it.
+        hosted_agent: The agent that runs elsewhere; None if the agent is named by the evaluation.
     """
 
     open_scene: OpenScene
@@ -80,3 +98,4 @@ class EvalContext:
     open_agent: OpenAgent | None = None
     perception_note: str = ""
     perception: Perception | None = None
+    hosted_agent: HostedAgent | None = None

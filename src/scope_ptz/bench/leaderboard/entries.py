@@ -117,9 +117,7 @@ class LeaderboardEntry:
 
     def _scores(self, category: str | None) -> Scores:
         lines = [
-            line
-            for line in self.lines
-            if line.headline != "infrastructure" and (category is None or line.category == category)
+            line for line in self.lines if line.headline != "infrastructure" and (category is None or line.category == category)
         ]
         facts = [self.task_set.facts[line.task] for line in lines]
         return Scores(

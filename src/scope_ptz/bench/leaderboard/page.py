@@ -76,7 +76,6 @@ def leaderboard_tables(entries: Iterable[LeaderboardEntry]) -> list[LeaderboardT
 def leaderboard_html(tables: Sequence[LeaderboardTable], refused: Sequence[Refused], title: str) -> str:
     """Return the HTML of the page. Its only script sorts the tables; the page is complete without it."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
-    from markupsafe import Markup
 
     environment = Environment(
         loader=PackageLoader("scope_ptz", "data/report"),
@@ -90,12 +89,19 @@ def leaderboard_html(tables: Sequence[LeaderboardTable], refused: Sequence[Refus
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     shown = [Refused(r.file, r.reason[:MAX_REASON_CHARS]) for r in refused]
     return environment.get_template("leaderboard.html.j2").render(
-        title=title, tables=tables, refused=shown, version=__version__, script=Markup(script), script_digest=digest  # noqa: S704 - ours
+        title=title,
+        tables=tables,
+        refused=shown,
+        version=__version__,
+        script_digest=digest,
     )
 
 
 def ranks(entries: Sequence[LeaderboardEntry]) -> list[tuple[int | None, LeaderboardEntry]]:
-    """Return entries with their ranks, the best first. Equal accuracies share a rank; entries without a rank are placed by accuracy."""
+    """Return entries with their ranks, the best first.
+
+    Equal accuracies share a rank. Entries without a rank are placed by their accuracy.
+    """
 
     def value(entry: LeaderboardEntry) -> float:
         return entry.accuracy.value if entry.accuracy is not None else -1.0

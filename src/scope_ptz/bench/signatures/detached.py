@@ -25,7 +25,7 @@ class _Part(BaseModel):
 
 
 class SignedFile(_Part):
-    """What was signed: the name of the file, its size in bytes, and its SHA-256. The signature covers the bytes, not this record."""
+    """What was signed: the file's name, its size in bytes, and its SHA-256. The signature covers the bytes, not this record."""
 
     file: Annotated[str, Field(max_length=300)]
     bytes: Annotated[int, Field(ge=0)]
@@ -133,9 +133,7 @@ def check_signature(signature: Signature, content: bytes) -> None:
         Ed25519PublicKey.from_public_bytes(raw).verify(_decoded(signature.signature), content)
     except InvalidSignature:
         changed = hashlib.sha256(content).hexdigest() != signature.signed.sha256
-        raise InputError(
-            "the file was edited after it was signed" if changed else "it was not made with its public key"
-        ) from None
+        raise InputError("the file was edited after it was signed" if changed else "it was not made with its public key") from None
 
 
 def _decoded(text: str) -> bytes:

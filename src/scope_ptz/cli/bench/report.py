@@ -44,7 +44,7 @@ def report(
 
     It contains all tables and figures of the paper, for any set of runs.
     """
-    _require_extra()
+    require_report_packages()
     from scope_ptz.bench.reports.writer import write_report
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.registry import load_registry
@@ -124,7 +124,7 @@ def submission_make(
 
     A log that does not cover its split is rejected.
     """
-    _require_extra()
+    require_report_packages()
     from scope_ptz.bench.reports.submission import submission_lines, write_submission
     from scope_ptz.bench.tasks.splits import SPLITS
 
@@ -178,7 +178,8 @@ def _first(faults: Sequence[str]) -> str:
     return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more faults" if more > 0 else "")
 
 
-def _require_extra() -> None:
+def require_report_packages() -> None:
+    """Raise ``ConfigError`` if the packages that write reports are not installed."""
     from scope_ptz.perception.backends.spec import require_packages
 
     require_packages("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")

@@ -1,7 +1,7 @@
 """The journal of a participant: every message of the agent, written to disk before the engine receives it.
 
-A host that is killed resumes from the journal. A run that had begun is carried on: its recorded messages are given to the engine again,
-and the agent continues where it was. No task is attempted twice.
+A host that is killed resumes from the journal. A run that had begun is carried on: its recorded messages are given to the engine
+again, and the agent continues where it was. No task is attempted twice.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Journal:
     @property
     def attempted(self) -> int:
         """Number of runs that have begun."""
-        return len(self._received)
+        return len(self._ended | self._received.keys())
 
     @property
     def ended(self) -> int:
@@ -140,7 +140,12 @@ class Journal:
 
     def _write(self, entry: Received | Ended | Done) -> None:
         try:
-            os.write(self._file, json.dumps(entry.model_dump(mode="json")).encode() + b"\n")
+            line = json.dumps(entry.model_dump(mode="json")).encode() + b"\n"
+            size = os.fstat(self._file).st_size
+            complete = os.write(self._file, line) == len(line)
             os.fsync(self._file)
         except OSError as error:
             raise OutputError(f"The journal {self.path} cannot be written: {error.strerror}.") from error
+        if not complete:
+            self._truncate(size)
+            raise OutputError(f"The journal {self.path} cannot be written: the disk is full.")
