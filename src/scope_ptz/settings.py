@@ -115,3 +115,29 @@ def inline_pictures() -> InlineProtocol | None:
     if os.environ.get("TERM_PROGRAM") in ("iTerm.app", "WezTerm"):
         return "iterm"
     return "kitty" if os.environ.get("KITTY_WINDOW_ID") or os.environ.get("TERM") == "xterm-kitty" else None
+
+
+_AGENT_VARIABLES = frozenset(
+    {
+        "PATH", "HOME", "USER", "LOGNAME", "SHELL", "LANG", "LANGUAGE", "TZ", "TMPDIR", "TERM", "VIRTUAL_ENV", "CONDA_PREFIX",
+        "LD_LIBRARY_PATH", "CUDA_VISIBLE_DEVICES", "SSL_CERT_FILE", "SSL_CERT_DIR",
+    }
+)  # fmt: skip
+"""Environment variables that external agents receive, besides those whose names begin with ``LC_``."""
+
+
+def agent_environment(names: tuple[str, ...], *, python_path: bool) -> dict[str, str]:
+    """Return the environment of an external agent, without SCOPE's settings and keys.
+
+    Args:
+        names: Names of further variables that the user passes on.
+        python_path: Whether to pass on PYTHONPATH.
+
+    Raises:
+        ConfigError: A variable that the user passes on is not set.
+    """
+    missing = [name for name in names if name not in os.environ]
+    if missing:
+        raise ConfigError(f"--agent-env names {missing[0]}, which is not set. Set the variable, or remove the option.")
+    wanted = {*names, *_AGENT_VARIABLES, *(["PYTHONPATH"] if python_path else [])}
+    return {name: value for name, value in os.environ.items() if name in wanted or name.startswith("LC_")}

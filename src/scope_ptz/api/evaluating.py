@@ -17,6 +17,7 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 
 if TYPE_CHECKING:
+    from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.scoring.trials import Evaluation
     from scope_ptz.factory.evaluate import EvaluationOptions
 
@@ -31,6 +32,7 @@ class EvaluationRequest:
     tasks: str | PathLike[str] | tuple[Task, ...]
     out: Path
     agent: str | None
+    agent_options: AgentOptions
     categories: tuple[str, ...]
     scenes: tuple[str, ...]
     limit: int | None
@@ -97,6 +99,7 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
         epochs=request.epochs,
         seed=request.seed,
         agent=request.agent or BUILT_IN_AGENT,
+        agent_options=request.agent_options,
         max_steps=request.max_steps,
         time_s=request.time_budget_s,
         concurrency=request.concurrency,

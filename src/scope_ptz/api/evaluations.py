@@ -167,6 +167,14 @@ def evaluate(
     out: str | PathLike[str] = "evaluations",
     pair: str | None = None,
     agent: str | None = None,
+    agent_command: str | None = None,
+    agent_python: str | PathLike[str] | None = None,
+    agent_env: Sequence[str] = (),
+    sandbox: bool = False,
+    agent_memory_mb: int = 4_096,
+    agent_step_s: float = 300.0,
+    agent_run_s: float = 1_800.0,
+    agent_in_process: bool = False,
     categories: Sequence[str] = (),
     scenes: Sequence[str] = (),
     limit: int | None = None,
@@ -194,7 +202,15 @@ def evaluate(
         tasks: a split, a task file, or tasks returned by ``load_tasks``.
         out: folder for the logs.
         pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.
-        agent: "module:Class" of an external agent, which replaces the planner and the agent loop.
+        agent: "module:Class" of an external agent, which replaces the planner and the agent loop. It runs in a process of its own.
+        agent_command: a program with arguments that speaks the agent protocol on stdin and stdout, instead of ``agent``.
+        agent_python: Python interpreter of the agent's own environment; the current one by default.
+        agent_env: names of environment variables to pass on to the agent.
+        sandbox: run the agent without the network and without the files of the dataset (bubblewrap, Linux only).
+        agent_memory_mb: maximum memory of the agent's processes together, in MB.
+        agent_step_s: maximum seconds that the agent takes for one step.
+        agent_run_s: maximum seconds that the agent takes in one run, without the time of tools and perception.
+        agent_in_process: run the agent inside this program, for debugging. It can reach the answers; its results are labelled so.
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
         limit: at most this many tasks, sampled evenly across the selected categories and scenes.
@@ -227,10 +243,17 @@ def evaluate(
         1.0
     """
     from scope_ptz.api.evaluating import EvaluationRequest, run_evaluation
+    from scope_ptz.bench.agents.launch import AgentOptions
+    from scope_ptz.bench.agents.planner import AgentTimes
 
+    options = AgentOptions(
+        command=agent_command or "", python=None if agent_python is None else Path(agent_python), in_process=agent_in_process,
+        sandbox=sandbox, variables=_names("agent_env", agent_env), memory_mb=agent_memory_mb,
+        times=AgentTimes(agent_step_s, agent_run_s),
+    )  # fmt: skip
     request = EvaluationRequest(
         planner=planner, perception=perception, pair=pair, tasks=tasks if isinstance(tasks, str | PathLike) else tuple(tasks),
-        out=Path(out), agent=agent, categories=_names("categories", categories), scenes=_names("scenes", scenes), limit=limit,
+        out=Path(out), agent=agent, agent_options=options, categories=_names("categories", categories), scenes=_names("scenes", scenes), limit=limit,
         epochs=epochs, seed=seed, max_steps=max_steps, time_budget_s=time_budget_s, concurrency=concurrency, pictures=pictures,
         fresh=fresh, planner_url=planner_url, planner_model=planner_model, perception_url=perception_url,
         perception_model=perception_model, timeout_s=timeout_s,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.engine.context import HostedAgent, Watcher
+from scope_ptz.bench.engine.context import OpenAgent, Order, Watcher
 from scope_ptz.factory.models import ModelOptions
 
 if TYPE_CHECKING:
+    from scope_ptz.bench.agents.channel import Isolation
+    from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.engine.estimate import Estimate, Price
     from scope_ptz.bench.judging.judgement_tally import JudgementTally
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
@@ -48,6 +50,30 @@ class JudgeSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class HostedAgent:
+    """An external agent that runs elsewhere and connects for each run.
+
+    Attributes:
+        name: Its name in traces and on run cards.
+        open: Waits until the agent begins the next run, and connects it.
+        order: Orders the tasks, so that the agent cannot foresee them.
+        settings: What else determines its results, as JSON data: a part of the identity of evaluations.
+        isolation: The label of its results.
+        source: Digest of its source, which is unknown.
+    """
+
+    name: str
+    open: OpenAgent
+    order: Order
+    settings: dict[str, Any]
+    isolation: Isolation = "hosted"
+    source: str = ""
+
+    async def check(self) -> None:
+        """Do nothing: whether the agent works turns out in its first run."""
+
+
+@dataclass(frozen=True, slots=True)
 class EvaluationOptions:
     """What to evaluate and how. The defaults run the built-in planner on the published tasks.
 
@@ -61,6 +87,7 @@ class EvaluationOptions:
         epochs: Number of runs of each task.
         seed: Seed for every random choice.
         agent: "scope", or ``module:Class`` of an external agent.
+        agent_options: How an external agent is started and limited; None for the defaults. Its command replaces ``agent``.
         max_steps: Number of planner steps after which a run ends.
         time_s: Number of wall-clock seconds after which a run ends; None for no limit.
         concurrency: Number of concurrent runs; None for a default that depends on the models.
@@ -71,7 +98,7 @@ class EvaluationOptions:
         resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
         judge: Settings of the judge that scores each run; None for no judge.
-        hosted_agent: How runs reach an agent that runs elsewhere; ``agent`` is then only its name.
+        hosted_agent: An external agent that runs elsewhere. It replaces ``agent``.
     """
 
     models: ModelOptions = field(default_factory=ModelOptions)
@@ -83,6 +110,7 @@ class EvaluationOptions:
     epochs: int = 1
     seed: int = 1
     agent: str = BUILT_IN_AGENT
+    agent_options: AgentOptions | None = None
     max_steps: int = 60
     time_s: float | None = None
     concurrency: int | None = None
@@ -109,6 +137,7 @@ class EvaluationPlan:
         finished: Trials from the log that is resumed.
         estimate: Estimate of duration and cost.
         asks_planner_server: Whether the planner calls a model server. Otherwise planning costs nothing.
+        isolation: How an external agent is separated from tasks, ground truth and checks; None for the built-in agent loop.
         origin: A sentence that names the log that is resumed, or the reason for a new evaluation; may be empty.
     """
 
@@ -120,6 +149,7 @@ class EvaluationPlan:
     finished: tuple[Trial, ...]
     estimate: Estimate
     asks_planner_server: bool
+    isolation: Isolation | None = None
     origin: str = ""
 
     @property

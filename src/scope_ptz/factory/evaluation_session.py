@@ -49,30 +49,33 @@ class EvaluationSession:
 
     def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
         from scope_ptz.bench.engine.entries import digest, select
-        from scope_ptz.bench.engine.external_agents import source_digest
         from scope_ptz.bench.engine.runs import identity_of
         from scope_ptz.factory.evaluation import eval_context, planner_for
+        from scope_ptz.factory.external_agents import external_agent
 
         self.options, self.pair, self.progress = options, pair, progress
         self.judge: JudgeServer | None = None
-        self.agent_source = source_digest(options.agent) if options.agent != BUILT_IN_AGENT and options.hosted_agent is None else ""
-        self.planner = planner_for(pair.planner) if options.agent == BUILT_IN_AGENT else None
+        self.agent = options.hosted_agent or external_agent(options)
+        self.agent_name = self.agent.name if self.agent is not None else BUILT_IN_AGENT
+        self.agent_source = self.agent.source if self.agent is not None else ""
+        self.planner = planner_for(pair.planner) if self.agent is None else None
         self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
         self.entries: tuple[Entry, ...] = select(
             self.context.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
         _check_pictures(options, pair, self.planner)
-        local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == BUILT_IN_AGENT
+        local = pair.planner.endpoint is None and pair.perception.spec is None and self.agent is None
         # Without servers, runs compete for the interpreter: concurrency would use more memory and save no time.
         default = 1 if local else DEFAULT_CONCURRENCY_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
         details = self.planner.details if self.planner is not None else {}
         spec = pair.perception.spec
         self.identity = identity_of(
-            digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
+            digest(self.entries), options.epochs, options.seed, self.agent_name, options.max_steps, options.time_s,
             options.pictures, options.latency, options.variant, pair.planner.name, pair.perception.name,
             {name: value for name, value in details.items() if name != "url"},
             spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _served_models(pair), self.agent_source,
+            *([self.agent.settings] if self.agent is not None and self.agent.settings else []),
         )  # fmt: skip
 
     async def close(self) -> None:
@@ -107,6 +110,8 @@ class EvaluationSession:
 
         finished = tuple(t for t in read_evaluation(stored[0].path).trials if t.headline != "infrastructure") if stored else ()
         plan = self._plan(finished, stored)
+        if self.agent is not None:
+            await self.agent.check()
         judge = self.judge = await open_requested_judge(self.options.judge) if self.options.judge is not None else None
         setup = await self._engine_setup(judge)
         group = anyio.create_task_group()
@@ -165,12 +170,16 @@ class EvaluationSession:
         from scope_ptz.bench.engine.benchmark_task import benchmark_task
 
         options = self.options
-        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries, hosted_agent=self.options.hosted_agent)
+        open_agent = self.agent.open if self.agent is not None else None
+        order = options.hosted_agent.order if options.hosted_agent is not None else None
+        context = replace(
+            self.context, watcher=watcher, load_tasks=lambda _: self.entries, open_agent=open_agent, order=order
+        )
         if judge is not None:
             context = with_judge(context, judge)
         return benchmark_task(lambda _: context)(
             split=options.tasks, category=list(options.categories) or None, scene=list(options.scenes) or None,
-            limit=options.limit, agent=options.agent, pictures=options.pictures, max_steps=options.max_steps,
+            limit=options.limit, agent=self.agent_name, pictures=options.pictures, max_steps=options.max_steps,
             time_s=options.time_s, seed=options.seed, epochs=options.epochs,
             judgements=options.judge.repeats if options.judge else 0,
         )  # fmt: skip
@@ -182,10 +191,10 @@ class EvaluationSession:
 
         options, pair = self.options, self.pair
         card = await run_card(
-            pair, self.planner, self.entries, agent=options.agent, agent_source=self.agent_source,
+            pair, self.planner, self.entries, agent=self.agent_name, agent_source=self.agent_source,
+            isolation=self.agent.isolation if self.agent is not None else None,
             concurrency=self.concurrency, contended=not options.latency, variant=options.variant, price=options.price,
             split=Path(options.tasks).name, seed=options.seed, max_steps=options.max_steps, epochs=options.epochs,
-            **({"isolation": "hosted"} if options.hosted_agent is not None else {}),
         )  # fmt: skip
         connections = self.concurrency * PERCEPTION_CALLS_PER_STEP
         endpoint, spec = pair.planner.endpoint, pair.perception.spec
@@ -207,7 +216,7 @@ class EvaluationSession:
         from scope_ptz.bench.engine.runs import earlier_evaluations, log_with_other_source
 
         options, pair = self.options, self.pair
-        agent = options.agent if options.agent != BUILT_IN_AGENT else None
+        agent = self.agent.name if self.agent is not None else None
         runs, origin = len(self.entries) * options.epochs, ""
         if stored:
             origin = f"Resuming {stored[0].path}: {len(finished)} of {runs} runs are finished."
@@ -221,7 +230,7 @@ class EvaluationSession:
         expected = estimate(remaining, options.epochs, self.concurrency, earlier, options.price, prompt_chars(self.planner))
         return EvaluationPlan(
             runs, pair.planner.name, pair.perception.name, agent, self.concurrency, finished, expected,
-            pair.planner.endpoint is not None, origin,
+            pair.planner.endpoint is not None, self.agent.isolation if self.agent is not None else None, origin,
         )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import anyio
 
+from scope_ptz.bench.agents.channel import Isolation
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, PRICE, engine_version
@@ -30,6 +31,7 @@ async def run_card(
     *,
     agent: str,
     agent_source: str,
+    isolation: Isolation | None,
     concurrency: int,
     contended: bool,
     variant: str,
@@ -44,6 +46,7 @@ async def run_card(
         entries: The tasks.
         agent: Name of the agent.
         agent_source: Digest of an external agent's source code; empty for the built-in agent loop.
+        isolation: How an external agent is separated from tasks, ground truth and checks; None for the built-in agent loop.
         concurrency: Number of concurrent runs.
         contended: Whether concurrent runs may have increased the latencies.
         variant: Label of the evaluation.
@@ -69,6 +72,7 @@ async def run_card(
         planner=await _planner_card(resolved.planner) if planner is not None else ModelCard(name=agent),
         perception=await _perception_card(resolved.perception),
         agent=agent,
+        isolation=isolation,
         variant=variant,
         sampling=sampling,
         prompt_digest=details.get("prompt_sha256", ""),

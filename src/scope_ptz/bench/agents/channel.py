@@ -16,6 +16,13 @@ Isolation = Literal["in-process", "isolated", "sandboxed", "hosted"]
 - ``hosted``: it runs elsewhere and is connected over a network.
 """
 ISOLATIONS: tuple[Isolation, ...] = get_args(Isolation)
+ISOLATION_NOTES: dict[Isolation, str] = {
+    "in-process": "it can reach the tasks, the answers and the checks",
+    "isolated": "a process of its own, which can read files of this machine",
+    "sandboxed": "without the network and without the files of the dataset",
+    "hosted": "connected over a network",
+}
+"""What each label means, for the output of commands and for reports."""
 
 
 class AgentChannel(ABC):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Literal, get_args
 
 from scope_ptz.errors import PlannerError
@@ -30,3 +31,14 @@ def agent_failed(fault: AgentFault, message: str) -> PlannerError:
         message: What happened and what to do, for the trace and the report.
     """
     return PlannerError(message, kind=fault)
+
+
+def fault_reason(fault: str, message: str) -> str:
+    """Return the reason for the verdict on a run that its agent ended by failing."""
+    return f"the agent failed ({fault}): {message}"
+
+
+def fault_in(reason: str) -> str | None:
+    """Return the fault that ``fault_reason`` put into the reason for a verdict; None if there is none."""
+    found = re.match(r"the agent failed \((agent-[a-z]+)\)", reason)
+    return found[1] if found else None

@@ -63,6 +63,7 @@ class ChannelPlanner(Planner):
         channel: The channel to the agent. Closing the planner closes it.
         times: The limits on the agent's time.
         spent_s: Seconds that the agent has taken so far.
+        failure: Why the agent failed; None if it has not.
     """
 
     def __init__(self, channel: AgentChannel, name: str = "", times: AgentTimes | None = None) -> None:
@@ -78,7 +79,7 @@ class ChannelPlanner(Planner):
         self._step_spent_s = 0.0
         self._named = bool(name)
         self._connected = False
-        self._failure: PlannerError | None = None
+        self.failure: PlannerError | None = None
         self._pending: tuple[str, ...] = ()
         self._begun = False
         self._calls_made = 0
@@ -105,10 +106,10 @@ class ChannelPlanner(Planner):
         Raises:
             PlannerError: The agent failed. Its kind is one of ``bench.agents.faults``, or "empty" for an empty reply.
         """
-        if self._failure is None and not self._connected:
+        if self.failure is None and not self._connected:
             await self.connect()
-        if self._failure is not None:
-            raise self._failure
+        if self.failure is not None:
+            raise self.failure
         try:
             return await self._decide(state)
         except PlannerError as error:
@@ -196,7 +197,7 @@ class ChannelPlanner(Planner):
 
     async def _report(self, error: PlannerError) -> None:
         """Remember the failure, and tell the agent about it if it is still connected and reads its messages."""
-        self._failure = error
+        self.failure = error
         with suppress(PlannerError), anyio.move_on_after(FAREWELL_S):
             await self.channel.send(Error(message=str(error)))
 

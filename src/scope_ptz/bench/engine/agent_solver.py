@@ -8,10 +8,11 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, RunLabels, RunResult
 from scope_ptz.agent.store import NoImages
+from scope_ptz.bench.agents.launch import AgentOptions
 from scope_ptz.bench.agents.planner import ChannelPlanner
+from scope_ptz.bench.agents.start import local_agent
 from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
 from scope_ptz.bench.engine.inspect_internals import attachment_reference
 from scope_ptz.bench.engine.recording.logged_perception import LoggedPerception
 from scope_ptz.bench.engine.recording.logged_planner import LoggedPlanner
@@ -48,26 +49,39 @@ def agent_solver(
 
     Args:
         context: The resources of the evaluation: scenes, models and the watcher.
-        agent: "scope" for the built-in loop with its planner, or ``module:Class`` of an external agent.
+        agent: "scope" for the built-in loop with its planner, or the name of an external agent, which the context starts. If the
+            context does not, the name must be ``module:Class``.
         pictures: Whether frames are rendered and logged. Without frames, only ground-truth perception works.
         max_steps: Planner steps after which a run ends (T_max).
         time_s: Wall-clock seconds after which a run ends.
         seed: Seed for every random choice.
     """
+    if context.open_agent is not None or agent == BUILT_IN_AGENT:
+        open_agent = context.open_agent
+    else:
+        open_agent = local_agent(agent, AgentOptions()).open
 
     @solver
     def scope_agent(
-        agent: str = BUILT_IN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
+        agent: str = BUILT_IN_AGENT,  # noqa: ARG001 - Inspect records the parameters
+        pictures: bool = True,
+        max_steps: int = 60,
+        time_s: float | None = None,
+        seed: int = 1,
     ) -> Solver:
         async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - Inspect's signature
             entry = Entry.of_metadata(state.metadata)
             context.watcher.run_began(sample_name(entry.facts.id, state.epoch), entry)
-            planner = await _planner(context, agent)
+            planner: Planner = (
+                await LoggedPlanner.of(get_model(role="planner", required=True), context)
+                if open_agent is None
+                else await open_agent()
+            )
             run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
             try:
                 result = await run.run(Budgets(max_steps=max_steps, time_s=time_s))
             finally:
-                if isinstance(planner, ExternalPlanner | ChannelPlanner):
+                if isinstance(planner, ChannelPlanner):
                     await planner.close()
                 await run.store(state)
             state.output = ModelOutput.from_content(planner.name, result.ended.text)
@@ -80,15 +94,6 @@ def agent_solver(
         return solve
 
     return scope_agent(agent, pictures, max_steps, time_s, seed)
-
-
-async def _planner(context: EvalContext, agent: str) -> Planner:
-    """Return the planner of a run: that of the built-in loop, a hosted agent, or an external agent."""
-    if context.hosted_agent is not None:
-        return await context.hosted_agent.open()
-    if agent == BUILT_IN_AGENT:
-        return await LoggedPlanner.of(get_model(role="planner", required=True), context)
-    return ExternalPlanner(load_external_agent(agent), agent)
 
 
 class _SampleRun:

@@ -8,11 +8,12 @@ from typing import Any
 
 from inspect_ai import Epochs, Task, task
 
+from scope_ptz.bench.agents.launch import AgentOptions
+from scope_ptz.bench.agents.start import local_agent
 from scope_ptz.bench.engine.agent_solver import BUILT_IN_AGENT, agent_solver
 from scope_ptz.bench.engine.checks_scorer import checks_scorer
 from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry, datasets, digest, select
-from scope_ptz.bench.engine.external_agents import source_digest
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE
 from scope_ptz.bench.engine.samples import dataset_of, viewpoint_order
@@ -62,9 +63,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         """
         context = provide_context(seed)
         entries = select(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
-        hosted = context.hosted_agent
-        ordered = viewpoint_order(entries, context.open_scene) if hosted is None else hosted.order(entries)
-        source = source_digest(agent) if agent != BUILT_IN_AGENT and hosted is None else None
+        ordered = context.order(entries) if context.order is not None else viewpoint_order(entries, context.open_scene)
         return Task(
             dataset=dataset_of(ordered, name=f"{datasets(entries)} {Path(split).name}"),
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
@@ -74,7 +73,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             continue_on_fail=True,
             score_on_error=True,
             version=datasets(entries),
-            metadata=_log_metadata(entries, split, agent=agent, source=source, max_steps=max_steps, seed=seed),
+            metadata=_log_metadata(entries, split, max_steps=max_steps, seed=seed, **_agent_facts(context, agent)),
         )
 
     return bench
@@ -86,9 +85,15 @@ def _name_list(names: str | list[str] | None) -> list[str]:
     return names or []
 
 
-def _log_metadata(
-    entries: Sequence[Entry], split: str, *, agent: str, source: str | None, max_steps: int, seed: int
-) -> dict[str, Any]:
+def _agent_facts(context: EvalContext, agent: str) -> dict[str, Any]:
+    """Return the facts about the agent. Only an agent that the caller of the evaluation starts is described by a run card."""
+    if agent == BUILT_IN_AGENT or context.open_agent is not None:
+        return {"agent": agent}
+    external = local_agent(agent, AgentOptions())
+    return {"agent": agent, "isolation": external.isolation, AGENT_SOURCE: external.source}
+
+
+def _log_metadata(entries: Sequence[Entry], split: str, **facts: Any) -> dict[str, Any]:
     """Return the metadata that a log records about its tasks and the agent loop."""
     return {
         "scope": {
@@ -96,9 +101,6 @@ def _log_metadata(
             "dataset": datasets(entries),
             "dataset_digest": digest(entries),
             "split": Path(split).name,
-            "agent": agent,
-            "max_steps": max_steps,
-            "seed": seed,
-            **({AGENT_SOURCE: source} if source is not None else {}),
+            **facts,
         }
     }

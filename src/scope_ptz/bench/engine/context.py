@@ -37,27 +37,12 @@ class ModelRequest:
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
 """Returns the true count for a perception call in the scene with the given name; None if the ground truth does not define it."""
+Order = Callable[[Sequence[Entry]], list[Entry]]
+"""Returns entries in the order in which they are run."""
 OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
 """Starts or connects an external agent for one run."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
 """Returns the entries of a split, given by its name, or of a task file, given by its path."""
-OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
-"""Connects an external agent for one run."""
-Order = Callable[[Sequence[Entry]], list[Entry]]
-"""Returns entries in the order in which they are run."""
-
-
-@dataclass(frozen=True, slots=True)
-class HostedAgent:
-    """How runs reach an agent that runs elsewhere.
-
-    Attributes:
-        open: Waits until the agent begins the next run, and connects it.
-        order: The order of the entries, which the agent must not be able to foresee.
-    """
-
-    open: OpenAgent
-    order: Order
 
 
 class Watcher:
@@ -82,10 +67,10 @@ class EvalContext:
         load_tasks: Loads the entries of a split or a task file.
         true_count: Returns the true counts for perception calls; None if there is no ground truth.
         watcher: Notified when a run begins or ends.
+        order: Orders the entries; None for the order that needs the least memory.
         open_agent: Starts or connects the external agent for a run; None to start the agent that the task names.
         perception_note: Note for the trace about the origin of the perception backend.
         perception: A perception backend that was created in advance, if any. Its creator closes it.
-        hosted_agent: The agent that runs elsewhere; None if the agent is named by the evaluation.
     """
 
     open_scene: OpenScene
@@ -95,7 +80,7 @@ class EvalContext:
     load_tasks: LoadTasks
     true_count: TrueCount | None = None
     watcher: Watcher = field(default_factory=Watcher)
+    order: Order | None = None
     open_agent: OpenAgent | None = None
     perception_note: str = ""
     perception: Perception | None = None
-    hosted_agent: HostedAgent | None = None

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from scope_ptz.bench.agents.channel import ISOLATION_NOTES, Isolation
 from scope_ptz.bench.engine.estimate import Estimate
 
 
 def estimate_lines(
-    estimate: Estimate, *, planner: str, perception: str, concurrency: int, agent: str | None = None, planner_is_free: bool
+    estimate: Estimate,
+    *,
+    planner: str,
+    perception: str,
+    concurrency: int,
+    agent: str | None = None,
+    isolation: Isolation | None = None,
+    planner_is_free: bool,
 ) -> Iterator[str]:
     """Yield the lines of the estimate: runs, calls, duration and cost.
 
@@ -18,10 +26,13 @@ def estimate_lines(
         perception: Name of the perception backend.
         concurrency: Number of concurrent runs.
         agent: Name of the external agent that replaces the planner, if any.
+        isolation: How the external agent is separated from tasks, ground truth and checks.
         planner_is_free: Whether the planner uses no paid server.
     """
     runs, subject = f"{estimate.runs} run{'s' if estimate.runs != 1 else ''}", "this agent" if agent else "this pair"
     yield f"{runs} of {agent or planner} + {perception}, {concurrency} at a time"
+    if isolation is not None:
+        yield f"agent   {isolation}: {ISOLATION_NOTES[isolation]}"
     perception_calls = f"{estimate.perception_calls} to perception, from the reference programs"
     if agent:
         yield f"calls   about {perception_calls}; the agent's own model calls are unknown"

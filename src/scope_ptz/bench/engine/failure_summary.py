@@ -1,16 +1,17 @@
-"""Summarize the infrastructure failures and the failed perception calls of an evaluation, with remedies."""
+"""Summarize the infrastructure failures, the agent's failures and the failed perception calls of an evaluation, with remedies."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
 
+from scope_ptz.bench.agents.faults import fault_in
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard, Trial
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 
 def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
-    """Return one line per cause of infrastructure failures, and one line on failed perception calls in the scored runs."""
+    """Return one line per cause of infrastructure failures, and lines on failures of the agent and of perception in scored runs."""
     broken = [trial for trial in trials if trial.headline == "infrastructure"]
     lines = []
     for reason in dict.fromkeys(_without_kind(trial.reason) for trial in broken):
@@ -20,6 +21,9 @@ def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
         kinds = f" ({counts_text(counts)})" if counts else ""
         advice = _advice(model, _most_frequent(counts or server_events(group)))
         lines.append(f"{len(group)} of {_runs(len(trials))} broken: {reason}{kinds}.{advice}")
+    faults = Counter(fault for trial in trials if (fault := fault_in(trial.reason)) is not None)
+    if faults:
+        lines.append(f"The agent failed in {faults.total()} of {_runs(len(trials))}, which were scored: {counts_text(faults)}.")
     affected = [trial for trial in trials if trial.headline != "infrastructure" and trial.perception_failures]
     if affected:
         failures, events = sum(trial.perception_failures for trial in affected), server_events(affected)

@@ -36,6 +36,7 @@ def evaluation_summary(evaluation: Evaluation) -> dict[str, object]:
     return {
         "log": evaluation.log,
         "pair": evaluation.card.pair,
+        "isolation": evaluation.card.isolation,
         "finished": evaluation.finished,
         "runs": len(trials),
         "wanted": evaluation.wanted,

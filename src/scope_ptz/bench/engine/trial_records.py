@@ -9,6 +9,7 @@ from typing import Any
 
 from scope_ptz.agent.records import Ended
 from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.agents.faults import AGENT_FAULTS, fault_reason
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import StoredRun, sample_name, trace_of
 from scope_ptz.bench.judging.deciding_judge import verdict_by
@@ -58,11 +59,18 @@ def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dic
     return {
         "headline": verdict.headline,
         "scored_by": "checks",
-        "reason": verdict.reason,
+        "reason": _with_fault(trace.ended, verdict.reason),
         "error_mode": error_mode(entry.task, episode, truth if stored_run.truths else None),
         "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         "collateral": verdict.moved_needlessly,
     }
+
+
+def _with_fault(ended: Ended | None, reason: str) -> str:
+    """Return the reason for a verdict, preceded by the failure of an external agent that ended the run."""
+    if ended is None or ended.kind not in AGENT_FAULTS:
+        return reason
+    return f"{fault_reason(ended.kind, ended.text)} {reason}"
 
 
 class _TrueCounts:

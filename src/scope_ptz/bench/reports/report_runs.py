@@ -97,9 +97,9 @@ class ReportRun:
 
     @property
     def system(self) -> tuple[str, str, str, str]:
-        """The evaluated system: planner, perception model, agent and variant."""
+        """The evaluated system: planner, perception model, agent with its isolation, and variant."""
         card = self.evaluation.card
-        return self.planner_name, self.perception_name, card.agent, card.variant
+        return self.planner_name, self.perception_name, card.agent_label, card.variant
 
     @property
     def task_set(self) -> tuple[str, str]:
@@ -224,7 +224,7 @@ def _label(run: ReportRun, *, with_split: bool) -> str:
     card = run.evaluation.card
     pair = f"{run.planner_name} + {run.perception_name}"
     parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
-    parts += [f"agent {card.agent}"] if card.agent != "scope" else []
+    parts += [f"agent {card.agent_label}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
     parts += [f"{split_name(card.split)} split"] if with_split and card.split != "core" else []
     return ", ".join(parts)

@@ -202,6 +202,11 @@ class RunCard(_Record):
         return f"{self.planner.name} + {self.perception.name}"
 
     @property
+    def agent_label(self) -> str:
+        """Name of the agent in tables, with the label of an external agent."""
+        return f"{self.agent} ({self.isolation})" if self.isolation is not None else self.agent
+
+    @property
     def ranked(self) -> bool:
         """Whether rankings of models include the pair."""
         return not (self.planner.deterministic or self.perception.deterministic)

@@ -76,7 +76,7 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
 def infrastructure_failure(task: Task, episode: Episode) -> str | None:
     """Return why a run cannot be used to score the agent; None if it can.
 
-    A run cannot be used if it was interrupted, or if the camera or a model server failed.
+    A run cannot be used if it was interrupted, or if the camera or a model server failed. Faults of an external agent are its own.
     """
     if episode.outcome is None:
         return "the run was cut off"
@@ -84,6 +84,8 @@ def infrastructure_failure(task: Task, episode: Episode) -> str | None:
         return f"the run ended with the outcome {episode.outcome}"
     if episode.outcome == "planner_error" and episode.failure is not None and episode.failure not in AGENT_FAILURES:
         return f"the planner's server failed: {episode.failure}"
+    if episode.outcome == "planner_error" and episode.failure in AGENT_FAULTS:
+        return None
     all_failed = any(call.fault == "perception" for call in episode.calls) and not episode.observations
     if all_failed and any(view.must_look for view in task.evidence) and not states_value(task, episode):
         return "perception failed and the agent stated no value"

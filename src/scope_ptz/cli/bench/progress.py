@@ -12,6 +12,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from scope_ptz.bench.agents.channel import ISOLATION_NOTES
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.estimate_text import duration_text, estimate_lines
 from scope_ptz.bench.engine.failure_summary import counts_text, server_events
@@ -59,6 +60,7 @@ class LiveProgress(EvaluationProgress):
             perception=plan.perception,
             concurrency=plan.concurrency,
             agent=plan.agent,
+            isolation=plan.isolation,
             planner_is_free=not plan.asks_planner_server,
         )
         for line in filter(None, (plan.origin, *lines)):
@@ -159,6 +161,8 @@ def summary(evaluation: Evaluation) -> RenderableType:
     """Return the scores of an evaluation, how runs failed, and how long they took."""
     trials, card = evaluation.trials, evaluation.card
     parts: list[RenderableType] = [Text(card.pair, style="bold"), category_table(trials)]
+    if card.isolation is not None:
+        parts.append(Text(f"agent      {card.isolation}: {ISOLATION_NOTES[card.isolation]}"))
     if note := baseline_note(evaluation):
         parts.append(Text(note, style="yellow"))
     modes = sorted(

@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, price_of
+from scope_ptz.cli.bench.flags import (
+    AgentFlags,
+    JudgeRepeats,
+    SelectionFlags,
+    SingleRunFlags,
+    agent_options,
+    evaluation_options,
+    judge_settings,
+    price_of,
+)
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
@@ -20,6 +29,7 @@ if TYPE_CHECKING:
 def run(
     selection: SelectionFlags,
     running: SingleRunFlags,
+    external: AgentFlags,
     models: PairFlags,
     judge: JudgeFlags,
     judge_repeats: JudgeRepeats = 1,
@@ -42,7 +52,8 @@ def run(
     judge_options = judge_settings(judge, judge_repeats)
     options = replace(
         evaluation_options(selection, running, models.options()),
-        agent=running.agent,
+        agent=external.agent,
+        agent_options=agent_options(external),
         pictures=running.pictures,
         variant=running.variant,
         fresh=running.fresh,

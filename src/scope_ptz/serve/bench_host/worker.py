@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from scope_ptz.errors import InputError, ScopeError
-from scope_ptz.factory.evaluation_options import EvaluationOptions, EvaluationProgress
+from scope_ptz.factory.evaluation_options import EvaluationOptions, EvaluationProgress, HostedAgent
 from scope_ptz.serve.bench_host.channel import HostedChannel
 from scope_ptz.serve.bench_host.links import StandardStreams, WorkerSide
 from scope_ptz.serve.bench_host.wire import (
@@ -102,10 +102,11 @@ class Worker:
 
     async def _run_engine(self, options: EvaluationOptions) -> Path:
         """Run the engine, and return the path of the log."""
-        from scope_ptz.bench.engine.context import HostedAgent
         from scope_ptz.factory.evaluate import evaluate
 
-        options = replace(options, hosted_agent=HostedAgent(self._open_agent, self._order))
+        times = {"step_s": self._settings.evaluation.step_s, "run_s": self._settings.evaluation.task_s}
+        agent = HostedAgent(self._settings.participant, self._open_agent, self._order, times)
+        options = replace(options, hosted_agent=agent)
         for attempt in range(LOCK_ATTEMPTS):
             try:
                 return Path((await evaluate(options, progress=_Samples(self))).evaluation.log)
@@ -166,7 +167,6 @@ def evaluation_options(settings: WorkerSettings) -> EvaluationOptions:
         tasks=wanted.tasks,
         epochs=wanted.epochs,
         seed=wanted.seed,
-        agent=settings.participant,
         max_steps=wanted.max_steps,
         concurrency=1,
     )

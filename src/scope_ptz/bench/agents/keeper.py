@@ -1,0 +1,221 @@
+"""Start a program, limit its resources, and end it with everything that it started. This file uses only the standard library.
+
+Usage: ``python keeper.py '{"command": [...], ...}'``, with the fields of ``Orders``. The keeper runs in a process between the host
+and an agent, which inherits stdin and stdout. The keeper ends the agent, and every process that the agent started, when
+
+- the agent's first process ends,
+- the host closes the control pipe or dies, after a grace period,
+- the agent uses more memory, processes or output than allowed.
+
+At the end it writes a JSON object to the status pipe: the exit code or the signal, the exceeded limit, and the last of stderr.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import select
+import signal
+import sys
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+CHECK_S = 0.2  # seconds between two checks of memory and processes
+TERMINATE_S = 1.0  # seconds between SIGTERM and SIGKILL
+GIVE_UP_S = 10.0  # seconds after which processes that cannot be killed are left
+TAIL_BYTES = 4_000  # the end of stderr that is reported
+RESERVED_MB = 512  # headroom of the kernel's limit: it also counts memory that is reserved but not used, such as stacks
+PR_SET_CHILD_SUBREAPER = 36
+
+
+@dataclass
+class Orders:
+    """What to run and how.
+
+    Attributes:
+        command: The program and its arguments.
+        control: File descriptor whose end of file ends the program.
+        status: File descriptor for the report.
+        memory_mb: Maximum memory of all processes together in MB; None for no limit.
+        processes: Maximum number of processes.
+        stderr_bytes: Maximum size of what is written to stderr.
+        grace_s: Seconds for the program to end by itself after the control pipe was closed.
+    """
+
+    command: list[str]
+    control: int
+    status: int
+    memory_mb: int | None
+    processes: int
+    stderr_bytes: int
+    grace_s: float
+
+
+class Keeper:
+    """A program in progress."""
+
+    def __init__(self, orders: Orders) -> None:
+        self.orders = orders
+        self.exceeded: str | None = None
+        self.tail = b""
+        self.stderr_bytes = 0
+        self.wait_status: int | None = None
+        self.stderr, writer = os.pipe()
+        self.wake, wake_writer = os.pipe()
+        os.set_blocking(wake_writer, False)
+        signal.set_wakeup_fd(wake_writer, warn_on_full_buffer=False)
+        signal.signal(signal.SIGCHLD, lambda *_: None)
+        self.pid = self._start(writer)
+        os.close(writer)
+        # Only the agent may hold the pipes to the host: their end of file says that it has gone.
+        nothing = os.open(os.devnull, os.O_RDWR)
+        for descriptor in (0, 1, 2):
+            os.dup2(nothing, descriptor)
+
+    def _start(self, stderr: int) -> int:
+        pid = os.fork()
+        if pid:
+            return pid
+        try:
+            os.setsid()
+            os.dup2(stderr, 2)
+            for number in (signal.SIGCHLD, signal.SIGPIPE, signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_DFL)
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            if self.orders.memory_mb is not None:
+                limit = (self.orders.memory_mb + RESERVED_MB) * 1_000_000
+                resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+            os.execvp(self.orders.command[0], self.orders.command)  # noqa: S606 - no shell is wanted
+        except OSError as error:
+            os.write(2, f"{self.orders.command[0]} cannot be started: {error.strerror}\n".encode())
+        finally:
+            os._exit(127)
+
+    def watch(self) -> None:
+        """Wait until the program has ended or must be ended, then end everything that is left."""
+        readable: list[int] = [self.orders.control, self.wake, self.stderr]
+        deadlines: list[tuple[float, int]] = []
+        while self.wait_status is None and self.exceeded is None:
+            for descriptor in select.select(readable, [], [], CHECK_S)[0]:
+                if descriptor == self.stderr:
+                    self._read_stderr(readable)
+                elif descriptor == self.wake:
+                    os.read(self.wake, 512)
+                else:
+                    readable.remove(self.orders.control)
+                    now = time.monotonic() + self.orders.grace_s
+                    deadlines = [(now + TERMINATE_S, signal.SIGKILL), (now, signal.SIGTERM)]
+            self._reap()
+            while deadlines and time.monotonic() >= deadlines[-1][0] and self.wait_status is None:
+                self._signal(self.pid, deadlines.pop()[1])
+            self._check_limits()
+        self._end_all()
+        while self.stderr in readable and select.select([self.stderr], [], [], 0)[0]:
+            self._read_stderr(readable)
+
+    def report(self) -> None:
+        """Write the report."""
+        code = os.waitstatus_to_exitcode(self.wait_status) if self.wait_status is not None else None
+        fields = {"code": code, "exceeded": self.exceeded, "stderr": self.tail.decode("utf-8", "replace")}
+        os.write(self.orders.status, json.dumps(fields).encode())
+
+    def _read_stderr(self, readable: list[int]) -> None:
+        data = os.read(self.stderr, 65_536)
+        if not data:
+            readable.remove(self.stderr)
+        self.stderr_bytes += len(data)
+        self.tail = (self.tail + data)[-TAIL_BYTES:]
+
+    def _reap(self) -> bool:
+        """Collect processes that have ended. Return whether others are left."""
+        while True:
+            try:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                return False
+            if pid == 0:
+                return True
+            if pid == self.pid:
+                self.wait_status = status
+
+    def _check_limits(self) -> None:
+        pids = descendants(os.getpid())
+        if len(pids) > self.orders.processes:
+            self.exceeded = "processes"
+        elif self.stderr_bytes > self.orders.stderr_bytes:
+            self.exceeded = "stderr"
+        elif self.orders.memory_mb is not None and memory_bytes(pids) > self.orders.memory_mb * 1_000_000:
+            self.exceeded = "memory"
+
+    def _end_all(self) -> None:
+        """Kill every process that is left. They are stopped first, so that none starts another while they are killed."""
+        deadline = time.monotonic() + GIVE_UP_S
+        stopped: set[int] = set()
+        while (new := set(descendants(os.getpid())) - stopped) and time.monotonic() < deadline:
+            for pid in new:
+                self._signal(pid, signal.SIGSTOP)
+            stopped |= new
+        while self._reap() and time.monotonic() < deadline:
+            for pid in descendants(os.getpid()) or [self.pid]:
+                self._signal(pid, signal.SIGKILL)
+            time.sleep(0.005)
+
+    @staticmethod
+    def _signal(pid: int, number: int) -> None:
+        with suppress(OSError):
+            os.kill(pid, number)
+
+
+def descendants(root: int) -> list[int]:
+    """Return the ids of all processes below a process. Systems without ``/proc`` report none."""
+    found: list[int] = []
+    pending = [root]
+    while pending:
+        for children in Path(f"/proc/{pending.pop()}/task").glob("*/children"):
+            try:
+                pids = [int(pid) for pid in children.read_text().split()]
+            except OSError:
+                continue
+            found += pids
+            pending += pids
+    return found
+
+
+def memory_bytes(pids: list[int]) -> int:
+    """Return the memory of processes in bytes, without swapped pages. Pages that several of them share are counted once."""
+    total = 0
+    for pid in pids:
+        try:
+            lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        except OSError:
+            continue  # the process has ended
+        total += sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
+    return total
+
+
+def adopt_orphans() -> None:
+    """Become the parent of all orphans below this process, so that a process that detaches itself is found. Linux only."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def main() -> None:
+    """Run the program that the first argument describes."""
+    orders = Orders(**json.loads(sys.argv[1]))
+    for descriptor in (orders.control, orders.status):
+        os.set_inheritable(descriptor, False)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    adopt_orphans()
+    keeper = Keeper(orders)
+    keeper.watch()
+    keeper.report()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,197 @@
+"""A channel to an agent in a process of its own: JSON lines on the agent's stdin and stdout."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+from anyio.abc import ByteReceiveStream, ByteSendStream, Process
+
+from scope_ptz.bench.agents import keeper, runner
+from scope_ptz.bench.agents.channel import AgentChannel
+from scope_ptz.bench.agents.faults import agent_failed
+from scope_ptz.bench.agents.launch import AgentLaunch
+from scope_ptz.bench.agents.messages import (
+    MAX_MESSAGE_BYTES,
+    MAX_QUOTED_CHARS,
+    AgentMessage,
+    End,
+    HostMessage,
+    line_of,
+    parse_agent_message,
+    printable,
+)
+from scope_ptz.errors import PlannerError
+
+MAX_PROCESSES = 256
+"""Maximum number of processes of an agent."""
+MAX_STDERR_BYTES = 64_000_000
+"""Maximum size of what an agent writes to stderr in one run."""
+GRACE_S = 2.0
+"""Seconds for an agent to end by itself after its run."""
+WRITE_S = 0.5
+"""Seconds for the last message to an agent."""
+KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
+"""Seconds after which the keeper itself is killed."""
+CHUNK_BYTES = 65_536
+_PIPE_ERRORS = (anyio.EndOfStream, anyio.ClosedResourceError, anyio.BrokenResourceError)
+
+
+@dataclass(frozen=True, slots=True)
+class ExitReport:
+    """How an agent's process ended.
+
+    Attributes:
+        code: The exit code, or the negative number of the signal; None if the process was killed with its keeper.
+        exceeded: The exceeded limit: "memory", "processes" or "stderr".
+        last_line: The last line that the agent wrote to stderr.
+    """
+
+    code: int | None = None
+    exceeded: str | None = None
+    last_line: str = ""
+
+
+class PipeChannel(AgentChannel):
+    """A channel to an agent in a process of its own. Create it with ``start``."""
+
+    def __init__(self, launch: AgentLaunch, process: Process, control: int, status: int) -> None:
+        """Take over a process that ``start`` has started."""
+        self.launch, self.isolation = launch, launch.isolation
+        self._process, self._control, self._status = process, control, status
+        assert process.stdin is not None  # noqa: S101 - start() opens both pipes
+        assert process.stdout is not None  # noqa: S101
+        self._input: ByteSendStream = process.stdin
+        self._output: ByteReceiveStream = process.stdout
+        self._buffer = bytearray()
+        self._report: ExitReport | None = None
+
+    @classmethod
+    async def start(cls, launch: AgentLaunch) -> PipeChannel:
+        """Start an agent.
+
+        Raises:
+            OSError: The operating system cannot start another process.
+        """
+        control, control_writer = os.pipe()
+        status, status_writer = os.pipe()
+        orders = {
+            "command": launch.command, "control": control, "status": status_writer, "memory_mb": launch.memory_mb,
+            "processes": MAX_PROCESSES, "stderr_bytes": MAX_STDERR_BYTES, "grace_s": GRACE_S,
+        }  # fmt: skip
+        try:
+            process = await anyio.open_process(
+                [sys.executable, "-I", "-S", str(Path(keeper.__file__)), json.dumps(orders)],
+                stderr=None,
+                cwd=launch.folder,
+                env=launch.environment,
+                start_new_session=True,
+                pass_fds=(control, status_writer),
+            )
+        except BaseException:
+            os.close(control_writer)
+            os.close(status)
+            raise
+        finally:
+            os.close(control)
+            os.close(status_writer)
+        return cls(launch, process, control_writer, status)
+
+    async def send(self, message: HostMessage) -> None:
+        """Send a message to the agent.
+
+        Raises:
+            PlannerError: The agent has gone.
+        """
+        try:
+            await self._input.send(line_of(message))
+        except _PIPE_ERRORS:
+            raise await self._failure() from None
+
+    async def receive(self) -> AgentMessage:
+        """Wait for the agent's next message and return it.
+
+        Raises:
+            PlannerError: The agent has gone, or sent something that is not a valid message.
+        """
+        while True:
+            end = self._buffer.find(b"\n")
+            if end >= 0:
+                line = bytes(self._buffer[:end])
+                del self._buffer[: end + 1]
+                if line.strip():
+                    return parse_agent_message(line)
+                continue
+            if len(self._buffer) > MAX_MESSAGE_BYTES:
+                raise agent_failed("agent-output", f"The agent sent a message of more than {MAX_MESSAGE_BYTES} bytes.")
+            try:
+                self._buffer += await self._output.receive(CHUNK_BYTES)
+            except _PIPE_ERRORS:
+                raise await self._failure() from None
+
+    async def close(self, reason: str) -> None:
+        """End the agent with all its processes. An agent that does not end by itself within two seconds is killed."""
+        with anyio.CancelScope(shield=True):
+            if self._report is None:
+                with suppress(*_PIPE_ERRORS), anyio.move_on_after(WRITE_S):
+                    await self._input.send(line_of(End(reason=reason)))
+            await self._ended()
+
+    async def _ended(self) -> ExitReport:
+        """Wait until no process of the agent is left, release everything, and return how the agent ended."""
+        if self._report is not None:
+            return self._report
+        self._report = ExitReport()
+        os.close(self._control)
+        with anyio.CancelScope(shield=True):
+            with suppress(*_PIPE_ERRORS), anyio.move_on_after(WRITE_S):
+                await self._input.aclose()
+            with anyio.move_on_after(KEEPER_S):
+                await self._process.wait()
+            if self._process.returncode is None:
+                self._process.kill()
+            await self._process.aclose()
+        self._report = _read_report(self._status)
+        return self._report
+
+    async def _failure(self) -> PlannerError:
+        """Return the error for an agent that has gone."""
+        report = await self._ended()
+        said = f": {report.last_line}" if report.last_line else "."
+        limit = f"The agent used more than {self.launch.memory_mb} MB of memory. --agent-memory-mb sets the limit."
+        code = report.code
+        if report.exceeded == "memory" or code == runner.OUT_OF_MEMORY or report.last_line.startswith("MemoryError"):
+            return agent_failed("agent-memory", limit)
+        if report.exceeded == "processes":
+            return agent_failed("agent-processes", f"The agent started more than {MAX_PROCESSES} processes.")
+        if report.exceeded == "stderr":
+            return agent_failed("agent-output", f"The agent wrote more than {MAX_STDERR_BYTES} bytes to stderr.")
+        if code == runner.FAILED:
+            return agent_failed("agent-error", f"The agent failed{said}")
+        if code == runner.NOT_LOADED:
+            return agent_failed("agent-error", report.last_line)
+        if code is None:
+            return agent_failed("agent-exited", f"The agent's process was killed before the agent replied{said}")
+        if code < 0:
+            name = signal.Signals(-code).name
+            return agent_failed(
+                "agent-exited", f"The agent's process was ended by the signal {name} before the agent replied{said}"
+            )
+        return agent_failed("agent-exited", f"The agent's process ended with exit code {code} before the agent replied{said}")
+
+
+def _read_report(status: int) -> ExitReport:
+    """Read the keeper's report, and close the pipe. The keeper has ended, so that reading does not block."""
+    with os.fdopen(status, "rb") as pipe:
+        data = pipe.read()
+    if not data:
+        return ExitReport()
+    fields = json.loads(data)
+    lines = [line for line in fields["stderr"].splitlines() if line.strip()]
+    return ExitReport(fields["code"], fields["exceeded"], printable(lines[-1].strip(), MAX_QUOTED_CHARS) if lines else "")

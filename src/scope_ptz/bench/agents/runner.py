@@ -1,0 +1,254 @@
+"""Run the class of an external agent in a process of its own. This file uses only the standard library of Python 3.9 or later.
+
+Usage: ``python runner.py MODULE:CLASS``, with the protocol of ``docs/external-agents.md`` on stdin and stdout. What the agent
+itself prints goes to stderr. SCOPE need not be installed: agents can import ``AgentReply`` from ``scope_agent``, a module that this
+file provides while it runs.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import importlib
+import json
+import os
+import queue
+import sys
+import threading
+import traceback
+import types
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable
+
+PROTOCOL = 1
+MODULE = "scope_agent"
+FAILED, OUT_OF_MEMORY, NOT_LOADED = 70, 71, 72
+KINDS = ("answered", "clarification", "refused")
+
+Message = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class AgentReply:
+    """An agent's final reply: an answer, a clarifying question or a refusal.
+
+    Attributes:
+        text: The text of the reply.
+        kind: "answered", "clarification" or "refused".
+    """
+
+    text: str
+    kind: str = "answered"
+
+
+class AgentLoadError(Exception):
+    """The name of an agent is wrong, or it cannot be imported."""
+
+
+class Session:
+    """The interface of an agent to one run.
+
+    Attributes:
+        instruction: The instruction to the agent.
+        tools: The JSON schemas of the tools in the OpenAI function format.
+        presets: The names of the presets.
+        limits: The limits of the camera: ``min_pan_deg``, ``max_pan_deg``, ``min_tilt_deg``, ``max_tilt_deg``, ``min_zoom``,
+            ``max_zoom`` and ``pan_endless``.
+        pose: The pose of the camera at the start: ``pan_deg``, ``tilt_deg`` and ``zoom``.
+    """
+
+    def __init__(self, task: Message, send: Callable[[Message], None], sees: bool = False) -> None:
+        self.instruction: str = task["instruction"]
+        self.tools: tuple[Message, ...] = tuple(task["tools"])
+        self.presets: tuple[str, ...] = tuple(task["presets"])
+        self.limits = types.SimpleNamespace(**task["limits"])
+        self.pose = types.SimpleNamespace(**task["pose"])
+        self._send, self._sees = send, sees
+        self._queued: list[tuple[Message, asyncio.Future[Message]]] = []
+        self._sent: dict[str, asyncio.Future[Message]] = {}
+        self._calls_made = 0
+        self._flush_planned = False
+        self._view: bytes | None = None
+        self._view_is_newest = False
+        self._views: queue.Queue[Message | None] = queue.Queue()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._task: asyncio.Task[Message] | None = None
+        self._ended = False
+
+    async def call(self, name: str, arguments: dict[str, Any] | None = None) -> dict[str, Any]:
+        """Call a tool and return its result as JSON data, or ``{"error": "..."}`` if the call failed.
+
+        Calls that are awaited together form one step. In a step, perception calls run concurrently and other calls in order.
+        """
+        self._calls_made += 1
+        call = {"id": f"call-{self._calls_made}", "name": name, "arguments": arguments or {}}
+        json.dumps(call, allow_nan=False)  # arguments that are not JSON fail here, in the agent's own code
+        answer: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        self._queued.append((call, answer))
+        self._plan_flush()
+        return await answer
+
+    def view(self) -> bytes | None:
+        """Return the newest view as JPEG if the agent's class has ``sees = True``, otherwise None."""
+        if self._sees and not self._view_is_newest and not self._ended:
+            self._send({"type": "view"})
+            message = self._views.get() or {}
+            self._view = base64.b64decode(message["data"]) if message.get("data") else None
+            self._view_is_newest = True
+        return self._view
+
+    def deliver(self, message: Message | None) -> None:
+        """Receive a message from the host, in any thread. None means that the host has gone."""
+        kind = message["type"] if message is not None else "end"
+        if kind == "view":
+            self._views.put(message)
+        elif kind == "results" and message is not None:
+            self._in_loop(self._resolve, message["results"])
+        elif kind in ("end", "error"):
+            self._ended = True
+            self._views.put(None)
+            self._in_loop(self._cancel)
+
+    async def run(self, agent_class: Callable[[], Any]) -> Message:
+        """Run an agent and return the message with its reply. If the host ends the run, the agent is cancelled."""
+        self._loop = asyncio.get_running_loop()
+        self._task = asyncio.ensure_future(self._reply(agent_class))
+        if self._ended:
+            self._cancel()
+        return await self._task
+
+    async def _reply(self, agent_class: Callable[[], Any]) -> Message:
+        result = await agent_class().run(self)
+        if isinstance(result, dict):
+            text, kind = result.get("text"), result.get("kind", "answered")
+        else:
+            text, kind = getattr(result, "text", result), getattr(result, "kind", "answered")
+        if kind not in KINDS:
+            raise ValueError(f"The kind of a reply must be one of {', '.join(KINDS)}; got {kind!r}.")
+        return {"type": "reply", "kind": kind, "text": "" if text is None else str(text)}
+
+    def _in_loop(self, work: Callable[..., None], *arguments: Any) -> None:
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(work, *arguments)
+
+    def _cancel(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+
+    def _plan_flush(self) -> None:
+        """Send the queued calls when the agent has made all calls that it awaits together, and no earlier step is under way."""
+        if self._queued and not self._sent and not self._flush_planned:
+            self._flush_planned = True
+            loop = asyncio.get_running_loop()
+            loop.call_soon(lambda: loop.call_soon(self._flush))
+
+    def _flush(self) -> None:
+        self._flush_planned = False
+        queued, self._queued = self._queued, []
+        self._sent = {call["id"]: answer for call, answer in queued}
+        self._send({"type": "calls", "calls": [call for call, _ in queued]})
+
+    def _resolve(self, results: list[Message]) -> None:
+        sent, self._sent = self._sent, {}
+        self._view_is_newest = False
+        for result in results:
+            answer = sent.get(result["id"])
+            if answer is not None and not answer.done():
+                answer.set_result({"error": result["error"]} if result.get("result") is None else result["result"])
+        self._plan_flush()
+
+
+def load(name: str) -> Callable[[], Any]:
+    """Import the class ``module:Class``.
+
+    Raises:
+        AgentLoadError: The class cannot be imported or is not an agent.
+    """
+    module, _, attribute = name.partition(":")
+    try:
+        agent_class = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, SyntaxError) as error:
+        raise AgentLoadError(f"The agent {name} cannot be imported: {error}.") from error
+    if not callable(agent_class) or not callable(getattr(agent_class, "run", None)):
+        raise AgentLoadError(f"{name} is not an agent. Define a class with a method `async def run(self, session)`.")
+    loaded: Callable[[], Any] = agent_class
+    return loaded
+
+
+def provide_module() -> None:
+    """Make ``from scope_agent import AgentReply`` work."""
+    module = types.ModuleType(MODULE, "What SCOPE provides to an external agent.")
+    module.__dict__.update(AgentReply=AgentReply, AgentSession=Session)
+    sys.modules[MODULE] = module
+
+
+class Pipe:
+    """The messages of the host and the agent on two file descriptors."""
+
+    def __init__(self) -> None:
+        """Take over stdin and stdout. Afterwards stdin is empty, and what the agent prints goes to stderr."""
+        self._input = os.fdopen(os.dup(0), "rb")
+        self._output = os.fdopen(os.dup(1), "wb")
+        self._lock = threading.Lock()
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(nothing, 0)
+        os.dup2(2, 1)
+        os.close(nothing)
+
+    def send(self, message: Message) -> None:
+        """Send a message."""
+        line = json.dumps(message, allow_nan=False).encode() + b"\n"
+        with self._lock:
+            self._output.write(line)
+            self._output.flush()
+
+    def receive(self) -> Message | None:
+        """Wait for a message and return it; None if the host has gone."""
+        line = self._input.readline()
+        return json.loads(line) if line else None
+
+
+def serve(agent_class: Callable[[], Any], name: str, pipe: Pipe) -> None:
+    """Run an agent on the task that the host sends."""
+    sees = bool(getattr(agent_class, "sees", False))
+    pipe.send({"type": "hello", "protocol": PROTOCOL, "name": name, "sees": sees})
+    task = pipe.receive()
+    if task is None or task["type"] != "task":
+        return
+    session = Session(task, pipe.send, sees)
+
+    def read() -> None:
+        message: Message | None = {}
+        while message is not None:
+            message = pipe.receive()
+            session.deliver(message)
+
+    threading.Thread(target=read, name="host", daemon=True).start()
+    pipe.send(asyncio.run(session.run(agent_class)))
+
+
+def main(name: str) -> int:
+    """Run an agent by its name, and return the exit code."""
+    pipe = Pipe()
+    # The folder of this file must not hide the agent's modules; the working folder must be found, as with ``python -m``.
+    sys.path[0] = str(Path.cwd())
+    provide_module()
+    try:
+        serve(load(name), name, pipe)
+    except AgentLoadError as error:
+        print(error, file=sys.stderr)  # noqa: T201 - the host reads it
+        return NOT_LOADED
+    except asyncio.CancelledError:
+        return 0
+    except MemoryError:
+        print("MemoryError", file=sys.stderr)  # noqa: T201
+        return OUT_OF_MEMORY
+    except Exception:
+        traceback.print_exc()
+        return FAILED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

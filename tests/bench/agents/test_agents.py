@@ -1,0 +1,175 @@
+"""Agents in processes of their own get what they need, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.agents.launch import AgentOptions
+from scope_ptz.bench.agents.source import find_module
+from scope_ptz.bench.engine.external_agents import AgentReply
+from scope_ptz.errors import ConfigError
+from tests.bench.agents.conformance import FRAME
+from tests.bench.agents.programs import play, started_in, write_agent
+
+
+async def test_calls_that_are_awaited_together_are_one_step(tmp_path: Path) -> None:
+    body = """
+    one, two = await asyncio.gather(session.call("count_objects", {"description": "a"}), session.call("take_image"))
+    three = await session.call("go_home")
+    return f"{one['count']} {two['count']} {three['count']}"
+    """
+    agent = started_in(tmp_path, write_agent(tmp_path, body, imports="import asyncio"))
+    counts = {"count_objects": 2, "take_image": 3, "go_home": 5}
+    reply, steps = await play(agent, lambda call: {"count": counts[call.name]})
+    assert [[call.name for call in step] for step in steps] == [["count_objects", "take_image"], ["go_home"]]
+    assert steps[0][0].arguments == {"description": "a"} and (reply.kind, reply.text) == ("answered", "2 3 5")
+
+
+async def test_the_session(tmp_path: Path) -> None:
+    body = """
+    assert session.instruction == "Zähle die Bälle 🎈", session.instruction
+    assert session.presets == ("gate", "yard") and session.tools[0]["function"]["name"] == "count_objects"
+    assert session.limits.max_zoom == 5.0 and not session.limits.pan_endless
+    assert (session.pose.pan_deg, session.pose.tilt_deg, session.pose.zoom) == (1.5, -2.0, 3.0)
+    return repr(session.view())
+    """
+    for sees, view in ((True, FRAME), (False, None)):
+        reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, sees=sees)))
+        assert reply.text == repr(view) and reply.opened is sees
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        "AgentReply('Which?', 'clarification')",
+        "{'text': 'Which?', 'kind': 'clarification'}",
+        "types.SimpleNamespace(text='Which?', kind='clarification')",
+    ],
+)
+@pytest.mark.parametrize("module", ["scope_agent", "scope_ptz.bench.engine.external_agents"])
+async def test_replies(tmp_path: Path, result: str, module: str) -> None:
+    agent = started_in(tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply"))
+    reply, _ = await play(agent)
+    assert (reply.kind, reply.text) == ("clarification", "Which?")
+    assert AgentReply("Which?", "clarification") == AgentReply("Which?", "clarification")
+
+
+async def test_what_an_agent_prints_is_no_message(tmp_path: Path) -> None:
+    body = """
+    print('{"type": "reply", "text": "printed"}', flush=True)
+    sys.stdout.write("x" * 100_000)
+    os.system("echo shell; cat")
+    print(sys.stdin.read())
+    subprocess.run(["sh", "-c", "echo process; echo error >&2"])
+    return "returned"
+    """
+    imports = "import os, subprocess, sys\nprint('imported')"
+    reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, imports=imports)))
+    assert reply.text == "returned"
+
+
+async def test_the_environment_is_clean(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("SCOPE_PLANNER_KEY", "OPENAI_API_KEY", "THEIR_KEY", "LC_TIME"):
+        monkeypatch.setenv(name, "value")
+    name = write_agent(tmp_path, "return json.dumps(sorted(os.environ))", imports="import json, os")
+    seen = set(json.loads((await play(started_in(tmp_path, name)))[0].text))
+    assert "PATH" in seen and "LC_TIME" in seen and not seen & {"SCOPE_PLANNER_KEY", "OPENAI_API_KEY", "THEIR_KEY"}
+    options = AgentOptions(variables=("THEIR_KEY",))
+    seen = set(json.loads((await play(started_in(tmp_path, name, options)))[0].text))
+    assert "THEIR_KEY" in seen and "OPENAI_API_KEY" not in seen
+    with pytest.raises(ConfigError, match="NOT_SET"):
+        started_in(tmp_path, name, AgentOptions(variables=("NOT_SET",)))
+
+
+async def test_open_files_are_not_inherited(tmp_path: Path) -> None:
+    body = "return ' '.join(os.readlink(f'/proc/self/fd/{fd}') for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}'))"
+    secret = tmp_path / "tasks.jsonl"
+    with secret.open("w") as opened:
+        os.set_inheritable(opened.fileno(), True)
+        reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, imports="import os")))
+    assert "tasks.jsonl" not in reply.text
+
+
+async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(tmp_path / "env")], check=True)
+    python = tmp_path / "env" / "bin" / "python"
+    (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    (packages / "only_there.py").write_text("ANSWER = 7\n")
+    body = """
+    try:
+        import scope_ptz
+    except ImportError:
+        return AgentReply(f"{only_there.ANSWER} {sys.prefix}")
+    """
+    name = write_agent(tmp_path, body, imports="import only_there, sys\nfrom scope_agent import AgentReply")
+    reply, _ = await play(started_in(tmp_path, name, AgentOptions(python=python)))
+    assert reply.text == f"7 {tmp_path / 'env'}"
+    with pytest.raises(ConfigError, match="does not exist"):
+        started_in(tmp_path, name, AgentOptions(python=tmp_path / "nothing"))
+    with pytest.raises(ConfigError, match="not a working Python"):
+        started_in(tmp_path, name, AgentOptions(python=Path("/bin/false")))
+
+
+SHELL = r"""
+echo '{"type": "hello", "protocol": 1, "name": "shell"}'
+read -r task
+echo '{"type": "calls", "calls": [{"id": "1", "name": "count_objects", "arguments": {"description": "balls"}}]}'
+read -r results
+count=$(printf '%s' "$results" | sed 's/.*"count":\([0-9]*\).*/\1/')
+echo "{\"type\": \"reply\", \"text\": \"There are $count $1.\"}"
+"""
+
+
+async def test_a_shell_script(tmp_path: Path) -> None:
+    (tmp_path / "their agent.sh").write_text(SHELL)
+    agent = started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'"))
+    assert (agent.name, agent.isolation) == ("command:sh", "isolated")
+    reply, steps = await play(agent, lambda _: {"count": 4})
+    assert reply.text == "There are 4 $HOME; balls." and steps[0][0].arguments == {"description": "balls"}
+    before = agent.source
+    (tmp_path / "their agent.sh").write_text(SHELL + "#")
+    assert started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'")).source != before
+
+
+@pytest.mark.parametrize("command", ["", "nothing-of-this-name", "sh 'open", "   "])
+def test_commands_that_cannot_be_run(tmp_path: Path, command: str) -> None:
+    with pytest.raises(ConfigError):
+        started_in(tmp_path, "scope", AgentOptions(command=command))
+
+
+def test_options_that_contradict_each_other(tmp_path: Path) -> None:
+    for options in (
+        AgentOptions(command="sh", in_process=True),
+        AgentOptions(command="sh", python=Path(sys.executable)),
+        AgentOptions(in_process=True, sandbox=True),
+        AgentOptions(in_process=True, python=Path(sys.executable)),
+    ):
+        with pytest.raises(ConfigError):
+            started_in(tmp_path, "a:B", options)
+
+
+async def test_an_agent_that_does_not_start_is_an_error_before_the_first_run(tmp_path: Path) -> None:
+    write_agent(tmp_path, "return 'x'", imports="import nothing_of_this_name")
+    with pytest.raises(ConfigError, match="nothing_of_this_name"):
+        await started_in(tmp_path, "their_agent:Agent").check()
+    with pytest.raises(ConfigError, match="no attribute"):
+        await started_in(tmp_path, "json:Nothing").check()
+    with pytest.raises(ConfigError, match="exit code 1"):
+        await started_in(tmp_path, "scope", AgentOptions(command=shlex.join(["sh", "-c", "exit 1"]))).check()
+
+
+def test_the_source_is_found_without_running_it(tmp_path: Path) -> None:
+    (tmp_path / "loud.py").write_text("raise SystemExit('it ran')")
+    source = find_module("loud:Agent", tmp_path, ())
+    assert source is not None and source.files == {"loud.py": tmp_path / "loud.py"}
+    assert find_module("nothing_of_this_name:Agent", tmp_path, ()) is None
+
+
+pytestmark = pytest.mark.anyio

@@ -1,0 +1,231 @@
+"""Crashes, hangs, floods and the like are the agent's failures, and nothing of the agent is left."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shlex
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.agents import pipe
+from scope_ptz.bench.agents.faults import AGENT_FAULTS
+from scope_ptz.bench.agents.launch import AgentOptions
+from scope_ptz.bench.agents.planner import AgentTimes
+from scope_ptz.bench.scoring.verdict import AGENT_FAILURES
+from scope_ptz.errors import PlannerError
+from tests.bench.agents.programs import play, started_in, write_agent
+
+QUICK = AgentTimes(step_s=1.0, run_s=5.0)
+
+
+def is_running(pid: int) -> bool:
+    """Return whether a process exists and is not merely waiting to be collected."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left() -> Iterator[None]:
+    """Check that no file descriptor and no child process is left."""
+    before = len(os.listdir("/proc/self/fd"))
+    yield
+    children = [pid for task in Path("/proc/self/task").glob("*/children") for pid in task.read_text().split()]
+    assert not [pid for pid in children if is_running(int(pid)) and b"keeper.py" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+    assert len(os.listdir("/proc/self/fd")) <= before + 2  # an event loop keeps its own
+
+
+async def failure_of(folder: Path, body: str, options: AgentOptions | None = None, imports: str = "") -> PlannerError:
+    agent = started_in(folder, write_agent(folder, body, imports=imports), options or AgentOptions(times=QUICK))
+    with pytest.raises(PlannerError) as failed:
+        await play(agent)
+    assert failed.value.kind in AGENT_FAULTS and failed.value.kind in AGENT_FAILURES
+    return failed.value
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "says"),
+    [
+        ("raise ZeroDivisionError('oops')", "agent-error", "ZeroDivisionError: oops"),
+        ("os.kill(os.getpid(), 11)", "agent-exited", "SIGSEGV"),
+        ("os._exit(3)", "agent-exited", "exit code 3"),
+        ("os._exit(0)", "agent-exited", "exit code 0"),
+        ("sys.exit('I give up')", "agent-exited", "I give up"),
+        ("time.sleep(60)", "agent-timeout", "1 s"),
+        ("await asyncio.sleep(60)", "agent-timeout", "1 s"),
+        ("while True: pass", "agent-timeout", "1 s"),
+        ("signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(60)", "agent-timeout", "1 s"),
+        ("await session.call('x' * 300)", "agent-protocol", "name"),
+        ("await session.call('take_image', {'x': 'y' * 2_000_000})", "agent-output", "bytes"),
+        ("return 'x' * 2_000_000", "agent-output", "bytes"),
+        ("return {'text': 'x', 'kind': 'correct'}", "agent-error", "kind"),
+        ("await session.call('take_image', {'x': object()})", "agent-error", "JSON"),
+        ("await session.call('take_image', {'x': float('nan')})", "agent-error", "JSON"),
+        ("raise MemoryError", "agent-memory", "MB"),
+    ],
+)
+async def test_what_an_agent_does_wrong(tmp_path: Path, body: str, kind: str, says: str) -> None:
+    error = await failure_of(tmp_path, body, imports="import asyncio, os, signal, sys, time")
+    assert error.kind == kind and says in str(error)
+
+
+async def test_memory_above_the_limit(tmp_path: Path) -> None:
+    options = AgentOptions(memory_mb=150, times=AgentTimes(30, 30))
+    body = "kept = []\nwhile True:\n    kept.append(b'x' * 5_000_000)\n    time.sleep(0.005)"
+    error = await failure_of(tmp_path, body, options, "import time")
+    assert error.kind == "agent-memory" and "150 MB" in str(error)
+
+
+async def test_memory_of_all_processes_together(tmp_path: Path) -> None:
+    body = """
+    for _ in range(4):
+        if os.fork() == 0:
+            kept = os.urandom(60_000_000)
+            time.sleep(60)
+    time.sleep(60)
+    """
+    options = AgentOptions(memory_mb=150, times=AgentTimes(30, 30))
+    error = await failure_of(tmp_path, body, options, "import os, time")
+    assert error.kind == "agent-memory"
+
+
+async def test_too_many_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pipe, "MAX_PROCESSES", 20)
+    body = """
+    while True:
+        if os.fork() == 0:
+            os.setsid()
+            time.sleep(60)
+        time.sleep(0.002)
+    """
+    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimes(30, 30)), "import os, time")
+    assert error.kind == "agent-processes" and "20" in str(error)
+
+
+async def test_a_flood_on_stderr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pipe, "MAX_STDERR_BYTES", 100_000)
+    error = await failure_of(tmp_path, "while True: print('x' * 1000)", AgentOptions(times=AgentTimes(30, 30)))
+    assert error.kind == "agent-output"
+
+
+async def test_the_time_of_a_whole_run(tmp_path: Path) -> None:
+    body = "while True:\n    await asyncio.sleep(0.2)\n    await session.call('take_image')"
+    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimes(step_s=30, run_s=1)), "import asyncio")
+    assert error.kind == "agent-timeout" and "in one run" in str(error)
+
+
+async def test_frames_without_end(tmp_path: Path) -> None:
+    agent = started_in(tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True))
+    with pytest.raises(PlannerError, match="more than 100 frames") as failed:
+        await play(agent)
+    assert failed.value.kind == "agent-protocol"
+
+
+@pytest.mark.parametrize("ending", ["return 'done'", "raise RuntimeError('no')", "time.sleep(60)", "os._exit(1)"])
+async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, ending: str) -> None:
+    body = f"""
+    for detached in (False, True):
+        if os.fork() == 0:
+            signal.signal(signal.SIGTERM, signal.SIG_IGN)
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+            if detached:
+                os.setsid()
+                if os.fork():
+                    os._exit(0)
+            open(f"pid-{{os.getpid()}}", "w").close()
+            time.sleep(60)
+            os._exit(0)
+    while len([name for name in os.listdir() if name.startswith("pid-")]) < 2:
+        time.sleep(0.01)
+    {ending}
+    """
+    name = write_agent(tmp_path, body, imports="import os, signal, time")
+    agent = started_in(tmp_path, name, AgentOptions(times=AgentTimes(3, 30)))
+    if ending.startswith("return"):
+        reply, _ = await play(agent)
+        assert reply.text == "done"
+    else:
+        with pytest.raises(PlannerError):
+            await play(agent)
+    pids = [int(path.name.removeprefix("pid-")) for path in tmp_path.glob("pid-*")]
+    assert len(pids) == 2 and not any(map(is_running, pids))
+
+
+async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
+    body = """
+    open(f"pid-{os.getpid()}", "w").close()
+    try:
+        await session.call("take_image")
+    finally:
+        open("ended", "w").close()
+    """
+    agent = started_in(tmp_path, write_agent(tmp_path, body, imports="import os"))
+    planner = await agent.open()
+    from tests.bench.agents.conformance import STATE
+
+    await planner.step(STATE)
+    await asyncio.wait_for(planner.close(), 30)
+    (pid,) = [int(path.name.removeprefix("pid-")) for path in tmp_path.glob("pid-*")]
+    assert not is_running(pid) and (tmp_path / "ended").exists()
+
+
+GARBAGE = """
+import os, sys
+os.write(1, {data})
+os.read(0, 1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        ("b'not json\\n'", "agent-protocol"),
+        ("os.urandom(1000) + b'\\n'", "agent-protocol"),
+        ("b'{\"type\": \"reply\", \"text\": \"4\"}\\n'", "agent-protocol"),
+        ("b'{\"type\": \"hello\", \"protocol\": 9, \"name\": \"x\"}\\n'", "agent-protocol"),
+        ("b'[' * 200_000 + b'\\n'", "agent-protocol"),
+        ("b'x' * 3_000_000", "agent-output"),
+        ("b'\\n' * 3_000_000", "agent-timeout"),
+    ],
+)
+async def test_garbage(tmp_path: Path, data: str, kind: str) -> None:
+    (tmp_path / "garbage.py").write_text(GARBAGE.format(data=data).replace("os.write(1,", "sys.stdout.buffer.write("))
+    (tmp_path / "garbage.py").write_text((tmp_path / "garbage.py").read_text().replace("os.read", "sys.stdout.flush(); os.read"))
+    options = AgentOptions(command=f"{shlex.quote(sys.executable)} -S garbage.py", times=QUICK)
+    with pytest.raises(PlannerError) as failed:
+        await play(started_in(tmp_path, "scope", options))
+    assert failed.value.kind == kind
+
+
+async def test_a_program_that_does_not_read(tmp_path: Path) -> None:
+    (tmp_path / "deaf.sh").write_text('echo \'{"type": "hello", "protocol": 1, "name": "deaf"}\'; trap "" TERM; sleep 60; sleep 60')
+    options = AgentOptions(command="sh deaf.sh", times=QUICK)
+    with pytest.raises(PlannerError, match="longer than 1 s") as failed:
+        await play(started_in(tmp_path, "scope", options))
+    assert failed.value.kind == "agent-timeout"
+
+
+async def test_the_agents_outlive_no_scorer_that_is_killed(tmp_path: Path) -> None:
+    name = write_agent(tmp_path, "open(f'pid-{os.getpid()}', 'w').close(); time.sleep(60)", imports="import os, time")
+    scorer = f"""
+import anyio
+from tests.bench.agents.programs import *
+anyio.run(play, started_in(Path({str(tmp_path)!r}), {name!r}))
+"""
+    process = await asyncio.create_subprocess_exec(sys.executable, "-c", scorer)
+    while not (found := list(tmp_path.glob("pid-*"))):
+        await asyncio.sleep(0.05)
+    process.send_signal(signal.SIGKILL)
+    await process.wait()
+    pid = int(found[0].name.removeprefix("pid-"))
+    while is_running(pid):
+        await asyncio.sleep(0.05)
+
+
+pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")]

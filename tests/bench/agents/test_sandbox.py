@@ -1,0 +1,172 @@
+"""What an agent in a sandbox can and cannot reach."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import scope_ptz
+from scope_ptz.bench.agents.launch import AgentOptions
+from scope_ptz.bench.agents.planner import AgentTimes
+from scope_ptz.bench.agents.sandbox import SandboxContents, require_sandbox, sandboxed
+from scope_ptz.errors import ConfigError, PlannerError
+from tests.bench.agents.programs import play, started_in, write_agent
+from tests.bench.agents.sandboxes import needs_sandbox
+
+SANDBOX = AgentOptions(sandbox=True)
+
+
+async def answer_of(folder: Path, body: str, *, imports: str = "", hidden: tuple[Path, ...] = ()) -> str:
+    reply, _ = await play(started_in(folder, write_agent(folder, body, imports=imports), SANDBOX, hidden))
+    return reply.text
+
+
+@needs_sandbox
+async def test_an_agent_works_as_outside(tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("WORD = 'helped'\n")
+    body = """
+    with tempfile.TemporaryDirectory() as folder:
+        open(folder + "/x", "w").close()
+    seen = await session.call("count_objects", {"description": "x"})
+    return f"{seen['count']} {helper.WORD} {sys.version_info[0]} {os.getcwd()}"
+    """
+    name = write_agent(tmp_path, body, imports="import helper, os, sys, tempfile")
+    agent = started_in(tmp_path, name, SANDBOX)
+    assert agent.isolation == "sandboxed"
+    reply, _ = await play(agent, lambda _: {"count": 4})
+    assert reply.text == f"4 helped 3 {tmp_path}"
+
+
+@needs_sandbox
+async def test_what_is_out_of_reach(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    body = f"""
+    def attempt(work):
+        try:
+            return repr(work())
+        except Exception as error:
+            return type(error).__name__
+
+    package = {str(Path(scope_ptz.__file__).parent)!r}
+    return json.dumps({{
+        "import": attempt(lambda: __import__("scope_ptz")),
+        "package": os.path.exists(package),
+        "found": [place for place, folders, _ in os.walk("/") if not place.startswith("/proc/") and "scope_ptz" in folders
+                  and os.listdir(place + "/scope_ptz")],
+        "network": attempt(lambda: socket.create_connection(("127.0.0.1", 22), 1)),
+        "interfaces": [name for _, name in socket.if_nameindex()],
+        "processes": sum(name.isdigit() for name in os.listdir("/proc")),
+        "home": os.path.exists({str(Path.home())!r} + "/.bashrc"),
+        "tmp": os.listdir("/tmp"),
+        "write": [attempt(lambda place=place: open(place, "w")) for place in ("/usr/x", "/x", "new.txt", "/etc/passwd")],
+        "kill": attempt(lambda: os.kill({1 + 2**21}, 0)),
+        "environment": sorted(os.environ),
+    }})
+    """
+    seen = json.loads(await answer_of(tmp_path, body, imports="import json, os, socket"))
+    assert seen["import"] == "ModuleNotFoundError" and not seen["package"] and seen["found"] == []
+    assert seen["network"] in ("ConnectionRefusedError", "OSError") and set(seen["interfaces"]) <= {"lo"}
+    assert seen["processes"] <= 3 and not seen["home"]
+    assert [name for name in seen["tmp"] if not str(tmp_path).startswith(f"/tmp/{name}")] == []
+    assert all(error in ("OSError", "PermissionError") for error in seen["write"])
+    assert not [name for name in seen["environment"] if name.startswith("SCOPE_")]
+
+
+@needs_sandbox
+async def test_hidden_files_within_the_agents_folder(tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "a.eval").write_text("answers")
+    (tmp_path / "tasks.jsonl").write_text("answers")
+    (tmp_path / "notes.txt").write_text("notes")
+    installed = tmp_path / "env" / "lib" / "python3.11" / "site-packages" / "scope_ptz" / "data"
+    installed.mkdir(parents=True)
+    (installed / "tasks.jsonl").write_text("answers")
+    body = """
+    try:
+        tasks = open("tasks.jsonl").read()
+    except PermissionError:
+        tasks = ""
+    return "|".join([tasks, open("notes.txt").read(), *(name for _, _, files in os.walk(".") for name in files)])
+    """
+    hidden = (tmp_path / "logs", tmp_path / "tasks.jsonl", tmp_path / "nothing")
+    seen = (await answer_of(tmp_path, body, imports="import os", hidden=hidden)).split("|")
+    assert seen[:2] == ["", "notes"] and "a.eval" not in seen and seen.count("tasks.jsonl") == 1
+
+
+@needs_sandbox
+async def test_a_linked_folder_hides_the_same_files(tmp_path: Path) -> None:
+    (tmp_path / "real" / "logs").mkdir(parents=True)
+    (tmp_path / "real" / "logs" / "a.eval").write_text("answers")
+    (tmp_path / "link").symlink_to("real")
+    body = "return str([files for _, _, files in os.walk('.')])"
+    assert "a.eval" not in await answer_of(tmp_path / "link", body, imports="import os", hidden=(tmp_path / "real" / "logs",))
+
+
+@needs_sandbox
+async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(tmp_path / "env")], check=True)
+    (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    (packages / "only_there.py").write_text("ANSWER = 7\n")
+    (packages / "scope_ptz").mkdir()
+    (packages / "scope_ptz" / "__init__.py").write_text("SECRET = 1\n")
+    (tmp_path / "agent").mkdir()
+    body = "import scope_ptz\nreturn f'{only_there.ANSWER} {hasattr(scope_ptz, \"SECRET\")}'"
+    name = write_agent(tmp_path / "agent", body, imports="import only_there")
+    options = AgentOptions(sandbox=True, python=tmp_path / "env" / "bin" / "python")
+    reply, _ = await play(started_in(tmp_path / "agent", name, options))
+    assert reply.text == "7 False"
+
+
+@needs_sandbox
+async def test_a_program(tmp_path: Path) -> None:
+    (tmp_path / "agent.sh").write_text(
+        'echo \'{"type": "hello", "protocol": 1, "name": "sh"}\'; read -r task; '
+        'echo "{\\"type\\": \\"reply\\", \\"text\\": \\"$(ls /tmp /home | tr -d \'\\n\')$(pwd)\\"}"'
+    )
+    reply, _ = await play(started_in(tmp_path, "scope", AgentOptions(sandbox=True, command="sh agent.sh")))
+    assert str(tmp_path) in reply.text
+
+
+@needs_sandbox
+@pytest.mark.parametrize(
+    ("body", "kind"),
+    [
+        ("raise ZeroDivisionError('oops')", "agent-error"),
+        ("os._exit(4)", "agent-exited"),
+        ("os.setsid() if os.fork() == 0 else None; time.sleep(60)", "agent-timeout"),
+        ("kept = [os.urandom(400_000_000)]; time.sleep(60)", "agent-memory"),
+    ],
+)
+async def test_failures_in_a_sandbox(tmp_path: Path, body: str, kind: str) -> None:
+    options = AgentOptions(sandbox=True, memory_mb=300, times=AgentTimes(step_s=20 if "urandom" in body else 2, run_s=30))
+    with pytest.raises(PlannerError) as failed:
+        await play(started_in(tmp_path, write_agent(tmp_path, body, imports="import os, time"), options))
+    assert failed.value.kind == kind
+
+
+def test_folders_that_a_sandbox_cannot_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path / "people" / "me"))
+    (tmp_path / "people" / "me" / "agent").mkdir(parents=True)
+    for folder in (Path("/"), tmp_path / "people", tmp_path / "people" / "me"):
+        with pytest.raises(ConfigError, match="home folder"):
+            sandboxed(["true"], SandboxContents(folder, (), None, ()))
+    with pytest.raises(ConfigError, match="hides"):
+        sandboxed(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, (tmp_path / "people" / "me",)))
+    assert "--unshare-all" in sandboxed(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, ()))
+
+
+def test_without_bubblewrap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ConfigError, match="apt-get install bubblewrap"):
+        require_sandbox()
+    (tmp_path / "bwrap").write_text("#!/bin/sh\necho 'No permissions to create new namespace' >&2\nexit 1\n")
+    (tmp_path / "bwrap").chmod(0o755)
+    with pytest.raises(ConfigError, match="No permissions to create new namespace"):
+        require_sandbox()
+
+
+pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform != "linux", reason="bubblewrap needs Linux")]
