@@ -6,15 +6,20 @@ import asyncio
 import importlib
 import re
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from scope_ptz.bench.engine.external_agents import AgentReply, AgentSession, ExternalPlanner, source_digest
+from scope_ptz.bench.agents.in_process import InProcessChannel
+from scope_ptz.bench.agents.planner import ChannelPlanner
+from scope_ptz.bench.agents.source import find_module
+from scope_ptz.bench.engine.external_agents import AgentReply, AgentSession
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.sample_files import open_sample
+from scope_ptz.bench.scoring.verdict import AGENT_FAILURES
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, State, ToolOutcome
@@ -47,7 +52,8 @@ def test_an_external_agent(scope: Scope, tasks_file: Path, tmp_path: Path, monke
     done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", "their_loop:Agent", "--out", "logs", "--json")
     assert done.code == 0, done.err
     evaluation = read_evaluation(Path(done.json["log"]))
-    assert evaluation.card.agent == "their_loop:Agent"
+    assert (evaluation.card.agent, evaluation.card.isolation) == ("their_loop:Agent", "isolated")
+    assert done.json["isolation"] == "isolated"
     headlines = {t.task.id.split("yard-")[1]: t.headline for t in evaluation.trials}
     assert headlines == {
         "counting-001": "correct", "counting-002": "unscored", "single-call-001": "correct", "single-call-002": "correct",
@@ -135,6 +141,12 @@ def test_the_source_of_a_package_includes_all_its_modules(tmp_path: Path, monkey
     assert source_digest("their_package.loop:Agent") != ""
 
 
+def source_digest(agent: str) -> str:
+    source = find_module(agent, Path.cwd(), ())
+    assert source is not None
+    return source.digest()
+
+
 STATE = State(instruction="look around", briefing=Briefing(presets=("gate",), pose=Pose(), limits=Limits()))
 
 
@@ -143,8 +155,9 @@ def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
 
-def guest(run: Callable[[Any, AgentSession], Any]) -> ExternalPlanner:
-    return ExternalPlanner(type("Agent", (), {"run": run}), "guest")
+def guest(run: Callable[[Any, AgentSession], Any]) -> ChannelPlanner:
+    """Return an agent in the scorer's process."""
+    return ChannelPlanner(InProcessChannel(type("Agent", (), {"run": run}), "guest"))
 
 
 async def test_calls_that_are_awaited_together_are_one_step() -> None:
@@ -167,7 +180,7 @@ async def test_a_failing_agent_is_not_an_infrastructure_failure() -> None:
 
     with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
         await guest(run).step(STATE)
-    assert failed.value.kind is None
+    assert failed.value.kind == "agent-error" and failed.value.kind in AGENT_FAILURES
 
 
 async def test_an_agent_without_an_answer() -> None:
@@ -179,7 +192,7 @@ async def test_an_agent_without_an_answer() -> None:
 
 
 async def test_an_agent_that_is_stopped_ends() -> None:
-    ended = asyncio.Event()
+    ended = threading.Event()
 
     async def run(self: Any, session: AgentSession) -> str:
         try:

@@ -1,0 +1,96 @@
+"""Agents that cheat: what each kind of isolation prevents. One task has a wrong answer, which only cheats give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import scope_ptz
+from scope_ptz.bench.engine import trial_records
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.scoring.trials import Trial
+from tests.bench.agents.sandboxes import needs_sandbox
+from tests.cli.conftest import Scope
+
+READS_THE_ANSWERS = """
+import json, pathlib
+
+class Agent:
+    async def run(self, session):
+        await session.call("count_objects", {"description": "blocks"})
+        for path in PLACES:
+            try:
+                files = [path] if path.is_file() else sorted(path.rglob("*.jsonl"))
+                texts = [file.read_text() for file in files]
+            except OSError:
+                continue
+            for line in "\\n".join(texts).splitlines():
+                task = json.loads(line)
+                if task.get("instruction") == session.instruction:
+                    return f"There are {task['expected']['value']} {task['expected']['unit'][0]}s."
+        return "I do not know."
+"""
+WALKS_THE_HEAP = """
+import gc
+
+class Agent:
+    async def run(self, session):
+        await session.call("count_objects", {"description": "blocks"})
+        for thing in gc.get_objects():
+            if type(thing).__name__ == "Task" and getattr(thing, "instruction", "") == session.instruction:
+                return f"There are {thing.expected.value} {thing.expected.unit[0]}s."
+        return "I do not know."
+"""
+REPLACES_THE_CHECKS = """
+class Agent:
+    async def run(self, session):
+        from scope_ptz.bench.engine import trial_records
+        from scope_ptz.bench.scoring.verdict import Verdict
+        trial_records.score_episode = lambda task, episode: Verdict(task.id, "correct", (), False, "")
+        return "I did nothing."
+"""
+RunCheat = Callable[[str, str], Trial]
+MODES = {"in-process": ["--agent-in-process"], "isolated": [], "sandboxed": ["--sandbox"]}
+
+
+@pytest.fixture
+def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunCheat:
+    """Run a cheat on the counting tasks, and return the trial of the task with the wrong answer."""
+    monkeypatch.setattr(trial_records, "score_episode", trial_records.score_episode)  # restored at the end of the test
+
+    def run(source: str, mode: str) -> Trial:
+        folder = tmp_path / "agent"
+        folder.mkdir()
+        module = f"cheat_{mode.replace('-', '_')}_{abs(hash(source))}"
+        places = f"PLACES = [pathlib.Path(p) for p in {[str(tasks_file), str(Path(scope_ptz.__file__).parent / 'data' / 'bench')]!r}]\n"
+        (folder / f"{module}.py").write_text(source + "\nimport pathlib\n" + places)
+        monkeypatch.chdir(folder)
+        monkeypatch.syspath_prepend(str(folder))
+        options = ("--no-pictures", "--category", "counting", "--out", str(tmp_path / "logs"), "--json")
+        done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options, *MODES[mode])
+        assert done.code == 0, done.err
+        evaluation = read_evaluation(Path(done.json["log"]))
+        assert (evaluation.card.isolation, done.json["isolation"]) == (mode, mode)
+        return next(trial for trial in evaluation.trials if trial.task.id.endswith("counting-002"))
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("source", "mode", "wins"),
+    [
+        pytest.param(READS_THE_ANSWERS, "isolated", True, id="reading, isolated"),
+        pytest.param(READS_THE_ANSWERS, "sandboxed", False, id="reading, sandboxed", marks=needs_sandbox),
+        pytest.param(WALKS_THE_HEAP, "in-process", True, id="heap, in-process"),
+        pytest.param(WALKS_THE_HEAP, "isolated", False, id="heap, isolated"),
+        pytest.param(WALKS_THE_HEAP, "sandboxed", False, id="heap, sandboxed", marks=needs_sandbox),
+        pytest.param(REPLACES_THE_CHECKS, "in-process", True, id="checks, in-process"),
+        pytest.param(REPLACES_THE_CHECKS, "isolated", False, id="checks, isolated"),
+        pytest.param(REPLACES_THE_CHECKS, "sandboxed", False, id="checks, sandboxed", marks=needs_sandbox),
+    ],
+)
+def test_what_a_cheat_wins(run_cheat: RunCheat, source: str, mode: str, wins: bool) -> None:
+    trial = run_cheat(source, mode)
+    assert trial.headline == ("correct" if wins else "incorrect")
