@@ -172,9 +172,7 @@ class EvaluationSession:
         options = self.options
         open_agent = self.agent.open if self.agent is not None else None
         order = options.hosted_agent.order if options.hosted_agent is not None else None
-        context = replace(
-            self.context, watcher=watcher, load_tasks=lambda _: self.entries, open_agent=open_agent, order=order
-        )
+        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries, open_agent=open_agent, order=order)
         if judge is not None:
             context = with_judge(context, judge)
         return benchmark_task(lambda _: context)(
