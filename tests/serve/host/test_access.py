@@ -26,7 +26,7 @@ PRIVATE_PATHS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("authorization", ["", "Bearer wrong", "Bearer ", "Basic d3Jvbmc6d3Jvbmc=", "Bearer scope_", "Token x"])
+@pytest.mark.parametrize("authorization", ["", "Bearer wrong", "Basic d3Jvbmc6d3Jvbmc=", "Bearer scope_", "Token x"])
 async def test_nothing_without_a_token(tmp_path: Path, authorization: str) -> None:
     fake = ScriptedWorker(1)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted:
