@@ -75,10 +75,7 @@ class ChannelConformance:
         with anyio.fail_after(TIMEOUT_S):
             await connected.says(HELLO)
             assert await connected.channel.receive() == Hello(protocol=1, name="peer", sees=True)
-            calls = {
-                "type": "calls",
-                "calls": [{"id": "ä\n", "name": "query_answer", "arguments": {"question": "🎈\n\u2028" * 9000}}],
-            }
+            calls = {"type": "calls", "calls": [{"id": "ä\n", "name": "query_answer", "arguments": {"question": "🎈\n\u2028" * 9000}}]}
             await connected.says(calls)
             received = await connected.channel.receive()
             assert isinstance(received, Calls) and received.model_dump(mode="json") == calls

@@ -55,9 +55,7 @@ async def test_the_session(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize("module", ["scope_agent", "scope_ptz.bench.engine.external_agents"])
 async def test_replies(tmp_path: Path, result: str, module: str) -> None:
-    agent = started_in(
-        tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply")
-    )
+    agent = started_in(tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply"))
     reply, _ = await play(agent)
     assert (reply.kind, reply.text) == ("clarification", "Which?")
     assert AgentReply("Which?", "clarification") == AgentReply("Which?", "clarification")

@@ -121,9 +121,7 @@ async def test_the_time_of_a_whole_run(tmp_path: Path) -> None:
 
 
 async def test_frames_without_end(tmp_path: Path) -> None:
-    agent = started_in(
-        tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True)
-    )
+    agent = started_in(tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True))
     with pytest.raises(PlannerError, match="more than 100 frames") as failed:
         await play(agent)
     assert failed.value.kind == "agent-protocol"
@@ -189,8 +187,8 @@ os.read(0, 1)
     [
         ("b'not json\\n'", "agent-protocol"),
         ("os.urandom(1000) + b'\\n'", "agent-protocol"),
-        ('b\'{"type": "reply", "text": "4"}\\n\'', "agent-protocol"),
-        ('b\'{"type": "hello", "protocol": 9, "name": "x"}\\n\'', "agent-protocol"),
+        ("b'{\"type\": \"reply\", \"text\": \"4\"}\\n'", "agent-protocol"),
+        ("b'{\"type\": \"hello\", \"protocol\": 9, \"name\": \"x\"}\\n'", "agent-protocol"),
         ("b'[' * 200_000 + b'\\n'", "agent-protocol"),
         ("b'x' * 3_000_000", "agent-output"),
         ("b'\\n' * 3_000_000", "agent-timeout"),

@@ -64,9 +64,7 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
         folder = tmp_path / "agent"
         folder.mkdir()
         module = f"cheat_{mode.replace('-', '_')}_{abs(hash(source))}"
-        places = (
-            f"PLACES = [pathlib.Path(p) for p in {[str(tasks_file), str(Path(scope_ptz.__file__).parent / 'data' / 'bench')]!r}]\n"
-        )
+        places = f"PLACES = [pathlib.Path(p) for p in {[str(tasks_file), str(Path(scope_ptz.__file__).parent / 'data' / 'bench')]!r}]\n"
         (folder / f"{module}.py").write_text(source + "\nimport pathlib\n" + places)
         monkeypatch.chdir(folder)
         monkeypatch.syspath_prepend(str(folder))
