@@ -161,8 +161,8 @@ def report_tables(logs: Sequence[Path], out: Path) -> dict[str, str]:
 
 
 def make_submission(log: Path, out: Path) -> list[dict[str, Any]]:
-    """Make a submission from a log and return its lines."""
-    result = run("bench", "submission", "make", str(log), "--out", str(out))
+    """Make a submission without traces, as version 0.1.0 did, from a log and return its lines."""
+    result = run("bench", "submission", "make", str(log), "--out", str(out), "--no-traces")
     assert result.code == 0, result.err
     return [json.loads(line) for line in out.read_text("utf-8").splitlines()]
 

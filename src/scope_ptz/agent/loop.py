@@ -172,6 +172,7 @@ class _Episode:
                 scene=frame.origin.scene if frame.origin else None,
                 viewpoint=frame.origin.viewpoint if frame.origin else None,
                 rendering=info.rendering,
+                perception_version=agent.perception.version,
                 scene_time_s=self.camera.clock.now_s(),
                 pose=RecordedPose.of(self.start),
                 presets=presets,

@@ -81,6 +81,7 @@ class Started(_Record):
         scene: The scene of a simulated camera; otherwise None.
         viewpoint: The viewpoint of a simulated camera; otherwise None.
         rendering: Version of the simulator's rendering; None for other cameras and in traces of version 0.1.0.
+        perception_version: Version of ground-truth perception; None for other backends and in traces of version 0.1.0.
         frame: Name of the picture that was taken before the first step.
     """
 
@@ -101,6 +102,7 @@ class Started(_Record):
     scene: str | None
     viewpoint: str | None
     rendering: int | None = None
+    perception_version: int | None = None
     scene_time_s: float
     pose: RecordedPose
     presets: tuple[str, ...]

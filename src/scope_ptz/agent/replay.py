@@ -70,7 +70,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
     agent = Agent(
         _RecordedPlanner(script),
         _PacedCamera(camera, script),
-        _RecordedPerception(script),
+        RecordedPerception(script.replies),
         NoImages(),
         budgets=Budgets(max_steps=trace.started.budgets.max_steps),
         snapshots=False,
@@ -92,11 +92,9 @@ class _Script:
     """The recorded decisions, and the recorded perception replies that the replay has not used yet."""
 
     def __init__(self, trace: Trace, camera: Camera) -> None:
-        self.decisions = _complete_decisions(trace)
+        self.decisions = complete_decisions(trace)
         self.times_s = {call.step: call.scene_time_s for call in reversed(trace.calls)}
-        self.replies: deque[tuple[int, PerceptionReply]] = deque(
-            (call.step, reply) for call in trace.calls for reply in call.replies
-        )
+        self.replies = recorded_replies(trace)
         self.end = trace.ended.text if trace.ended else "The recording was cut off."
         self._camera = camera
 
@@ -107,7 +105,12 @@ class _Script:
             await self._camera.clock.sleep(behind_s)
 
 
-def _complete_decisions(trace: Trace) -> list[Decision]:
+def recorded_replies(trace: Trace) -> deque[tuple[int, PerceptionReply]]:
+    """Return the recorded perception replies, each with its step, in order."""
+    return deque((call.step, reply) for call in trace.calls for reply in call.replies)
+
+
+def complete_decisions(trace: Trace) -> list[Decision]:
     """Return the recorded decisions, without the calls that an interrupted step did not make."""
     recorded = {(call.step, call.index) for call in trace.calls}
     decisions: list[Decision] = []
@@ -138,13 +141,17 @@ class _RecordedPlanner(Planner):
         return self._script.decisions[steps]
 
 
-class _RecordedPerception(Perception):
-    """A perception backend that returns the recorded replies."""
+class RecordedPerception(Perception):
+    """A perception backend that returns the recorded replies.
+
+    Args:
+        replies: The recorded replies, each with its step, in order. Replies that were returned are removed.
+    """
 
     name = "recorded"
 
-    def __init__(self, script: _Script) -> None:
-        self._replies = script.replies
+    def __init__(self, replies: deque[tuple[int, PerceptionReply]]) -> None:
+        self._replies = replies
 
     async def caption(self, frame: Frame) -> Caption:
         return self._next(frame, "caption", "", Caption)

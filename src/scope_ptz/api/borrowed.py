@@ -33,6 +33,7 @@ class BorrowedPerception(Perception):
     def __init__(self, perception: Perception) -> None:
         self._perception = perception
         self.name, self.skills, self.handles_panoramas = perception.name, perception.skills, perception.handles_panoramas
+        self.version = perception.version
 
     async def caption(self, frame: Frame) -> Caption:
         return await self._perception.caption(frame)

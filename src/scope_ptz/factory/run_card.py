@@ -12,7 +12,8 @@ import anyio
 from scope_ptz.bench.agents.channel import Isolation
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
-from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, PRICE, engine_version
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, engine_version
+from scope_ptz.bench.engine.token_costs import PRICE
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard
 from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.endpoints.endpoint import Endpoint

@@ -137,6 +137,8 @@ class Perception(ABC):
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
+    version: int | None = None
+    """Version of replies that can be computed again, as those of ground truth; None for backends that use a model."""
     handles_panoramas: bool = False
     """Whether the backend finds small objects in a whole panorama. Other backends receive it as tiles (see
     ``models.tiled_panoramas``).

@@ -16,7 +16,8 @@ from tests.bench.reports.making import evaluation, facts
 def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = {name: evaluation(name, "moondream2", facts(2), 0.6) for name in ("qwen3-4b", "qwen3-30b-a3b")}
 
-    def read(path: Path) -> Evaluation:
+    def read(path: Path, progress: object) -> Evaluation:
+        assert callable(progress)
         return found[path.stem]
 
     monkeypatch.setattr(logs, "read_evaluation", read)

@@ -19,7 +19,7 @@ from scope_ptz.bench.engine.recording.logged_planner import LoggedPlanner
 from scope_ptz.bench.engine.recording.logged_tools import ToolLog
 from scope_ptz.bench.engine.recording.picture_store import PictureStore
 from scope_ptz.bench.engine.recording.transcript import Record, conversation_of
-from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name
+from scope_ptz.bench.engine.stored_run import FRAME_HEIGHT_PX, FRAME_WIDTH_PX, STORE, StoredRun, sample_name
 from scope_ptz.bench.engine.trial_records import failure_at_end
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
@@ -28,7 +28,7 @@ from scope_ptz.simulator.clock import SceneClock
 
 BUILT_IN_AGENT = "scope"
 """Name of SCOPE's own agent loop."""
-WIDTH, HEIGHT = 1280, 720
+WIDTH, HEIGHT = FRAME_WIDTH_PX, FRAME_HEIGHT_PX
 """Size of a frame in pixels."""
 
 

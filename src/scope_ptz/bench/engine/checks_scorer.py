@@ -30,15 +30,13 @@ from inspect_ai.solver import TaskState
 from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
-from scope_ptz.bench.engine.trial_records import trial_of
+from scope_ptz.bench.engine.traces.traced_trials import TRIAL, published_entry, published_run, scored_trial
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
 """Name of the scorer in a log."""
-TRIAL = "trial"
-"""Metadata key under which a score stores the trial."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
 """Inspect's score value for each headline. A run with an infrastructure failure has no value."""
 
@@ -84,16 +82,17 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
 
 async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
     """Return the trial of a sample. For an incorrect run, the true counts are computed once and stored in the sample."""
-    entry = Entry.of_metadata(state.metadata)
+    entry, _ = published_entry(Entry.of_metadata(state.metadata))
     folder = Path(entry.facts.scene)
     stored = state.store.get(STORE)
-    stored_run = StoredRun.from_store(stored) if stored else StoredRun("", {}, "")
-    trial = trial_of(entry, stored_run, state.epoch, folder)
-    if trial.headline == "incorrect" and context is not None and context.true_count is not None and not stored_run.truths:
+    stored_run = published_run(StoredRun.from_store(stored) if stored else StoredRun("", {}, ""), entry.world)
+    trial, fault = scored_trial(entry, stored_run, state.epoch, folder, failed=True)
+    needs_truths = trial.headline == "incorrect" and fault is None and not stored_run.truths
+    if needs_truths and context is not None and context.true_count is not None:
         stored_run = await _with_truths(entry, stored_run, context.true_count)
         if stored_run.truths:
             state.store.set(STORE, stored_run.to_store())
-            trial = trial_of(entry, stored_run, state.epoch, folder)
+            trial, _ = scored_trial(entry, stored_run, state.epoch, folder, failed=True)
     if context is not None:
         context.watcher.run_ended(sample_name(entry.facts.id, state.epoch), trial)
     return trial

@@ -27,8 +27,10 @@ from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.judgement_scores import JUDGE, score_of_judgement
 from scope_ptz.bench.engine.recording.scope_model import ScopeModel
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
+from scope_ptz.bench.engine.traces.traced_trials import published_entry
 from scope_ptz.bench.engine.trial_records import failure_at_end
 from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoReplyError
+from scope_ptz.errors import TraceError
 
 FIRST_SEED = 1
 """Seed of the first judgement by a judge of another Inspect provider than SCOPE's. Each further judgement uses the next integer."""
@@ -63,9 +65,12 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
 async def _judgement(state: TaskState, context: EvalContext, repeat: int, journal: Journal) -> Score:
     """Return the judgement of a run as a score. A run with an infrastructure failure gets a score without a value."""
     stored = state.store.get(STORE)
-    entry = Entry.of_metadata(state.metadata)
+    entry, _ = published_entry(Entry.of_metadata(state.metadata))
     stored_run = StoredRun.from_store(stored) if stored else StoredRun("", {}, "")
-    trace = trace_of(stored_run.trace, Path(entry.facts.scene))
+    try:
+        trace = trace_of(stored_run.trace, Path(entry.facts.scene))
+    except TraceError as error:
+        return Score.unscored(reason="damaged trace", explanation=str(error))
     failure = failure_at_end(trace.ended) if trace is not None else "the run did not begin"
     if trace is None or failure is not None:
         return Score.unscored(reason="infrastructure", explanation=failure)

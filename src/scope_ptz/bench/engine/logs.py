@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -10,14 +10,13 @@ from zipfile import ZipFile
 from inspect_ai.log import EvalLog  # also registers the compression of logs with zipfile
 from pydantic_core import from_json
 
-from scope_ptz.bench.engine.checks_scorer import TRIAL
-from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.inspect_internals import header_context
-from scope_ptz.bench.engine.judgement_scores import judgements_in
-from scope_ptz.bench.engine.run_cards import card_of, cost_usd
-from scope_ptz.bench.engine.sample_files import reading, samples, stored_run_in
-from scope_ptz.bench.engine.stored_run import StoredRun, trace_of
-from scope_ptz.bench.engine.trial_records import trial_of
+from scope_ptz.bench.engine.run_cards import CARD, card_of
+from scope_ptz.bench.engine.sample_files import reading, sample_count, samples, stored_run_in
+from scope_ptz.bench.engine.stored_run import trace_of
+from scope_ptz.bench.engine.token_costs import cost_usd
+from scope_ptz.bench.engine.traces.log_completeness import completed
+from scope_ptz.bench.engine.traces.traced_trials import traced_trial
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
@@ -29,25 +28,38 @@ SUMMARIES, SUMMARY_PARTS = "summaries.json", "_journal/summaries/"
 """Files in a log, which is a ZIP archive. The log of an unfinished evaluation contains only the ``_journal`` files of each pair."""
 
 
-def read_evaluation(path: Path) -> Evaluation:
-    """Read an evaluation from a log. The trials are sorted by task and epoch.
+def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = None) -> Evaluation:
+    """Read an evaluation from a log, and compute its verdicts from the traces. The trials are sorted by task and epoch.
 
-    If several judges judged the runs that only a judge can score, one judge decides all these runs.
+    The scores in the log are not used. If they differ from the recomputed ones, ``Evaluation.findings`` names them. Judgements
+    cannot be recomputed. If several judges judged the runs that only a judge can score, one judge decides all these runs.
+
+    Args:
+        path: The log.
+        progress: Called after each sample with the number of scored samples and the total number of samples.
 
     Raises:
         TraceError: The log does not exist, is damaged, or is not from this benchmark.
     """
     with reading(path):
-        header = read_header(path)
+        header, total = read_header(path), sample_count(path)
+        split = str(((header.eval.metadata or {}).get(CARD) or {}).get("split", ""))
+        traced, first = [], None
+        for number, sample in enumerate(samples(path), 1):
+            traced.append(traced_trial(sample, path, split))
+            first = first or stored_run_in(sample)
+            if progress is not None:
+                progress(number, total)
+        card = card_of(
+            header, trace_of(first.trace, path) if first is not None and CARD not in (header.eval.metadata or {}) else None
+        )
+        scored, findings = completed(traced, header, card)
+        trials = decided_by_one_judge(scored, (header.eval.metadata or {}).get(DECIDES, ""))
         expected_trials = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
-        requested_judge = (header.eval.metadata or {}).get(DECIDES, "")
-        trials = decided_by_one_judge([trial_in(sample, path) for sample in samples(path)], requested_judge)
-        first = next((stored_run_in(sample) for sample in samples(path)), None)
-        card = card_of(header, trace_of(first.trace, path) if first is not None else None)
     order = {str(name): index for index, name in enumerate(header.eval.dataset.sample_ids or ())}
     trials.sort(key=lambda trial: (order.get(trial.task.id, len(order)), trial.task.id, trial.epoch))
     priced = (t.model_copy(update={"cost_usd": cost_usd(card, t.input_tokens, t.output_tokens)}) for t in trials)
-    return Evaluation(card=card, trials=tuple(priced), wanted=expected_trials, log=str(path))
+    return Evaluation(card=card, trials=tuple(priced), wanted=expected_trials, log=str(path), findings=findings)
 
 
 def trials_by_sample(path: Path) -> dict[str, Trial]:
@@ -94,14 +106,3 @@ def _summaries(path: Path) -> dict[tuple[str, int], dict[str, Any]]:
 
 def _number(name: str) -> int:
     return int(name.rpartition("/")[2].partition(".")[0])
-
-
-def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
-    """Return the trial of a sample with the latest results of the checks and with all judgements."""
-    entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
-    judgements = judgements_in(scores)
-    stored = next((s["metadata"][TRIAL] for s in reversed(scores.values()) if TRIAL in (s.get("metadata") or {})), None)
-    if stored is None or entry.task is None:
-        stored_run = stored_run_in(sample) or StoredRun("", {}, "")
-        return trial_of(entry, stored_run, sample["epoch"], path, judgements)
-    return Trial.model_validate({**stored, "task": entry.facts, "judgements": judgements})

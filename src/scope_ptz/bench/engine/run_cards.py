@@ -20,8 +20,6 @@ CARD = "card"
 """Key in a log's metadata for the run card. Logs that Inspect's own command wrote do not have it."""
 SCOPE = "scope"
 """Key in a log's metadata for the facts about the tasks and the agent loop."""
-PRICE = "price_usd_per_million_tokens"
-"""Key in a card's ``sampling`` for the prices of the planner's input and output tokens."""
 AGENT_SOURCE = "agent_source"
 """Key in a card's ``sampling`` for the digest of an external agent's source."""
 
@@ -48,12 +46,6 @@ def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
         return _derived_card(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
     except (ValidationError, KeyError) as error:
         raise TraceError(f"The run card in the log {header.location} is damaged: {error}.") from error
-
-
-def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | None:
-    """Return the cost of a run's planner tokens in US dollars; None if the card contains no prices."""
-    price = card.sampling.get(PRICE)
-    return (input_tokens * price["input"] + output_tokens * price["output"]) / 1e6 if price else None
 
 
 def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:

@@ -105,6 +105,12 @@ def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
                 yield sample
 
 
+def sample_count(path: Path) -> int:
+    """Return the number of samples in a log."""
+    with ZipFile(path) as archive:
+        return len({name for name in archive.namelist() if name.startswith(_SAMPLES)})
+
+
 def stored_run_in(sample: Mapping[str, Any]) -> StoredRun | None:
     """Return the run that a sample stores; None if it stores none.
 

@@ -11,11 +11,14 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
 from scope_ptz.agent.trace import FILE_NAME, Trace
+from scope_ptz.agent.trace_faults import record_faults
 from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
 from scope_ptz.errors import TraceError
 
 STORE = "scope"
 """Key of SCOPE's data in the store of a sample."""
+FRAME_WIDTH_PX, FRAME_HEIGHT_PX = 1280, 720
+"""Size of the frames of every evaluation. How large things must be in a frame is defined for this size."""
 
 
 def sample_name(task: str, epoch: int) -> str:
@@ -81,7 +84,8 @@ def trace_of(text: str, folder: Path) -> Trace | None:
         TraceError: The trace is damaged.
     """
     try:
-        records = [RECORD.validate_json(line) for line in text.splitlines() if line]
+        # Strings in JSON may contain other line separators, which ``splitlines`` would split.
+        records = [RECORD.validate_json(line) for line in text.split("\n") if line]
     except ValidationError as error:
         raise TraceError(f"The trace of a run in {folder} is damaged: {error.errors(include_url=False)[0]['msg']}.") from error
     if not records:
@@ -89,6 +93,8 @@ def trace_of(text: str, folder: Path) -> Trace | None:
     first, last = records[0], records[-1]
     if not isinstance(first, Started):
         raise TraceError(f"The trace of a run in {folder} is damaged: it does not begin with the header of a {FILE_NAME}.")
+    if fault := next(record_faults(records), None):
+        raise TraceError(f"The trace of a run in {folder} is damaged: {fault}.")
     return Trace(
         folder=folder,
         started=first,

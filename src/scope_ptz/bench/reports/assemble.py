@@ -11,6 +11,7 @@ from scope_ptz.bench.reports.accuracy import KIND_TITLES, accuracy_section
 from scope_ptz.bench.reports.display_names import served_instead
 from scope_ptz.bench.reports.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
+from scope_ptz.bench.reports.log_findings import finding_lines, stored_verdict_lines
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_section, comparison_table
 from scope_ptz.bench.reports.paper import paper_section
 from scope_ptz.bench.reports.recommendations import architecture_section, design_section, scope_section, spread_section
@@ -186,7 +187,9 @@ def _reported(reported: Mapping[str, str]) -> str | None:
 
 
 def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
-    warnings = [
+    warnings = [line for run in runs for line in finding_lines(run.evaluation)]
+    warnings += stored_verdict_lines([run.evaluation for run in runs])
+    warnings += [
         f"{run.label} is unfinished: {len(run.evaluation.trials)} of {run.evaluation.wanted} trials."
         for run in runs
         if not run.evaluation.finished

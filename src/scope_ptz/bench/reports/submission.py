@@ -1,7 +1,8 @@
 """Write submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
 
-The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models
-are part of that schema and change only with its version.
+Format 1 contains only the trials. Format 2 also contains their traces, so that whoever checks the file can execute the checks and
+make the calls again. The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The
+docstrings of the line models are part of that schema and change only with its version.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ from scope_ptz.errors import InputError, OutputError
 
 MOST_ANSWER = 8_000
 """Maximum length of a published answer in characters. The published schema contains this name."""
+Line = Annotated[str, Field(max_length=500)]
+MOST_TRACE = 2_000_000
+"""Maximum length of a compressed trace in base64 characters."""
 CUT = " [cut]"
 """Suffix of a published answer that was cut."""
 TOOLS = frozenset(get_args(ToolName))
@@ -33,12 +37,12 @@ _UNCHANGED_FIELDS = (
     "input_tokens", "output_tokens", "cost_usd",
 )  # fmt: skip
 """Fields of a trial that are published unchanged."""
-Line = Annotated[str, Field(max_length=500)]
 _SECRET = re.compile(
     r"(?:\b(?:sk|pk|rk)-[A-Za-z0-9_-]{16,}|\bhf_[A-Za-z0-9]{16,}|\bgh[pousr]_[A-Za-z0-9]{20,}|\bAKIA[A-Z0-9]{16}\b"
     r"|\beyJ[\w-]{10,}\.[\w-]{10,}\.|bearer\s+[\w.~+/-]{12,}|://[^/\s:@]+:[^/\s@]+@|-----BEGIN [A-Z ]*PRIVATE KEY)",
     re.IGNORECASE,
 )
+_ADDRESS = re.compile(r"[a-z][a-z0-9+.-]*://[^\s\"'<>]+", re.IGNORECASE)
 _SECRET_NAMES = re.compile(r"key|token$|secret|password|authori[sz]ation|cookie|credential", re.IGNORECASE)
 
 
@@ -54,17 +58,34 @@ class Totals(_Part):
     error_modes: dict[ErrorMode, Count]
 
 
+Evaluated = Literal["self-reported", "hosted"]
+"""Who ran an evaluation: the participant, or the host of a leaderboard, who signs the result."""
+
+
+class Places(_Part):
+    """The viewpoints of a scene's presets, by name, and of its home preset."""
+
+    presets: dict[Line, Line]
+    home: Line
+
+
 class Header(_Part):
-    """``tasks_digest``: SHA-256 over the tasks' ids, categories, scopes and wordings; ``wanted``: trials of a complete file."""
+    """``tasks_digest``: SHA-256 over the tasks' ids, categories, scopes and wordings; ``wanted``: trials of a complete file.
+
+    ``format``: 2 if the trials have traces; ``evaluated``: who ran the evaluation, as the file states it; ``places``: the
+    viewpoints of the presets, by scene.
+    """
 
     kind: Literal["header"] = "header"
-    format: Literal[1] = 1
+    format: Literal[1, 2] = 1
+    evaluated: Evaluated = "self-reported"
     canary: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = CANARY
     card: RunCard
     tasks_digest: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
     tasks: Count
     wanted: Count
     totals: Totals
+    places: dict[str, Places] = {}
 
 
 class Times(_Part):
@@ -84,8 +105,18 @@ class JudgeSaid(_Part):
     error_mode: ErrorMode | None = None
 
 
+class Run(_Part):
+    """A run. ``trace``: its trace as JSON lines, compressed with zlib, in base64; ``sees``: whether the planner was shown frames;
+    ``true_counts``: the true count for each counting call that was looked up, by the index of the call."""
+
+    trace: Annotated[str, Field(max_length=MOST_TRACE)]
+    sees: bool = False
+    true_counts: dict[str, int | None] = {}
+
+
 class TrialLine(_Part):
-    """One trial. ``answer``: the final text, cut at ``MOST_ANSWER`` characters; ``checks``: passed, failed, or None."""
+    """One trial. ``answer``: the final text, cut at ``MOST_ANSWER`` characters; ``checks``: passed, failed, or None; ``run``: the
+    run, in format 2 unless it never began."""
 
     kind: Literal["trial"] = "trial"
     task: Annotated[str, Field(min_length=1, max_length=200)]
@@ -107,6 +138,7 @@ class TrialLine(_Part):
     cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None
     times: Times
     judged: tuple[JudgeSaid, ...] = ()
+    run: Run | None = None
 
 
 LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine, Field(discriminator="kind")])
@@ -142,8 +174,15 @@ def totals_of(lines: Sequence[TrialLine]) -> Totals:
     return Totals(trials=len(lines), headlines=dict(Counter(line.headline for line in lines)), error_modes=dict(modes))
 
 
-def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
+def submission_lines(
+    evaluation: Evaluation, runs: Mapping[str, Run] | None = None, places: Mapping[str, Places] | None = None
+) -> tuple[Header, list[TrialLine]]:
     """Return the header and the trials of a submission.
+
+    Args:
+        evaluation: The evaluation.
+        runs: The public runs by the names of their samples, for format 2. Without them, the submission has format 1.
+        places: The viewpoints of the presets, by scene.
 
     Raises:
         InputError: The evaluation is unfinished.
@@ -153,19 +192,29 @@ def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
         raise InputError(
             f"The evaluation has only {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it before submitting it."
         )
-    lines = [_line(trial) for trial in sorted(evaluation.trials, key=lambda t: (t.task.id, t.epoch))]
+    lines = [
+        trial_line(trial, (runs or {}).get(trial.sample)) for trial in sorted(evaluation.trials, key=lambda t: (t.task.id, t.epoch))
+    ]
     facts = {t.task.id: t.task for t in evaluation.trials}
     public = card.model_copy(
         update={
             "planner": _public_card(card.planner),
             "perception": _public_card(card.perception),
-            "sampling": _public_settings(card.sampling),
+            "sampling": public_settings(card.sampling),
             "host": "",
             "split": split_name(card.split),
         }
     )
-    digest = tasks_digest(facts.values())
-    return Header(card=public, tasks_digest=digest, tasks=len(facts), wanted=evaluation.wanted, totals=totals_of(lines)), lines
+    header = Header(
+        format=1 if runs is None else 2,
+        card=public,
+        tasks_digest=tasks_digest(facts.values()),
+        tasks=len(facts),
+        wanted=evaluation.wanted,
+        totals=totals_of(lines),
+        places=dict(places or {}),
+    )
+    return header, lines
 
 
 def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> None:
@@ -177,9 +226,16 @@ def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> N
     header, lines = submission
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text("".join(row.model_dump_json() + "\n" for row in (header, *lines)), "utf-8")
+        # Files of format 1 are the same as those of version 0.1.0.
+        omitted = {"evaluated", "places", "run"} if header.format == 1 else set[str]()
+        out.write_text("".join(row.model_dump_json(exclude=omitted) + "\n" for row in (header, *lines)), "utf-8")
     except OSError as error:
         raise OutputError(f"The submission {out} cannot be written: {error.strerror}.") from error
+
+
+def without_secrets(text: str) -> str:
+    """Return a text in which everything that looks like a key, a token or an address of a server is replaced."""
+    return _ADDRESS.sub("[removed]", _SECRET.sub("[removed]", text))
 
 
 def secrets_in(content: Any, path: str = "") -> Iterator[str]:
@@ -197,7 +253,8 @@ def secrets_in(content: Any, path: str = "") -> Iterator[str]:
         yield path
 
 
-def _line(trial: Trial) -> TrialLine:
+def trial_line(trial: Trial, run: Run | None = None) -> TrialLine:
+    """Return the published form of a trial, with its run for format 2."""
     answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + CUT
     judgements = tuple(
         JudgeSaid(judge=j.judge, prompt=j.prompt, verdict=j.verdict, error_mode=j.error_mode)
@@ -213,6 +270,7 @@ def _line(trial: Trial) -> TrialLine:
         tool_calls=_public_tool_calls(trial.tool_calls),
         times=times,
         judged=judgements,
+        run=run,
         **{name: getattr(trial, name) for name in _UNCHANGED_FIELDS},
     )
 
@@ -231,17 +289,17 @@ def _public_tool_calls(calls: Mapping[str, int]) -> dict[str, int]:
 def _public_card(model: ModelCard) -> ModelCard:
     """Return a model card without secrets and addresses."""
     provider = "" if "://" in model.provider else model.provider
-    return model.model_copy(update={"reported": _public_settings(model.reported), "provider": provider})
+    return model.model_copy(update={"reported": public_settings(model.reported), "provider": provider})
 
 
-def _public_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+def public_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return settings without the values that look like a secret or an address."""
     return {name: _public_value(value) for name, value in settings.items() if not _is_private(name, value)}
 
 
 def _public_value(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return _public_settings(value)
+        return public_settings(value)
     if isinstance(value, list | tuple):
         return [_public_value(one) for one in value if not _is_private("", one)]
     return value

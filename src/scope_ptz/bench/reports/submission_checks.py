@@ -11,7 +11,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, secrets_in, tasks_digest, totals_of
+from scope_ptz.bench.engine.traces.verification import RunToVerify
+from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
+from scope_ptz.bench.reports.submission_evaluated import EvaluatedBy, Verifier, evaluated_by
+from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults
 from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
@@ -21,6 +24,7 @@ from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
 """Maximum size of a submission file in bytes."""
+NO_TRACES = "not verifiable: the file has format 1, which contains no traces, so verdicts and calls are as its author states them"
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 
 
@@ -33,19 +37,23 @@ class SubmissionFindings:
         faults: One message for each fault, with its line number.
         counts: The number of trials, and the numbers of trials by headline.
         notes: Remarks that are not faults.
+        evaluated: Who ran the evaluation; "hosted" only if a signature proves it.
+        runs: The runs that can be verified, by their calls; empty for format 1.
     """
 
     file: str
     faults: tuple[str, ...]
     counts: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    evaluated: Evaluated = "self-reported"
+    runs: tuple[RunToVerify, ...] = ()
 
     @property
     def summary(self) -> str:
         """The result as text."""
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
-        return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
+        return "\n".join([f"{self.file}: {verdict}, {self.evaluated}" + (f" ({counts})" if counts else ""), *self.notes])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
@@ -55,15 +63,17 @@ class SubmissionFindings:
             "faults": list(self.faults),
             "counts": dict(self.counts),
             "notes": list(self.notes),
+            "evaluated": self.evaluated,
         }
 
 
-def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> SubmissionFindings:
-    """Validate a submission.
+def check_submission(path: Path, tasks: Sequence[Task] | None = None, verifier: Verifier | None = None) -> SubmissionFindings:
+    """Validate a submission. For format 2, the checks are executed again on its traces.
 
     Args:
         path: The file.
         tasks: The tasks that it must cover. The default is the published split that its header names.
+        verifier: Checks the signature of a hosted evaluation; None if no host is trusted.
 
     Raises:
         InputError: The file cannot be read, or its split is unknown and no tasks are given.
@@ -82,14 +92,49 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Submiss
     for number, row in lines:
         faults += [f"line {number} ({row.task}): {fault}" for fault in trial_faults(row, header, tasks_by_id.get(row.task))]
     faults += _completeness_faults(header, trials, tasks_by_id)
+    runs = runs_in(header, trials, tasks_by_id) if header.format == 2 else {}
+    faults += _trace_faults(header, lines, runs, tasks_by_id)
+    who = evaluated_by(path, header, verifier)
+    faults += [f"line 1: {who.fault}"] if who.fault else []
     totals = totals_of(trials)
     models = (header.card.planner, header.card.perception)
     unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
     notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
     if broken := totals.headlines.get("infrastructure", 0):
         notes.append(f"{broken} of {totals.trials} trials were broken by infrastructure and are excluded from accuracy")
+    notes += _provenance_notes(header, trials, who)
     counts = {"trials": totals.trials, **{str(name): number for name, number in totals.headlines.items()}}
-    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes))
+    verifiable = tuple(run for run in runs.values() if isinstance(run, RunToVerify))
+    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes), who.evaluated, verifiable)
+
+
+def _trace_faults(
+    header: Header,
+    lines: Sequence[tuple[int, TrialLine]],
+    runs: Mapping[tuple[str, int], RunToVerify | str],
+    tasks: Mapping[str, Task],
+) -> Iterator[str]:
+    """Yield faults of the traces of format 2, and of lines that do not follow from their traces."""
+    for number, line in lines:
+        if header.format == 1:
+            if line.run is not None:
+                yield f"line {number} ({line.task}): it has a trace, which only format 2 has"
+        elif line.task in tasks:
+            for fault in trace_line_faults(header, line, runs.get((line.task, line.epoch))):
+                yield f"line {number} ({line.task}): {fault}"
+    yield from copied_traces([line for _, line in lines])
+
+
+def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: EvaluatedBy) -> list[str]:
+    """Return notes on what the file proves: who ran the evaluation, and what cannot be computed again."""
+    notes = [f"hosted by {who.host}"] if who.host else []
+    notes += [who.note] if who.note else []
+    notes += [NO_TRACES] if header.format == 1 else []
+    if header.card.isolation is not None:
+        notes.append(f"the agent was {header.card.isolation}")
+    if judged := sum(line.scored_by == "judge" for line in lines):
+        notes.append(f"{judged} verdicts are stored verdicts of a judge, which cannot be recomputed")
+    return notes
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:

@@ -212,20 +212,43 @@ class RunCard(_Record):
         return not (self.planner.deterministic or self.perception.deterministic)
 
 
+LogFault = Literal[
+    "score-differs", "trace-missing", "trace-damaged", "task-differs", "task-unknown", "tasks-changed", "card-differs",
+    "sample-missing", "sample-repeated",
+]  # fmt: skip
+"""Kinds of contradictions between a log and its own traces."""
+
+
+class LogFinding(_Record):
+    """A contradiction between a log and its own traces, or between a log and the published tasks.
+
+    Attributes:
+        kind: The kind of contradiction.
+        sample: Name of the sample; empty if the finding concerns the whole log.
+        detail: What was found, as a sentence without a final full stop.
+    """
+
+    kind: LogFault
+    sample: str = ""
+    detail: str
+
+
 class Evaluation(_Record):
     """An evaluation: its conditions and its trials.
 
     Attributes:
         card: The conditions of the evaluation.
-        trials: The finished runs.
+        trials: The finished runs. Their verdicts are recomputed from the traces; only judgements and labels are as stored.
         wanted: Number of trials in the complete evaluation: tasks times epochs.
         log: Path of the log.
+        findings: Contradictions between the log and its traces. They are not part of stored copies of an evaluation.
     """
 
     card: RunCard
     trials: tuple[Trial, ...]
     wanted: Count
     log: str = ""
+    findings: tuple[LogFinding, ...] = Field(default=(), exclude=True, repr=False)
 
     @property
     def finished(self) -> bool:

@@ -18,6 +18,7 @@ from scope_ptz.cli.bench.leaderboard import leaderboard
 from scope_ptz.cli.bench.report import gate, report, submission_app
 from scope_ptz.cli.bench.run import run
 from scope_ptz.cli.bench.sweep import sweep
+from scope_ptz.cli.bench.verify import verify
 from scope_ptz.cli.exit import put_json
 from scope_ptz.cli.options import command
 
@@ -46,6 +47,7 @@ for panel, name, function in (
     (RUN, "human", human),
     (RUN, "gate", gate),
     (SCORES, "rescore", rescore),
+    (SCORES, "verify", verify),
     (SCORES, "label", label),
     (SCORES, "agree", agree),
     (SCORES, "judge-gold", judge_gold),

@@ -297,15 +297,9 @@ def price_of(text: str | None) -> Price | None:
 
 def published_tasks() -> list[Task]:
     """Return the tasks of every published split that is installed."""
-    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.bench.tasks.published import published_tasks as published
 
-    tasks: list[Task] = []
-    for split in ("core", "paraphrase", "reaction", "unseen"):
-        try:
-            tasks += load_split(split)
-        except InputError:
-            continue
-    return tasks
+    return list(published().values())
 
 
 def category_named(name: str) -> str:

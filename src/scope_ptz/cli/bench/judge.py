@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import TasksOption, judge_settings
+from scope_ptz.cli.bench.reading import print_findings, read_log
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags
 from scope_ptz.errors import InputError
@@ -49,7 +50,6 @@ def rescore(
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.engine.rescoring import set_deciding_judge
     from scope_ptz.factory.evaluation import eval_context
     from scope_ptz.factory.rescore import add_scores, open_requested_judge
@@ -63,6 +63,7 @@ def rescore(
         server = await open_requested_judge(settings) if settings.requested else None
         try:
             for log in logs:
+                print_findings(read_log(log))
                 if checks or server is not None:
                     tally = await add_scores(
                         log,
@@ -78,7 +79,7 @@ def rescore(
                     put(f"{log}: {', '.join([*parts, *_new_judgements(server, tally)])}")
                 if decides:
                     set_deciding_judge(log, decides)
-                if note := other_judges_note(read_evaluation(log).trials):
+                if note := other_judges_note(read_log(log).trials):
                     put(f"{log}: {note}")
         finally:
             if server is not None:
@@ -145,9 +146,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
     evaluations = []
     for path in logs:
         if path not in gold:
-            from scope_ptz.bench.engine.logs import read_evaluation
-
-            evaluations.append(with_labels(read_evaluation(path), read_labels(labels_file(path))))
+            evaluations.append(with_labels(read_log(path), read_labels(labels_file(path))))
     verdicts = [verdict for path in gold for verdict in read_verdicts(path)]
     return [*raters_of(evaluations), *gold_raters(verdicts)]
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.bench.flags import published_tasks
+from scope_ptz.cli.bench.reading import print_findings, read_log
+from scope_ptz.cli.bench.verify import verify_and_show
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError
@@ -91,11 +93,12 @@ def gate(
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.engine.regression.gate import gate as compare
     from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 
-    now, before = read_evaluation(log), read_evaluation(baseline)
+    now, before = read_log(log), read_log(baseline)
+    for evaluation in (now, before):
+        print_findings(evaluation)
     comparison = compare(now, before, alpha)
     if as_json:
         rows = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
@@ -119,8 +122,11 @@ def submission_make(
     partial: Annotated[
         bool, typer.Option("--partial", help="Write an incomplete submission, which `submission validate` rejects.")
     ] = False,
+    traces: Annotated[
+        bool, typer.Option("--traces/--no-traces", help="Include the traces (format 2). Without them, nothing can be verified.")
+    ] = True,
 ) -> None:
-    """Write the submission for a log: its run card, and the verdict, answer, calls and times of every task.
+    """Write the submission for a log: its run card, and the verdict, answer, calls, times and trace of every task.
 
     A log that does not cover its split is rejected.
     """
@@ -129,7 +135,9 @@ def submission_make(
     from scope_ptz.bench.tasks.splits import SPLITS
 
     evaluation = _read(log)
-    header, lines = submission_lines(evaluation)
+    print_findings(evaluation)
+    with_traces = traces and log.suffix != HUMAN_RESULT_SUFFIX
+    header, lines = _lines_with_traces(log, evaluation) if with_traces else submission_lines(evaluation)
     skip = partial and tasks is None and header.card.split not in SPLITS
     missing = [] if skip else _missing(header, lines, tasks)
     if missing and not partial:
@@ -150,21 +158,41 @@ def submission_validate(
     tasks: Annotated[
         str | None, typer.Option("--tasks", help="Split or task file to compare with (default: the split that it names).")
     ] = None,
+    verify: Annotated[
+        bool,
+        typer.Option("--verify", help="Make the calls of every run again, which must come out as recorded. This takes minutes."),
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Check that a submission is complete and consistent and that its dataset is known. The exit code is 1 on any fault."""
+    """Check that a submission is complete and consistent, and that its verdicts follow from its traces.
+
+    The exit code is 1 on any fault.
+    """
     from scope_ptz.bench.reports.submission_checks import check_submission
 
     result = check_submission(file, _split(tasks))
+    verified = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
+    differing = verified.of("differs") if verified is not None else []
     if as_json:
-        put_json(result.as_dict(), indent=1)
+        put_json({**result.as_dict(), **({"verified": verified.as_dict()} if verified is not None else {})}, indent=1)
     else:
         for fault in result.faults[:MAX_FAULTS_LISTED]:
             print_error(fault)
         if len(result.faults) > MAX_FAULTS_LISTED:
             print_error(f"and {len(result.faults) - MAX_FAULTS_LISTED} more")
         put(result.summary)
-    return FAILED if result.faults else 0
+        if verified is not None and result.runs:
+            put("frames are not part of a submission, so they were not compared; `scope bench verify LOG` compares them")
+    return FAILED if result.faults or differing else 0
+
+
+def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
+    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
+    from scope_ptz.bench.reports.submission import submission_lines
+    from scope_ptz.bench.reports.submission_traces import public_runs
+
+    public = public_runs(evaluation, runs_of_log(log))
+    return submission_lines(public.evaluation, public.runs, public.places)
 
 
 def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
@@ -193,9 +221,7 @@ def _read(path: Path) -> Evaluation:
         from scope_ptz.bench.human_runs import read_result
 
         return read_result(path)
-    from scope_ptz.bench.engine.logs import read_evaluation
-
-    return with_labels(read_evaluation(path), read_labels(labels_file(path)))
+    return with_labels(read_log(path), read_labels(labels_file(path)))
 
 
 def _split(name: str | None) -> Sequence[Task] | None:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import AnswerText
     from scope_ptz.perception.ground_truth.view import Thing, View
 
+GROUND_TRUTH_VERSION = 1
+"""Version of ground-truth perception, which traces record. It increases when the same view and request give another reply."""
+
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 
 
@@ -32,6 +35,7 @@ class GroundTruthPerception(Perception):
     """
 
     name = GROUND_TRUTH
+    version = GROUND_TRUTH_VERSION
     handles_panoramas = True
 
     def __init__(self, open_scene: Callable[[str], Scene], read_truth: TruthReader = view_truth) -> None:

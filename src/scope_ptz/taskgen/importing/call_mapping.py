@@ -11,6 +11,7 @@ from scope_ptz.bench.answers import plain_words
 from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import Argument, RequiredCall, ToolName
 from scope_ptz.errors import ToolCallError
+from scope_ptz.taskgen.importing.contradictions import argument_contradictions
 from scope_ptz.taskgen.importing.paper_names import (
     DURATION_ARGUMENTS,
     TEXT_ARGUMENTS,
@@ -75,6 +76,8 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
             expectation.note("unknown-tool", name)
             continue
         other_arguments = _arguments_of(given, name, index, [n for n, _ in names[:index]].count(name), only_call=len(names) == 1)
+        for detail in argument_contradictions(tool, call_arguments, other_arguments):
+            expectation.note("fields-disagree", detail)
         mapped = _map_arguments(tool, {**other_arguments, **call_arguments}, preset_of, expectation)
         expectation.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
     return expectation

@@ -115,12 +115,18 @@ def import_file(path: Path, scene_names: SceneNames) -> Imported:
     return Imported(
         source=str(path),
         encoding=table.encoding,
-        notes=table.notes,
+        notes=(*table.notes, *_merged_notes(rows, scene_names)),
         rows=rows,
         ids=ids,
         findings=findings,
         tasks=tuple(task for task in tasks if task is not None),
     )
+
+
+def _merged_notes(rows: Sequence[ParsedRow], scene_names: SceneNames) -> Iterator[str]:
+    """Yield a note for each preset to which several presets of the file are mapped. Their answers cannot all hold there."""
+    for (scene, preset), names in scene_names.merged_presets(row.place for row in rows).items():
+        yield f"{len(names)} presets of the file are mapped to the preset {preset} of {scene}: {'; '.join(names[:_MAX_LISTED])}"
 
 
 def report_lines(imported: Imported) -> Iterator[str]:

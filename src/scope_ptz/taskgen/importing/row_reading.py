@@ -14,6 +14,7 @@ from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.bench.tasks.task_wording import call_in_words
 from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
+from scope_ptz.taskgen.importing.contradictions import field_contradictions
 from scope_ptz.taskgen.importing.csv_table import Row
 from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, normalise, order_of, policy_of, scope_of
 from scope_ptz.taskgen.importing.scene_names import SceneNames
@@ -33,7 +34,8 @@ Note = Callable[[FindingKind, str], None]
 class ParsedRow:
     """A row with its cells converted to SCOPE's types and names.
 
-    ``scene`` and ``preset`` are None if they were not found. ``place`` contains their names in the file.
+    ``scene`` and ``preset`` are None if they were not found. ``place`` contains their names in the file. ``view`` is a key for the
+    view that the row means in the file; presets of the file that were mapped to one preset remain different views.
     """
 
     row: Row
@@ -44,6 +46,7 @@ class ParsedRow:
     scene: str | None
     preset: str | None
     place: tuple[str, str]
+    view: tuple[str, str]
     calls: tuple[RequiredCall, ...]
     policy: Policy
     order: Literal["ordered", "any"]
@@ -54,11 +57,6 @@ class ParsedRow:
     def line(self) -> int:
         """The line on which the row begins."""
         return self.row.line
-
-    @property
-    def view(self) -> tuple[str, ...]:
-        """Scene and preset of the question. For one that was not found, its name in the file is used."""
-        return (self.scene or self.place[0], self.preset or self.place[1])
 
     @property
     def sweeps(self) -> bool:
@@ -116,6 +114,7 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         notes.append(RowFinding(kind=kind, detail=detail[:300]))
 
     question, answer = cells["question"], cells["expected_answer"]
+    place = cells.get("file_location", ""), cells.get("preset_start", "")
     if not question:
         note("empty-question", "")
     category = _category(cells, note)
@@ -130,6 +129,9 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     notes += expectation.findings
     if not answer and not expectation.calls:
         note("nothing-expected", "")
+    scope = _scope(cells, expectation, note)
+    for detail in field_contradictions(cells, expectation.calls, scene_names.scenes[scene].presets if scene is not None else ()):
+        note("fields-disagree", detail)
     if row.extra or row.short:
         note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.short} cells too few")
     return ParsedRow(
@@ -137,10 +139,11 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         question=question,
         answer=answer,
         category=category,
-        scope=_scope(cells, expectation, note),
+        scope=scope,
         scene=scene,
         preset=preset,
-        place=(cells.get("file_location", ""), cells.get("preset_start", "")),
+        place=place,
+        view=scene_names.source_view(*place),
         calls=tuple(expectation.calls),
         policy=policy,
         order=order,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -60,12 +60,12 @@ class SceneNames:
         """
         mapped = self.mapping.scenes
         path = PurePosixPath(location.replace("\\", "/"))
-        stem = path.stem if path.suffix else path.name
+        stem, folder = _scene_spellings(location)
         for name in (location, path.name, stem):
             if name in mapped:
                 return mapped[name] if mapped[name] in self.scenes else None
         by_name = {_normalised(name): name for name in self.scenes}
-        for name in (stem, path.parent.name):
+        for name in (stem, folder):
             if name and _normalised(name) in by_name:
                 return by_name[_normalised(name)]
         return mapped[ANY_NAME] if mapped.get(ANY_NAME) in self.scenes else None
@@ -75,13 +75,46 @@ class SceneNames:
         scene_presets, mapped = self.scenes[scene], self.mapping.presets.get(scene, {})
         if name in mapped:
             return mapped[name] if mapped[name] in scene_presets.presets else None
+        match = self._preset_by_name(scene, name)
+        return match or (mapped[ANY_NAME] if mapped.get(ANY_NAME) in scene_presets.presets else None)
+
+    def source_view(self, location: str, preset_name: str) -> tuple[str, str]:
+        """Return a key for the view that a row of the file means, before scenes and presets of the file are mapped to others.
+
+        Different names of one scene or preset have the same key. Different presets that are mapped to one have different keys.
+        """
+        scene = self.scene(location)
+        if scene is None:
+            return location, preset_name
+        names = (_normalised(name) for name in _scene_spellings(location))
+        scene_key = scene if _normalised(scene) in names else _normalised(location)
+        preset = self.preset(scene, preset_name)
+        is_own_name = preset is not None and preset == self._preset_by_name(scene, preset_name)
+        return scene_key, preset if is_own_name and preset is not None else f"~{_normalised(preset_name)}"
+
+    def merged_presets(self, views: Iterable[tuple[str, str]]) -> dict[tuple[str, str], list[str]]:
+        """Return the presets of the scenes to which several presets of a file are mapped, each with the names in the file.
+
+        Args:
+            views: File location and preset name of each row.
+        """
+        by_preset: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
+        for location, name in views:
+            scene = self.scene(location)
+            preset = self.preset(scene, name) if scene is not None else None
+            if scene is not None and preset is not None:
+                by_preset.setdefault((scene, preset), {}).setdefault(self.source_view(location, name), f"{location} {name}".strip())
+        return {preset: list(names.values()) for preset, names in by_preset.items() if len(names) > 1}
+
+    def _preset_by_name(self, scene: str, name: str) -> str | None:
+        """Return the preset with a name, without the mapping. An empty name is the home preset."""
+        scene_presets = self.scenes[scene]
         if not name.strip() or _normalised(name) == "home":
             return scene_presets.home
         by_name = {_normalised(preset): preset for preset in scene_presets.presets}
-        match = by_name.get(_normalised(name)) or by_name.get(
+        return by_name.get(_normalised(name)) or by_name.get(
             _normalised(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
         )
-        return match or (mapped[ANY_NAME] if mapped.get(ANY_NAME) in scene_presets.presets else None)
 
     def viewpoint(self, scene: str, preset: str) -> str:
         """Return the viewpoint of a preset."""
@@ -105,6 +138,12 @@ def read_scene_names(path: Path) -> SceneNameMap:
         raise InputError(f"{path}: {where or 'as a whole'}: {first['msg']}. Known: scenes, presets.") from error
     except (ValueError, yaml.YAMLError) as error:
         raise InputError(f"{path} is not a mapping: {str(error)[:200]}.") from error
+
+
+def _scene_spellings(location: str) -> tuple[str, str]:
+    """Return the two parts of a file location that may name a scene: the file name without its suffix, and the folder."""
+    path = PurePosixPath(location.replace("\\", "/"))
+    return path.stem if path.suffix else path.name, path.parent.name
 
 
 def _normalised(name: str) -> str:

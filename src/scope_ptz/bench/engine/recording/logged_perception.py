@@ -23,6 +23,7 @@ class LoggedPerception(Perception):
     def __init__(self, model: Model, api: ScopeModel, perception: Perception, *, pictures: bool) -> None:
         self._model, self._api, self._perception, self._pictures = model, api, perception, pictures
         self.name, self.skills, self.handles_panoramas = perception.name, perception.skills, perception.handles_panoramas
+        self.version = perception.version
 
     @classmethod
     async def of(cls, model: Model, context: EvalContext, *, pictures: bool) -> LoggedPerception:

@@ -1,0 +1,207 @@
+"""Make the calls of a recorded run again with a simulated camera, and compare every record exactly.
+
+``agent.replay`` shows that a run can be repeated, with the tolerance of rounded results. Here nothing but measured times may
+differ: poses, scene times, perception replies, results and errors must come out as recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.records import Budgets, Called, Decided, Ended, RecordedPose, Started
+from scope_ptz.agent.replay import REPEATABLE, RecordedPerception, complete_decisions, recorded_replies
+from scope_ptz.agent.timing import PerceptionReply
+from scope_ptz.agent.trace import Trace, trace_of
+from scope_ptz.agent.trace_faults import trace_faults
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import PlannerError
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Decision, Planner, State
+from scope_ptz.tools.context import ImageStore
+from scope_ptz.version import __version__
+
+NUMBER_TOLERANCE = 1e-6
+"""Tolerance for numbers, which allows for other processors and mathematics libraries: poses in degrees, boxes in image widths."""
+_MEASURED = frozenset({"latency_s", "attempts", "wall_s", "server_events"})
+"""Fields of perception replies that are measured, so they differ when a call is repeated."""
+_FILE_NAMES = frozenset({"frames", "file"})
+"""Fields of results with names of pictures. The pictures themselves are compared, not their names."""
+_START_FIELDS = ("camera", "simulated", "frame_width", "frame_height", "scene", "viewpoint", "scene_time_s", "pose", "presets")
+
+
+@dataclass(frozen=True, slots=True)
+class Resimulation:
+    """A repeated run.
+
+    Attributes:
+        repeated: The trace of the repeated run.
+        differences: What differs from the recorded run, as sentences without a final full stop; empty if the runs agree.
+    """
+
+    repeated: Trace
+    differences: tuple[str, ...]
+
+
+async def resimulate(
+    trace: Trace, camera: Camera, perception: Perception | None, images: ImageStore, *, snapshots: bool
+) -> Resimulation:
+    """Repeat a recorded run with its recorded decisions, and compare all records.
+
+    Args:
+        trace: The recorded run.
+        camera: A simulated camera in the state in which the recorded run began.
+        perception: A backend that gives the same replies as the recorded one; None to repeat the recorded replies.
+        images: Stores the frames of the repeated run.
+        snapshots: Whether the recorded run stored its views.
+    """
+    # Calls that failed for a reason outside the simulation would not fail again, so the comparison ends before them.
+    calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
+    repeatable = replace(trace, calls=calls)
+    sees = any(decided.view is not None for decided in trace.decisions)
+    agent = Agent(
+        _DecidedPlanner(complete_decisions(repeatable), trace.ended.text if trace.ended else "", sees=sees),
+        camera,
+        perception or RecordedPerception(recorded_replies(repeatable)),
+        images,
+        budgets=Budgets(max_steps=trace.started.budgets.max_steps),
+        labels=trace.started.labels,
+        snapshots=snapshots,
+        guarded=False,
+    )
+    records: list[Started | Decided | Called | Ended] = []
+    await agent.run(trace.started.instruction, listener=records.append)
+    repeated = trace_of(records, trace.folder)
+    differences = [*trace_faults(trace), *_start_differences(trace.started, repeated.started)]
+    differences += _call_differences(calls, repeated.calls, messages=trace.started.version == __version__)
+    if trace.ended is not None and repeated.ended is not None:
+        differences += _end_differences(trace.ended, repeated.ended)
+    return Resimulation(repeated, tuple(differences))
+
+
+class _DecidedPlanner(Planner):
+    """A planner that repeats recorded decisions, and then fails with the recorded text."""
+
+    name = "recorded"
+
+    def __init__(self, decisions: list[Decision], end: str, *, sees: bool) -> None:
+        self._decisions, self._end, self.sees = decisions, end, sees
+
+    async def step(self, state: State) -> Decision:
+        if len(state.history) >= len(self._decisions):
+            raise PlannerError(self._end or "The recording was cut off.")
+        return self._decisions[len(state.history)]
+
+
+def _start_differences(recorded: Started, repeated: Started) -> Iterator[str]:
+    for name in _START_FIELDS:
+        before, now = _plain(getattr(recorded, name)), _plain(getattr(repeated, name))
+        if not same(before, now):
+            yield f"the run began with {name} {before}, but the simulator gives {now}"
+
+
+def _call_differences(recorded: tuple[Called, ...], repeated: tuple[Called, ...], *, messages: bool) -> Iterator[str]:
+    for before, now in zip(recorded, repeated, strict=False):
+        where = f"call {before.index + 1} of step {before.step} ({before.outcome.call.name})"
+        if (before.step, before.index) != (now.step, now.index):
+            yield f"{where} was not made in this order"
+            return
+        yield from (f"{where}: {difference}" for difference in _one_call(before, now, messages=messages))
+    for extra in recorded[len(repeated) :]:
+        yield f"call {extra.index + 1} of step {extra.step} ({extra.outcome.call.name}) was never made"
+    for missing in repeated[len(recorded) :]:
+        yield f"call {missing.index + 1} of step {missing.step} ({missing.outcome.call.name}) is missing"
+
+
+def _one_call(before: Called, now: Called, *, messages: bool) -> Iterator[str]:
+    if not _same_pose(before.pose, now.pose):
+        yield f"the pose was recorded as {_plain(before.pose)}, but is {_plain(now.pose)}"
+    if not same(before.scene_time_s, now.scene_time_s):
+        yield f"the scene time was recorded as {before.scene_time_s:g} s, but is {now.scene_time_s:g} s"
+    if (before.outcome.error, before.fault) != (now.outcome.error, now.fault):
+        yield f"the error was recorded as {before.outcome.error!r}, but is {now.outcome.error!r}"
+    omitted = _FILE_NAMES if messages else _FILE_NAMES | {"message"}
+    yield from _field_differences("result", _without(before.outcome.result, omitted), _without(now.outcome.result, omitted))
+    if len(before.replies) != len(now.replies):
+        yield f"{len(before.replies)} perception replies were recorded, but {len(now.replies)} were given"
+        return
+    for recorded, given in zip(before.replies, now.replies, strict=True):
+        yield from _field_differences("perception reply", _reply(recorded), _reply(given))
+
+
+def _reply(reply: PerceptionReply) -> dict[str, Any]:
+    content = _without(reply.model_dump(mode="json"), _MEASURED)
+    return {**content, "result": _without(content["result"], _MEASURED) if content["result"] is not None else None}
+
+
+def _field_differences(what: str, before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
+    for name in sorted({*before, *now}):
+        if not same(before.get(name), now.get(name)):
+            yield f"{name} in the {what} was recorded as {_short(before.get(name))}, but is {_short(now.get(name))}"
+
+
+def _end_differences(recorded: Ended, repeated: Ended) -> Iterator[str]:
+    if recorded.outcome not in REPEATABLE:
+        return
+    if (recorded.outcome, recorded.text) != (repeated.outcome, repeated.text):
+        yield f"the run was recorded to end {recorded.outcome}, but ends {repeated.outcome}, or with another answer"
+    if not _same_pose(recorded.pose, repeated.pose):
+        yield f"the pose at the end was recorded as {_plain(recorded.pose)}, but is {_plain(repeated.pose)}"
+    if not same(recorded.scene_time_s, repeated.scene_time_s):
+        yield f"the scene time at the end was recorded as {recorded.scene_time_s:g} s, but is {repeated.scene_time_s:g} s"
+
+
+def picture_pairs(recorded: Trace, repeated: Trace) -> Iterator[tuple[str, str, str]]:
+    """Yield the pictures of a run: where each was taken, its recorded name, and its name in the repeated run.
+
+    The names of concurrent calls can differ between the two, so pictures are matched by the call that took them.
+    """
+    if recorded.started.frame is not None:
+        yield "at the start", recorded.started.frame, repeated.started.frame or ""
+    for before, now in zip(recorded.decisions, repeated.decisions, strict=False):
+        if before.view is not None:
+            yield f"before step {before.step}", before.view, now.view or ""
+    for call, again in zip(recorded.calls, repeated.calls, strict=False):
+        where = f"in call {call.index + 1} of step {call.step}"
+        names = _picture_names(call)
+        others = _picture_names(again)
+        for number, name in enumerate(names):
+            yield where, name, others[number] if number < len(others) else ""
+
+
+def _picture_names(call: Called) -> list[str]:
+    result = call.outcome.result or {}
+    names = [*(result.get("frames") or ()), result.get("file"), call.frame]
+    return [name for name in names if isinstance(name, str) and name]
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether two JSON values are equal. Numbers may differ by ``NUMBER_TOLERANCE``."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(same(a, b) for a, b in zip(one, other, strict=True))
+    if isinstance(one, bool) or isinstance(other, bool):
+        return one is other
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return abs(one - other) <= NUMBER_TOLERANCE
+    return bool(one == other)
+
+
+def _same_pose(one: RecordedPose, other: RecordedPose) -> bool:
+    return same(one.model_dump(), other.model_dump())
+
+
+def _without(content: Mapping[str, Any] | None, names: frozenset[str]) -> dict[str, Any]:
+    return {name: value for name, value in (content or {}).items() if name not in names}
+
+
+def _plain(value: Any) -> Any:
+    return value.model_dump() if isinstance(value, RecordedPose) else value
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 120 else text[:117] + "..."

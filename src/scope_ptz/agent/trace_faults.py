@@ -1,0 +1,152 @@
+"""Find contradictions inside a trace: records that cannot all come from one run of the agent loop.
+
+These checks need no camera and no scene. ``agent.resimulation`` makes the calls again, and finds what a consistent forgery hides.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.agent.records import Called, Decided, Ended, RecordedPose, Started
+from scope_ptz.agent.timing import failed_usage
+from scope_ptz.agent.trace import Trace
+from scope_ptz.planner.base import CallTools, Finish, Usage
+
+POSE_TOLERANCE = 1e-6
+"""Tolerance for poses that must be equal, in degrees and as a zoom factor."""
+CLOCK_SLACK_S = 0.05
+"""Seconds by which sums of measured times may exceed the time of the whole, because the clock is read several times."""
+INTERRUPTED = frozenset({"budget", "cancelled", "camera_error"})
+"""Outcomes of runs that ended in the middle of a step, so that calls of the last step may be missing."""
+_FINISHED = frozenset({"answered", "clarification", "refused"})
+
+
+def record_faults(records: Sequence[Started | Decided | Called | Ended]) -> Iterator[str]:
+    """Yield faults in the order of records. A trace has one header, which comes first, and at most one end, which comes last."""
+    if sum(isinstance(record, Started) for record in records) > 1:
+        yield "the trace contains the headers of several runs"
+    if any(isinstance(record, Ended) for record in records[:-1]):
+        yield "the trace continues after its end"
+
+
+def trace_faults(trace: Trace) -> Iterator[str]:
+    """Yield the contradictions in a trace of a simulated camera, as sentences without a final full stop."""
+    yield from _step_faults(trace)
+    if trace.ended is not None:
+        yield from _end_faults(trace, trace.ended)
+        yield from _count_faults(trace, trace.ended)
+        yield from _time_faults(trace, trace.ended)
+
+
+def _step_faults(trace: Trace) -> Iterator[str]:
+    """Yield faults of decisions and their calls: every call belongs to a decision, and every decided call was carried out."""
+    steps = [decided.step for decided in trace.decisions]
+    if steps != list(range(1, len(steps) + 1)):
+        yield "the decisions are not numbered from 1 without gaps"
+        return
+    if any(isinstance(decided.decision, Finish) for decided in trace.decisions[:-1]):
+        yield "the planner decides again after it finished"
+    recorded: dict[int, list[Called]] = {}
+    for called in trace.calls:
+        recorded.setdefault(called.step, []).append(called)
+    if [(c.step, c.index) for c in trace.calls] != sorted((c.step, c.index) for c in trace.calls):
+        yield "the calls are not in order"
+    for decided in trace.decisions:
+        calls = recorded.pop(decided.step, [])
+        expected = decided.decision.calls if isinstance(decided.decision, CallTools) else ()
+        yield from _call_faults(decided.step, calls, expected, complete=_is_complete(trace, decided.step))
+    for step in sorted(recorded):
+        yield f"step {step} has calls, but the planner made no decision in it"
+
+
+def _call_faults(step: int, calls: Sequence[Called], expected: Sequence[object], *, complete: bool) -> Iterator[str]:
+    positions = [called.index for called in calls]
+    if len(set(positions)) < len(positions) or any(index >= len(expected) for index in positions):
+        yield f"step {step} has calls that the planner did not decide on"
+        return
+    for called in calls:
+        if called.outcome.call != expected[called.index]:
+            yield f"call {called.index + 1} of step {step} differs from the decision of the planner"
+        if (called.outcome.error is None) == (called.outcome.result is None):
+            yield f"call {called.index + 1} of step {step} must have either a result or an error"
+        elif called.outcome.error is None and called.fault is not None:
+            yield f"call {called.index + 1} of step {step} has a result although it failed"
+    if complete and len(calls) < len(expected):
+        yield f"step {step} lacks {len(expected) - len(calls)} of the calls that the planner decided on"
+
+
+def _is_complete(trace: Trace, step: int) -> bool:
+    """Return whether every call of a step must be recorded."""
+    return step < len(trace.decisions) or (trace.ended is not None and trace.ended.outcome not in INTERRUPTED)
+
+
+def _end_faults(trace: Trace, ended: Ended) -> Iterator[str]:
+    """Yield a fault if the end contradicts the last decision or the last pose."""
+    last = trace.decisions[-1].decision if trace.decisions else None
+    if isinstance(last, Finish):
+        if (ended.outcome, ended.text) != (last.kind, last.text):
+            yield "the outcome or the answer at the end differs from the last decision of the planner"
+    elif ended.outcome in _FINISHED:
+        yield f"the run ended with the outcome {ended.outcome}, but the planner never decided to finish"
+    fewest = len(trace.decisions)
+    if not fewest <= ended.steps <= fewest + (ended.outcome not in (*_FINISHED, "step_limit")):
+        yield f"the end states {ended.steps} steps, but the trace contains {fewest} decisions"
+    if ended.steps > trace.started.budgets.max_steps:
+        yield f"the run has {ended.steps} steps, but its limit is {trace.started.budgets.max_steps}"
+    if ended.outcome in _FINISHED and all(called.outcome.error is None for called in trace.calls):
+        before = trace.calls[-1].pose if trace.calls else trace.started.pose
+        if not same_pose(before, ended.pose):
+            yield "the pose at the end differs from the pose after the last call"
+    for called in trace.calls:
+        stated = (called.outcome.result or {}).get("pose")
+        if isinstance(stated, dict) and not _same_rounded(stated, called.pose):
+            yield f"the pose in the result of call {called.index + 1} of step {called.step} differs from the pose of the camera"
+
+
+def same_pose(one: RecordedPose, other: RecordedPose) -> bool:
+    """Return whether two poses are equal within ``POSE_TOLERANCE``."""
+    return all(abs(getattr(one, name) - getattr(other, name)) <= POSE_TOLERANCE for name in RecordedPose.model_fields)
+
+
+def _same_rounded(stated: dict[str, object], pose: RecordedPose) -> bool:
+    """Return whether a pose in a result, which is rounded to hundredths, is the pose of the camera."""
+    values = [(stated.get(name), getattr(pose, name)) for name in RecordedPose.model_fields]
+    return all(isinstance(a, int | float) and _apart(float(a), b) <= 0.011 for a, b in values)
+
+
+def _apart(one: float, other: float) -> float:
+    """Return the difference of two numbers, which may be angles that differ by a full turn."""
+    return min(abs(one - other), abs(abs(one - other) - 360.0))
+
+
+def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
+    faults = Counter(called.fault for called in trace.calls)
+    for name, fault in (("bad_calls", "bad_call"), ("perception_failures", "perception")):
+        if getattr(ended, name) != faults[fault]:
+            yield f"the end states {getattr(ended, name)} {name.replace('_', ' ')}, but the trace contains {faults[fault]}"
+    used = Usage()
+    for decided in trace.decisions:
+        used += decided.decision.usage
+        if decided.decision.served is not None:
+            used += failed_usage(decided.decision.served.attempts)
+    stated = ended.usage
+    missing = used.input_tokens > stated.input_tokens or used.output_tokens > stated.output_tokens
+    if missing or (
+        ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (stated.input_tokens, stated.output_tokens)
+    ):
+        yield "the tokens at the end differ from those of the decisions"
+
+
+def _time_faults(trace: Trace, ended: Ended) -> Iterator[str]:
+    timings, count = ended.timings, len(trace.decisions) + len(trace.calls)
+    slack_s = CLOCK_SLACK_S * (1 + count)
+    planner_s = sum(decided.planner_s for decided in trace.decisions)
+    if planner_s > timings.planner_s + slack_s:
+        yield "the planner took longer in its steps than in the whole run"
+    longest_s = max(timings.planner_s, timings.perception_s, timings.camera_s, timings.render_s)
+    calls_s = max((called.timings.total_s for called in trace.calls), default=0.0)
+    if max(longest_s, calls_s) > timings.total_s + slack_s:
+        yield "a part of the run took longer than the whole run"
+    if any(b.scene_time_s < a.scene_time_s - POSE_TOLERANCE for a, b in zip(trace.calls, trace.calls[1:], strict=False)):
+        yield "scene time runs backwards between calls"

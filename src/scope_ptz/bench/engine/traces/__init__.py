@@ -1,0 +1,5 @@
+"""Scores and verification from the traces of a log.
+
+``traced_trials`` computes the trial of a sample from its trace, and ``log_completeness`` checks the samples of a log as a whole.
+``log_runs`` reads the runs of a log, ``verification`` makes their calls again, and ``frame_comparison`` compares the frames.
+"""

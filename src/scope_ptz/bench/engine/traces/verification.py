@@ -1,0 +1,258 @@
+"""Verify runs: their calls are made again with the simulator, and poses, ground-truth replies and frames must come out as recorded.
+
+Verification shows that a trace is possible. It cannot show that the named planner made its decisions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import anyio
+from anyio import to_thread
+
+from scope_ptz.agent.resimulation import Resimulation, picture_pairs, resimulate
+from scope_ptz.agent.store import NoImages
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.engine.context import TrueCount
+from scope_ptz.bench.engine.entries import Entry, OpenScene
+from scope_ptz.bench.engine.recording.picture_store import PictureStore, jpeg_of
+from scope_ptz.bench.engine.stored_run import StoredRun, sample_name, trace_of
+from scope_ptz.bench.engine.traces.frame_comparison import compare_frames
+from scope_ptz.bench.program_runner import BlankCamera
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import PackError, ScopeError, TraceError, UnknownNameError
+from scope_ptz.perception.base import Perception
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.views import RENDERING_VERSION
+
+CONCURRENCY = 2
+"""Number of runs that are repeated at a time. Each renders frames in worker threads."""
+MAX_NAMED = 3
+"""Maximum number of differences that are named for each run."""
+Status = Literal["verified", "differs", "not-verifiable"]
+PictureOf = Callable[[str], bytes | None]
+"""Returns a stored picture as JPEG by its name in the trace; None if it was not stored."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunToVerify:
+    """A run with its stored data.
+
+    Attributes:
+        entry: The entry that was run.
+        epoch: Number of the run of this entry, from 1.
+        stored_run: The stored data.
+        picture: Returns the stored pictures; None if the source of the run contains no pictures.
+    """
+
+    entry: Entry
+    epoch: int
+    stored_run: StoredRun
+    picture: PictureOf | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the run's sample."""
+        return sample_name(self.entry.facts.id, self.epoch)
+
+
+@dataclass(frozen=True, slots=True)
+class RunVerification:
+    """The result of verifying a run.
+
+    Attributes:
+        run: Name of the run's sample.
+        status: Whether the run came out as recorded, differs, or cannot be verified.
+        differences: What differs, or why the run cannot be verified.
+        frames: Number of frames that were compared.
+        replies: Whether perception replies were computed again. Those of models cannot be.
+    """
+
+    run: str
+    status: Status
+    differences: tuple[str, ...] = ()
+    frames: int = 0
+    replies: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class VerificationContext:
+    """What verification needs from its caller.
+
+    Attributes:
+        open_scene: Opens a scene, or a variation of one, by name.
+        make_perception: Creates the backend with a name and a seed whose replies can be computed again; None for other backends.
+        true_count: Returns the true counts for perception calls.
+    """
+
+    open_scene: OpenScene
+    make_perception: Callable[[str, int | None], Perception | None]
+    true_count: TrueCount
+
+
+@dataclass(frozen=True, slots=True)
+class VerificationResult:
+    """The results of verifying the runs of a log or a submission."""
+
+    runs: tuple[RunVerification, ...] = field(default=())
+
+    def of(self, status: Status) -> list[RunVerification]:
+        """Return the results with a status."""
+        return [run for run in self.runs if run.status == status]
+
+    @property
+    def summary(self) -> Iterator[str]:
+        """The result as lines of text."""
+        frames = sum(run.frames for run in self.runs)
+        yield (
+            f"{len(self.of('verified'))} of {len(self.runs)} runs verified, {len(self.of('differs'))} differ, "
+            f"{len(self.of('not-verifiable'))} not verifiable; {frames} frames compared"
+        )
+        only_poses = sum(not run.replies for run in self.of("verified"))
+        if only_poses:
+            yield f"{only_poses} verified runs used model perception, so their poses and frames were verified, not the replies"
+        reasons: dict[str, int] = {}
+        for run in self.of("not-verifiable"):
+            for reason in run.differences[:1]:
+                reasons[reason] = reasons.get(reason, 0) + 1
+        yield from (f"not verifiable: {reason} ({number} runs)" for reason, number in reasons.items())
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
+        return {
+            "runs": len(self.runs),
+            **{status.replace("-", "_"): len(self.of(status)) for status in ("verified", "differs", "not-verifiable")},
+            "frames": sum(run.frames for run in self.runs),
+            "each": [
+                {"run": r.run, "status": r.status, "differences": list(r.differences), "frames": r.frames, "replies": r.replies}
+                for r in self.runs
+            ],
+        }
+
+
+async def verify_runs(
+    runs: Iterator[RunToVerify], context: VerificationContext, progress: Callable[[int], None] = lambda _: None
+) -> VerificationResult:
+    """Verify runs, a few at a time.
+
+    Args:
+        runs: The runs. They are read one after the other, because their pictures take much memory.
+        context: Scenes and perception.
+        progress: Called after each run with the number of verified runs.
+    """
+    results: dict[int, RunVerification] = {}
+    slots = anyio.Semaphore(CONCURRENCY)
+
+    async def work(number: int, run: RunToVerify) -> None:
+        try:
+            results[number] = await verify_run(run, context)
+            progress(len(results))
+        finally:
+            slots.release()
+
+    async with anyio.create_task_group() as group:
+        for number, run in enumerate(runs):
+            await slots.acquire()
+            group.start_soon(work, number, run)
+    return VerificationResult(tuple(results[number] for number in sorted(results)))
+
+
+async def verify_run(run: RunToVerify, context: VerificationContext) -> RunVerification:
+    """Make the calls of a run again and compare the result with its trace and pictures."""
+    try:
+        trace = trace_of(run.stored_run.trace, Path(run.name))
+    except TraceError as error:
+        return RunVerification(run.name, "differs", (str(error).rstrip("."),))
+    if trace is None:
+        return RunVerification(run.name, "not-verifiable", ("there is no trace",))
+    perception, reason = _perception(trace, context)
+    if reason:
+        return RunVerification(run.name, "not-verifiable", (reason,))
+    try:
+        return await _verify(run, trace, perception, context)
+    except (PackError, UnknownNameError) as error:
+        return RunVerification(run.name, "not-verifiable", (f"the scene cannot be opened: {str(error).rstrip('.')}",))
+    except (ScopeError, ValueError, TypeError, KeyError, AttributeError) as error:
+        detail = str(error).rstrip(".") or type(error).__name__
+        return RunVerification(run.name, "differs", (f"the calls cannot be repeated: {detail}",))
+
+
+def _perception(trace: Trace, context: VerificationContext) -> tuple[Perception | None, str]:
+    """Return the backend that repeats the replies of a trace (None for a model), and why the trace cannot be verified, if so."""
+    started = trace.started
+    if not started.simulated:
+        return None, "the run used a camera that is not simulated"
+    if started.rendering != RENDERING_VERSION:
+        made = "an older version" if started.rendering is None else f"version {started.rendering}"
+        return None, f"the run was rendered by {made} of the simulator, and this is version {RENDERING_VERSION}"
+    backend = context.make_perception(started.perception, started.labels.seed)
+    if backend is not None and started.perception_version != backend.version:
+        made = "an older version" if started.perception_version is None else f"version {started.perception_version}"
+        return None, f"the run used {made} of ground-truth perception, and this is version {backend.version}"
+    return backend, ""
+
+
+async def _verify(run: RunToVerify, trace: Trace, perception: Perception | None, context: VerificationContext) -> RunVerification:
+    entry, stored_run, started = run.entry, run.stored_run, trace.started
+    scene = context.open_scene(entry.world)
+    clock = SceneClock(entry.time_s)
+    with_frames = started.frame is not None and run.picture is not None
+    make_camera = SimulatedCamera if with_frames else BlankCamera
+    camera = make_camera(scene, clock=clock, width=started.frame_width, height=started.frame_height)
+    with clock.hold():
+        await camera.go_to_preset(entry.facts.preset)
+    store = PictureStore() if with_frames else None
+    repeated = await resimulate(trace, camera, perception, store or NoImages(), snapshots=started.frame is not None)
+    differences = [*_place_differences(stored_run, scene), *repeated.differences]
+    frames = 0
+    if store is not None and run.picture is not None:
+        await store.encode_pending()
+        found, frames = await _frame_differences(run.picture, trace, repeated, store.urls)
+        differences += found
+    differences += [found async for found in _count_differences(entry, stored_run, trace, context.true_count)]
+    status: Status = "differs" if differences else "verified"
+    return RunVerification(run.name, status, tuple(differences[:MAX_NAMED]), frames, replies=perception is not None)
+
+
+def _place_differences(stored_run: StoredRun, scene: Any) -> Iterator[str]:
+    presets = {preset.name: preset.viewpoint for preset in scene.file.presets}
+    if (dict(stored_run.presets), stored_run.home) != (presets, presets[scene.file.home_preset]):
+        yield "the stored viewpoints of the presets differ from those of the scene"
+
+
+async def _frame_differences(
+    picture: PictureOf, trace: Trace, repeated: Resimulation, urls: Mapping[str, str]
+) -> tuple[list[str], int]:
+    """Return the differences of the frames, and the number of frames that were compared."""
+    differences, compared = list[str](), set[str]()
+    for where, name, again in picture_pairs(trace, repeated.repeated):
+        if name in compared:
+            continue
+        compared.add(name)
+        stored = picture(name)
+        if stored is None:
+            differences.append(f"the picture {name} {where} is missing")
+        elif again not in urls:
+            differences.append(f"the picture {name} {where} was never taken")
+        else:
+            difference = await to_thread.run_sync(compare_frames, stored, jpeg_of(urls[again]))
+            if difference is None:
+                differences.append(f"the picture {name} {where} is damaged or has another size")
+            elif not difference.accepted:
+                differences.append(f"the picture {name} {where} does not show the view: {difference}")
+    return differences, len(compared)
+
+
+async def _count_differences(entry: Entry, stored_run: StoredRun, trace: Trace, true_count: TrueCount) -> AsyncIterator[str]:
+    """Yield differences of the stored true counts, by which the error mode of a failed run is decided."""
+    if not stored_run.truths:
+        return
+    for number, call in enumerate(stored_run.episode(trace).calls):
+        for observation in call.observations:
+            if observation.how == "count":
+                stored, computed = stored_run.truths.get(str(number)), await true_count(entry.world, observation)
+                if stored != computed:
+                    yield f"the true count of call {number + 1} was recorded as {stored}, but is {computed}"

@@ -1,0 +1,53 @@
+"""Describe the contradictions between a log and its traces, for the terminal and for the top of a report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from scope_ptz.bench.scoring.trials import Evaluation, LogFault
+from scope_ptz.version import __version__
+
+MAX_NAMED = 5
+"""Maximum number of samples that one line names."""
+_MEANINGS: dict[LogFault, str] = {
+    "tasks-changed": "The tasks of this log were changed after it was written. None of its scores is used",
+    "card-differs": "The run card does not name the models of the traces. The scores are not those of the named pair",
+    "task-differs": "The log contains other versions of published tasks. The published tasks are used",
+    "task-unknown": "The log contains tasks that its split does not have. They do not count as correct",
+    "score-differs": "The scores in the log are not used, because they differ from the checks executed on its traces",
+    "trace-missing": "Runs have no complete trace. They do not count as correct",
+    "trace-damaged": "Traces are damaged or contradict themselves. Their runs do not count as correct",
+    "sample-missing": "The finished log lacks runs. They do not count as correct",
+    "sample-repeated": "Runs occur more than once. They do not count as correct",
+}
+"""What each kind of finding means for the scores, the most serious first."""
+
+
+def finding_lines(evaluation: Evaluation) -> list[str]:
+    """Return a line for each kind of contradiction that was found in a log, with the names of the first samples."""
+    lines = []
+    name = Path(evaluation.log).name or evaluation.card.pair
+    for kind, meaning in _MEANINGS.items():
+        found = [finding for finding in evaluation.findings if finding.kind == kind]
+        if not found:
+            continue
+        named = "; ".join(f"{one.sample}: {one.detail}" if one.sample else one.detail for one in found[:MAX_NAMED])
+        more = f"; and {len(found) - MAX_NAMED} more" if len(found) > MAX_NAMED else ""
+        version = ""
+        if kind == "score-differs" and evaluation.card.package_version != __version__:
+            version = f" (the log is from version {evaluation.card.package_version}, the checks are those of {__version__})"
+        lines.append(f"{name}: {meaning}{version}: {len(found)} of {max(len(evaluation.trials), len(found))}: {named}{more}.")
+    return lines
+
+
+def stored_verdict_lines(evaluations: Sequence[Evaluation]) -> list[str]:
+    """Return a line that states how many verdicts are stored verdicts of judges, which cannot be recomputed; empty if none."""
+    trials = [trial for evaluation in evaluations for trial in evaluation.trials]
+    judged = sum(trial.scored_by == "judge" and trial.headline in ("correct", "incorrect") for trial in trials)
+    if not judged:
+        return []
+    return [
+        f"{judged} of {len(trials)} verdicts are stored verdicts of a judge. They cannot be recomputed from traces, so they are as "
+        "the logs state them."
+    ]

@@ -1,0 +1,79 @@
+"""``scope bench verify``: make the calls of the runs in logs again, and compare them with what was recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench.reading import print_findings, progress_bar, read_log
+from scope_ptz.cli.exit import FAILED, print_error, put, put_json
+from scope_ptz.cli.options import JsonOption
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.engine.traces.verification import RunToVerify, VerificationResult
+
+MAX_RUNS_LISTED = 50
+
+
+def verify(
+    logs: Annotated[list[Path], typer.Argument(help="Logs of evaluations.")],
+    limit: Annotated[int | None, typer.Option("--limit", min=1, help="Verify at most N runs of each log.")] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Verify logs: make the calls of each run again with the simulator, without models.
+
+    Poses, ground-truth replies and results must come out exactly as recorded, and frames within a tolerance. The exit code is 1 if
+    a run differs. Runs of another version of the simulator are reported as not verifiable.
+    """
+    from scope_ptz.factory.evaluate import require_engine
+
+    require_engine()
+    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
+
+    results: dict[str, VerificationResult] = {}
+    for log in logs:
+        evaluation = read_log(log)
+        print_findings(evaluation)
+        runs = islice(runs_of_log(log), limit)
+        total = min(len(evaluation.trials), limit or len(evaluation.trials))
+        results[str(log)] = verify_and_show(runs, total, log.name, quiet=as_json)
+    if as_json:
+        put_json({log: result.as_dict() for log, result in results.items()}, indent=1)
+    return FAILED if any(result.of("differs") for result in results.values()) else 0
+
+
+def verify_and_show(runs: Iterable[RunToVerify], total: int, name: str, *, quiet: bool) -> VerificationResult:
+    """Verify runs with a progress bar, and print the result.
+
+    Args:
+        runs: The runs.
+        total: Number of the runs.
+        name: Name of the file for the output.
+        quiet: Whether to print nothing, because the caller prints JSON.
+    """
+    import anyio
+
+    from scope_ptz.bench.engine.traces.verification import verify_runs
+    from scope_ptz.factory.verification import verification_context
+
+    context = verification_context()
+
+    with progress_bar(f"Verifying {name}") as progress:
+
+        async def work() -> VerificationResult:
+            return await verify_runs(iter(runs), context, lambda done: progress(done, total))
+
+        result = anyio.run(work)
+    if not quiet:
+        differing = result.of("differs")
+        for run in differing[:MAX_RUNS_LISTED]:
+            print_error(f"{run.run}: {'; '.join(run.differences)}")
+        if len(differing) > MAX_RUNS_LISTED:
+            print_error(f"and {len(differing) - MAX_RUNS_LISTED} more runs differ")
+        for line in result.summary:
+            put(f"{name}: {line}")
+    return result

@@ -1,0 +1,335 @@
+"""Scores come from traces alone: an edited log gains nothing, and what was edited is named."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.stored_run import STORE
+from scope_ptz.bench.reports.log_findings import finding_lines
+from scope_ptz.bench.scoring.trials import Evaluation
+from tests.bench.engine.editing import Change, Json, edited, files_of, records_of, set_trace, trace_change, write_log
+from tests.cli.conftest import Scope
+
+PUBLISHED = Path(__file__).parents[2] / "frozen" / "v0_1_0" / "logs" / "truth.eval"
+"""A log of published tasks, with successes and failures."""
+
+
+@pytest.fixture(scope="module")
+def honest() -> Evaluation:
+    found = read_evaluation(PUBLISHED)
+    assert found.findings == ()
+    assert failures(found)
+    return found
+
+
+def failures(evaluation: Evaluation) -> list[str]:
+    return [trial.sample for trial in evaluation.trials if trial.headline == "incorrect"]
+
+
+def correct(evaluation: Evaluation) -> set[str]:
+    return {trial.sample for trial in evaluation.trials if trial.headline == "correct"}
+
+
+def stored_trials(sample: Json) -> list[Json]:
+    return [score["metadata"]["trial"] for score in sample["scores"].values() if "trial" in (score.get("metadata") or {})]
+
+
+def claim_value(sample: Json) -> None:
+    for score in sample["scores"].values():
+        score["value"] = "C"
+
+
+def claim_everything(sample: Json) -> None:
+    """A score that is consistent in itself: value, headline, error mode and checks."""
+    claim_value(sample)
+    for score in sample["scores"].values():
+        score["metadata"] |= {"headline": "correct", "error_mode": None}
+    for trial in stored_trials(sample):
+        trial.update(headline="correct", reason="every check passed")
+        trial.pop("error_mode", None)
+        for check in trial["checks"]:
+            check["passed"] = True
+
+
+def claim_another_error_mode(sample: Json) -> None:
+    for trial in stored_trials(sample):
+        trial["error_mode"] = "vlm_query" if trial["error_mode"] != "vlm_query" else "scope"
+
+
+def claim_speed(sample: Json) -> None:
+    for trial in stored_trials(sample):
+        trial["timings"] = {"total_s": 0.001}
+
+
+def claim_fewer_calls(sample: Json) -> None:
+    for trial in stored_trials(sample):
+        trial |= {"tool_calls": {"take_image": 7}, "steps": 55}
+
+
+def claim_tokens(sample: Json) -> None:
+    for trial in stored_trials(sample):
+        trial["input_tokens"] = 7
+
+
+def claim_answer(sample: Json) -> None:
+    for trial in stored_trials(sample):
+        trial |= {"answer": "There are 4.", "outcome": "answered"}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [claim_value, claim_everything, claim_another_error_mode, claim_speed, claim_fewer_calls, claim_tokens, claim_answer],
+)
+def test_edited_scores_are_named_and_not_used(honest: Evaluation, tmp_path: Path, change: Change) -> None:
+    attacked = failures(honest)
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
+    assert found.trials == honest.trials
+    assert {finding.sample for finding in found.findings} == set(attacked)
+    assert {finding.kind for finding in found.findings} == {"score-differs"}
+
+
+def accept_every_answer(sample: Json) -> None:
+    """The expected value becomes what the agent answered, and nothing else is checked."""
+    sample["metadata"]["task"]["expected"] = {"kind": "action_only"}
+    sample["metadata"]["task"]["evidence"] = []
+    sample["metadata"]["task"]["behaviour"] = {"outcomes": ["answered", "clarification", "refused", "step_limit"]}
+    claim_everything(sample)
+
+
+def other_category(sample: Json) -> None:
+    sample["metadata"]["category"] = "ocr" if sample["metadata"]["category"] != "ocr" else "counting"
+
+
+def no_task(sample: Json) -> None:
+    """Without a task with checks, only a judge could score the run; the verdict of an invented judge is added."""
+    sample["metadata"]["task"] = None
+    verdict = {"judge": "friend", "prompt": "p", "verdict": "correct"}
+    sample["scores"]["judge"] = {"value": "C", "metadata": {"judgement": verdict}}
+
+
+@pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task])
+def test_the_published_task_decides(honest: Evaluation, tmp_path: Path, change: Change) -> None:
+    attacked = failures(honest)
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
+    assert [(t.task, t.headline, t.error_mode, t.checks) for t in found.trials] == [
+        (t.task, t.headline, t.error_mode, t.checks) for t in honest.trials
+    ]
+    assert {finding.sample for finding in found.findings if finding.kind == "task-differs"} == set(attacked)
+
+
+def test_presets_of_the_log_do_not_decide_where_the_camera_stood(honest: Evaluation, tmp_path: Path) -> None:
+    def everywhere_the_same(sample: Json) -> None:
+        places = sample["store"][STORE]["presets"]
+        sample["store"][STORE]["presets"] = dict.fromkeys(places, "elsewhere")
+
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "a.eval", everywhere_the_same, [t.sample for t in honest.trials]))
+    assert found.trials == honest.trials
+
+
+def end(records: list[Json]) -> Json:
+    assert records[-1]["event"] == "end"
+    return records[-1]
+
+
+def other_answer(records: list[Json]) -> None:
+    end(records)["text"] = "There are 4 of them."
+
+
+def other_outcome(records: list[Json]) -> None:
+    end(records)["outcome"] = "clarification" if records[-1]["outcome"] == "answered" else "answered"
+
+
+def other_final_pose(records: list[Json]) -> None:
+    end(records)["pose"]["pan_deg"] += 5.0
+
+
+def without_calls(records: list[Json]) -> list[Json]:
+    return [record for record in records if record["event"] != "call"]
+
+
+def fewer_steps(records: list[Json]) -> None:
+    end(records)["steps"] = 0
+
+
+def invented_call(records: list[Json]) -> list[Json]:
+    call = next(record for record in records if record["event"] == "call")
+    return [*records[:-1], {**call, "step": 40}, records[-1]]
+
+
+def other_arguments(records: list[Json]) -> None:
+    call = next(record for record in records if record["event"] == "call")
+    call["outcome"]["call"]["arguments"] = {"description": "something else"}
+
+
+def larger_frames(records: list[Json]) -> None:
+    records[0] |= {"frame_width": 12800, "frame_height": 7200}
+
+
+def other_instruction(records: list[Json]) -> None:
+    records[0]["instruction"] = "Say hello."
+
+
+def other_viewpoint(records: list[Json]) -> None:
+    records[0]["viewpoint"] = "elsewhere"
+
+
+def no_end(records: list[Json]) -> list[Json]:
+    return records[:-1]
+
+
+def two_ends(records: list[Json]) -> list[Json]:
+    return [*records, records[-1]]
+
+
+def no_time(records: list[Json]) -> None:
+    end(records)["timings"] = {"total_s": -100.0}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        other_answer, other_outcome, other_final_pose, without_calls, fewer_steps, invented_call, other_arguments, larger_frames,
+        other_instruction, other_viewpoint, no_end, two_ends, no_time,
+    ],
+)  # fmt: skip
+def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evaluation, tmp_path: Path, change: Any) -> None:
+    names = [trial.sample for trial in honest.trials if trial.tool_calls]
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", trace_change(change), names))
+    assert {trial.headline for trial in found.trials if trial.sample in names} == {"unscored"}
+    assert {finding.sample for finding in found.findings} == set(names)
+    assert {finding.kind for finding in found.findings} <= {"trace-damaged", "trace-missing"}
+
+
+def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
+    names = [trial.sample for trial in honest.trials]
+    for number, text in enumerate(("", "nothing", '{"event": "start"}\n', "[]\n" * 5)):
+        path = edited(PUBLISHED, tmp_path / f"{number}.eval", lambda sample, text=text: set_trace(sample, text), names)
+        found = read_evaluation(path)
+        assert not correct(found)
+        assert len(found.trials) == len(honest.trials)
+        assert {trial.headline for trial in found.trials} == {"unscored"}
+        assert {finding.sample for finding in found.findings} == set(names)
+
+    def without_store(sample: Json) -> None:
+        sample["store"], sample["events"] = {}, []
+
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "store.eval", without_store, names))
+    assert {trial.headline for trial in found.trials} == {"unscored"}
+
+
+def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Evaluation, tmp_path: Path) -> None:
+    def unusual(sample: Json) -> None:
+        records = records_of(sample)
+        for record in records:
+            if record["event"] == "end":
+                record["text"] = "One\u2028two\x85three."
+            elif record["event"] == "decision" and record["decision"]["kind"] == records[-1]["outcome"]:
+                record["decision"]["text"] = "One\u2028two\x85three."
+        set_trace(sample, "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records))
+
+    names = [trial.sample for trial in honest.trials]
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "unusual.eval", unusual, names))
+    assert {trial.answer for trial in found.trials} == {"One\u2028two\x85three."}
+    assert "unscored" not in {trial.headline for trial in found.trials}
+
+
+def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path) -> None:
+    gone = set(failures(honest))
+    files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
+    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert correct(found) == correct(honest)
+    assert len(found.trials) == len(honest.trials)
+    assert {finding.sample for finding in found.findings if finding.kind == "sample-missing"} == gone
+
+
+def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path) -> None:
+    gone = set(failures(honest))
+    files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
+    dataset = files["header.json"]["eval"]["dataset"]
+    dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
+    dataset["samples"] = len(dataset["sample_ids"])
+    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert not correct(found)
+    assert found.findings[0].kind == "tasks-changed"
+
+
+def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
+    """A success replaces failures, under their names; or it is added once more, under its own."""
+    files = files_of(PUBLISHED)
+    samples = {f"{c['id']}#{c['epoch']}": (n, c) for n, c in files.items() if n.startswith("samples/")}
+    success = samples[sorted(correct(honest))[0]][1]
+    failed_name, failed = samples[failures(honest)[0]]
+    replaced = {**files, failed_name: {**success, "id": failed["id"]}}
+    found = read_evaluation(write_log(replaced, tmp_path / "replaced.eval"))
+    assert correct(found) < correct(honest) or correct(found) == correct(honest) - {sorted(correct(honest))[0]}
+    repeated = {**files, "samples/once-more.json": success}
+    found = read_evaluation(write_log(repeated, tmp_path / "repeated.eval"))
+    assert Counter(t.headline for t in found.trials)["correct"] == len(correct(honest)) - 1
+    assert {finding.kind for finding in found.findings} == {"sample-repeated"}
+    # The trace of the success under the name and with the task of the failure.
+    stolen = json.loads(json.dumps(failed))
+    set_trace(stolen, records_of(success))
+    found = read_evaluation(write_log({**files, failed_name: stolen}, tmp_path / "stolen.eval"))
+    assert correct(found) <= correct(honest)
+
+
+def test_a_card_with_other_models_is_named(tmp_path: Path) -> None:
+    files = files_of(PUBLISHED)
+    files["header.json"]["eval"]["metadata"]["card"]["perception"] |= {"name": "moondream3", "deterministic": False}
+    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert [finding.kind for finding in found.findings] == ["card-differs"]
+    assert "moondream3" in finding_lines(found)[0] and "ground-truth" in finding_lines(found)[0]
+
+
+def test_a_task_that_the_split_does_not_have_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
+    name = sorted(correct(honest))[0]
+
+    def rename(sample: Json) -> None:
+        for part in (sample, sample["metadata"], sample["metadata"]["task"]):
+            part["id"] = "scope1-invented-counting-001"
+
+    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", rename, [name]))
+    assert not correct(found) - correct(honest)
+    assert {"task-unknown", "sample-missing"} <= {finding.kind for finding in found.findings}
+
+
+def test_tasks_that_are_not_published_must_be_those_of_the_card(evaluated: Path, tmp_path: Path) -> None:
+    """The tasks of this log are private, so only the digest on the run card can tell that they were changed."""
+    before = read_evaluation(evaluated)
+    assert before.findings == () and len(correct(before)) == 3
+
+    def accept(sample: Json) -> None:
+        sample["metadata"]["task"]["expected"]["value"] = 3
+
+    found = read_evaluation(edited(evaluated, tmp_path / "attacked.eval", accept, failures(before)))
+    assert not correct(found)
+    assert "tasks-changed" in {finding.kind for finding in found.findings}
+
+
+def test_the_report_and_the_terminal_name_an_edited_log(scope: Scope, evaluated: Path, tmp_path: Path) -> None:
+    names = failures(read_evaluation(evaluated))
+    log = edited(evaluated, tmp_path / "attacked.eval", claim_everything, names)
+    out = tmp_path / "report"
+    done = scope("bench", "report", str(log), "--out", str(out), "--no-pages")
+    assert done.code == 0, done.err
+    for text in (done.out, (out / "report.md").read_text("utf-8"), (out / "index.html").read_text("utf-8")):
+        assert "attacked.eval" in text and "differ from the checks executed on its traces" in text
+        assert names[0] in text.replace("\\", "")
+    assert (out / "report.md").read_text("utf-8").index("attacked.eval") < (out / "report.md").read_text("utf-8").index("## ")
+    rows = (out / "tables" / "failed_tasks.csv").read_text("utf-8")
+    assert names[0].partition("#")[0] in rows
+    rescored = scope("bench", "rescore", str(log), "--checks")
+    assert rescored.code == 0 and names[0] in rescored.err
+    again = read_evaluation(log)
+    assert again.findings == () and failures(again) == names
+
+
+def test_an_unedited_log_has_no_findings(scope: Scope, evaluated: Path) -> None:
+    done = scope("bench", "rescore", str(evaluated), "--checks")
+    assert "attacked" not in done.err and "not used" not in done.err
