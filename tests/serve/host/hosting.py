@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -55,6 +56,11 @@ class Agent:
         data: dict[str, Any] = response.json()
         return data
 
+    async def until(self, phase: str) -> None:
+        """Wait until the evaluation has a phase."""
+        while (await self.progress())["phase"] != phase:
+            await asyncio.sleep(0.05)
+
     async def progress(self) -> dict[str, Any]:
         """Return the progress of the evaluation."""
         data: dict[str, Any] = (await self.http.get(PROGRESS_PATH)).json()
@@ -84,9 +90,9 @@ class Hosted:
     @asynccontextmanager
     async def mcp(self, name: str = "anna") -> AsyncIterator[Client]:
         """Connect a participant over MCP."""
-        async with self._http({"Authorization": f"Bearer {self.tokens[name]}"}) as http:
-            async with Client(streamable_http_client(self.root + MCP_PATH, http_client=http)) as client:
-                yield client
+        headers = {"Authorization": f"Bearer {self.tokens[name]}"}
+        async with self._http(headers) as http, Client(streamable_http_client(self.root + MCP_PATH, http_client=http)) as client:
+            yield client
 
     def _http(self, headers: dict[str, str]) -> httpx2.AsyncClient:
         async def record(response: httpx2.Response) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -60,10 +61,8 @@ async def test_wrong_arguments_can_be_corrected(tmp_path: Path, name: str, argum
     fake = ScriptedWorker(1)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.mcp() as client:
         await client.call_tool("begin_task", {})
-        try:
+        with suppress(MCPError):  # the library checks the schema
             assert (await client.call_tool(name, arguments)).is_error
-        except MCPError:
-            pass  # the library checks the schema
         assert not (await client.call_tool("answer", {"text": "7"})).is_error
     assert fake.log["anna-0"] == ["hello", "reply"]
 

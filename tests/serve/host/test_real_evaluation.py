@@ -131,8 +131,7 @@ async def test_an_agent_that_gives_up_fails_and_counts(tmp_path: Path, settings:
     async with hosting(tmp_path / "host", run_worker, short) as hosted, hosted.agent() as agent:
         await agent.say(HELLO)  # and then nothing
         assert (await agent.say(HELLO))["type"] in ("task", "end")
-        while not (await agent.progress())["phase"] == "ready":
-            pass
+        await agent.until("ready")
         await agent.say(HELLO)
         assert (await agent.post(b"garbage")).json()["type"] == "error"
         await agent.say(HELLO)

@@ -60,7 +60,8 @@ async def test_messages_after_the_answer_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "garbage",
     [b"", b"\x00\xff", b"[]", b'{"type": "reply"}', b'{"type": "answers"}', b'{"type": "calls", "calls": []}', b"[" * 9000,
-     b'{"type": "reply", "text": "7", "headline": "correct"}', b'{"type": "calls", "calls": [{"id": "1", "name": "go_home", "arguments": {"n": NaN}}]}'],
+     b'{"type": "reply", "text": "7", "headline": "correct"}',
+     b'{"type": "calls", "calls": [{"id": "1", "name": "go_home", "arguments": {"n": NaN}}]}'],
 )  # fmt: skip
 async def test_garbage_ends_the_attempt_and_the_host_goes_on(tmp_path: Path, garbage: bytes) -> None:
     fake = ScriptedWorker(2)
@@ -84,8 +85,7 @@ async def test_an_agent_that_never_answers_fails_the_task_and_gets_the_next_one(
     fake = ScriptedWorker(2, step_s=0.2)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
         await agent.say(HELLO)
-        while (await agent.progress())["phase"] != "ready":
-            await asyncio.sleep(0.05)
+        await agent.until("ready")
         late = await agent.post(reply("too late"))
         assert late.status_code == 409
         assert (await agent.say(HELLO))["instruction"] == "instruction 1"
@@ -151,12 +151,16 @@ async def test_a_worker_that_crashes_is_started_again_and_loses_nothing(tmp_path
 
 async def test_a_worker_that_keeps_crashing_stops_only_its_participant(tmp_path: Path) -> None:
     fake = ScriptedWorker(1, crash_in=lambda place: place.startswith("anna-0/2"))
-    async with hosting(tmp_path / "host", fake.worker, SETTINGS, ("anna", "ben")) as hosted:
-        async with hosted.agent("anna") as anna, hosted.agent("ben") as ben:
-            await anna.say(HELLO)
-            assert (await anna.post(call("go_home"))).status_code == 503
-            assert (await anna.post(HELLO)).status_code == 503
-            assert await attempt(ben) == "instruction 0"
+    both = ("anna", "ben")
+    async with (
+        hosting(tmp_path / "host", fake.worker, SETTINGS, both) as hosted,
+        hosted.agent("anna") as anna,
+        hosted.agent("ben") as ben,
+    ):
+        await anna.say(HELLO)
+        assert (await anna.post(call("go_home"))).status_code == 503
+        assert (await anna.post(HELLO)).status_code == 503
+        assert await attempt(ben) == "instruction 0"
 
 
 async def test_closing_counts_tasks_that_were_not_attempted(tmp_path: Path) -> None:
@@ -175,8 +179,7 @@ async def test_a_run_that_ended_is_not_offered_again(tmp_path: Path) -> None:
     """If the engine lost the run of an agent that took too long, it fails again, and the agent gets no second attempt."""
     async with hosting(tmp_path / "host", ScriptedWorker(2, step_s=0.2).worker, SETTINGS) as hosted, hosted.agent() as agent:
         await agent.say(HELLO)
-        while (await agent.progress())["phase"] != "ready":
-            await asyncio.sleep(0.05)
+        await agent.until("ready")
     fake = ScriptedWorker(2)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
         assert (await agent.say(HELLO))["instruction"] == "instruction 1"

@@ -175,14 +175,11 @@ def read_entries(
 
 def _read_entry(file: Path, by_digest: Mapping[str, TaskSet], trusted: Mapping[bytes, str]) -> LeaderboardEntry:
     """Return the entry of a submission. Raises ``InputError`` if the file is not valid."""
-    provenance = provenance_of(file, trusted)
-    if provenance.faults:
-        raise InputError(provenance.faults[0])
     header = _header(file)
     tasks = by_digest.get(header.tasks_digest)
     if tasks is None:
         raise InputError("its tasks are unknown, name their file with --tasks")
-    findings = check_submission(file, tasks.tasks)
+    provenance, findings = provenance_of(file, trusted), check_submission(file, tasks.tasks, trusted)
     if findings.faults:
         more = f", and {len(findings.faults) - 1} more faults" if len(findings.faults) > 1 else ""
         raise InputError(f"{findings.faults[0]}{more}")

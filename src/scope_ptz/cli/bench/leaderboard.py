@@ -7,18 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import SPLITS
+from scope_ptz.cli.bench.flags import SPLITS, HostKeys
 from scope_ptz.cli.exit import print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from scope_ptz.bench.leaderboard.entries import TaskSet
-
-HostKeys = Annotated[
-    list[Path] | None,
-    typer.Option("--host-key", help="Public key of a trusted host, or folder of such keys (*.pub; repeatable)."),
-]
 
 
 def leaderboard(
