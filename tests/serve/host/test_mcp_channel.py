@@ -54,8 +54,8 @@ async def test_calls_out_of_turn_are_errors(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "arguments"),
-    [("answer", {}), ("answer", {"text": "7", "kind": "correct"}), ("answer", {"text": 7}), ("begin_task", {"task": "scope1-x-001"}),
-     ("view", {"path": "../host.json"})],
+    [("answer", {}), ("answer", {"text": "7", "kind": "correct"}), ("answer", {"text": 7}),
+     ("begin_task", {"task": "scope1-x-001"}), ("view", {"path": "../host.json"})],
 )  # fmt: skip
 async def test_wrong_arguments_can_be_corrected(tmp_path: Path, name: str, arguments: dict[str, Any]) -> None:
     fake = ScriptedWorker(1)

@@ -144,6 +144,27 @@ async def test_an_agent_that_gives_up_fails_and_counts(tmp_path: Path, settings:
         assert not any(trial.headline == "infrastructure" for trial in trials)
 
 
+async def test_a_restarted_host_carries_the_attempt_on(tmp_path: Path, settings: EvaluationSettings) -> None:
+    async with hosting(tmp_path / "host", run_worker, settings) as hosted, hosted.agent() as agent:
+        done = [await solve(agent)]
+        second = (await agent.say(HELLO))["instruction"]
+        before = await agent.say(call("adjust_ptz", pan_deg=1.0))
+    async with hosting(tmp_path / "host", run_worker, settings) as hosted, hosted.agent() as agent:
+        while (task := await agent.say(HELLO))["instruction"] != second:  # the engine may run other tasks first
+            done.append(await solve(agent))
+        assert task["instruction"] == second
+        assert (await agent.progress())["last"] == before
+        await agent.say(reply("nothing"))
+        done.append(second)
+        while (instruction := await solve(agent)) is not None:
+            done.append(instruction)
+        assert sorted(filter(None, done)) == sorted(instructions())
+        assert await solve(agent) is None
+        assert (await agent.progress())["begun"] == len(TASKS)
+        (log,) = hosted.host.evaluation("anna").settings.folder.glob("*.eval")
+        assert len(read_evaluation(log).trials) == len(TASKS)
+
+
 async def test_the_order_differs_between_participants_and_not_between_restarts(
     tmp_path: Path, settings: EvaluationSettings
 ) -> None:

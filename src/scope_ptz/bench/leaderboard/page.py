@@ -117,8 +117,8 @@ def _table(entries: Sequence[LeaderboardEntry]) -> LeaderboardTable:
     header, task_set = entries[0].header, entries[0].task_set
     categories = categories_of(entries)
     columns = (
-        Column("rank", "Rank", "count"), Column("name", "Team or agent"), Column("pair", "Perception"),
-        Column("label", "Evaluated"), Column("accuracy", "Accuracy (%)", "share"),
+        Column("rank", "Rank", "count"), Column("name", "Team or agent"), Column("accuracy", "Accuracy (%)", "share"),
+        Column("label", "Evaluated"), Column("perception", "Perception"),
         *(Column(name, f"{title} (%)", "share") for name, title in categories.items()),
         Column("latency", "Median run (s)", "seconds"), Column("date", "Date"), Column("dataset", "Dataset"),
     )  # fmt: skip
@@ -133,10 +133,10 @@ def _row(rank: int | None, entry: LeaderboardEntry, categories: Iterable[str]) -
     card = entry.header.card
     place: CellValue = rank if rank is not None else BASELINE if entry.is_baseline else "not ranked"
     broken = f"{entry.broken} of {len(entry.lines)} runs broken" if entry.broken else ""
-    contended = "machine shared with other runs" if card.contended else ""
+    contended = "contended" if card.contended else ""
     return (
-        place, MarkedCell(entry.name, note=card.variant), card.perception.name, ", ".join(entry.labels),
-        MarkedCell(entry.accuracy, note=broken), *(entry.in_category(name) for name in categories),
+        place, MarkedCell(entry.name, note=card.variant), MarkedCell(entry.accuracy, note=broken), ", ".join(entry.labels),
+        card.perception.name, *(entry.in_category(name) for name in categories),
         MarkedCell(entry.latency_s, note=contended), card.started[:10], card.dataset,
     )  # fmt: skip
 
