@@ -58,7 +58,7 @@ class Agent:
 
     async def until(self, phase: str) -> None:
         """Wait until the evaluation has a phase."""
-        while (await self.progress())["phase"] != phase:
+        while (await self.progress())["phase"] != phase:  # noqa: ASYNC110 - as participants do
             await asyncio.sleep(0.05)
 
     async def progress(self) -> dict[str, Any]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from scope_ptz.serve.bench_host.host import Host
     from scope_ptz.serve.security.gate import Access
+    from scope_ptz.serve.security.tokens import TokenFile
 
 _PACKAGES = ("cryptography", "fastapi", "inspect_ai", "mcp", "mcp_types", "scipy", "starlette", "uvicorn")
 
@@ -155,11 +156,8 @@ async def _close(opened: Host) -> None:
         await opened.close()
 
 
-def _register(tokens: object, names: list[str], *, as_json: bool) -> None:
+def _register(tokens: TokenFile, names: list[str], *, as_json: bool) -> None:
     """Register participants that are not registered yet, and print each new token once."""
-    from scope_ptz.serve.security.tokens import TokenFile
-
-    assert isinstance(tokens, TokenFile)  # noqa: S101 - imported late
     for name in dict.fromkeys(names):
         if any(token.name == name for token in tokens.tokens):
             continue

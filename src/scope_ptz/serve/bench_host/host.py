@@ -21,7 +21,7 @@ from scope_ptz.serve.bench_host.evaluation import HostedEvaluation, NotReadyErro
 from scope_ptz.serve.bench_host.journal import Journal
 from scope_ptz.serve.bench_host.links import OpenLink, ProcessLink
 from scope_ptz.serve.bench_host.wire import EvaluationSettings, Failed, Ready, WorkerSettings
-from scope_ptz.serve.security.tokens import Token, TokenFile
+from scope_ptz.serve.security.tokens import TokenFile
 
 STATE_FILE = "host.json"
 LOCK_FILE = ".host.lock"
@@ -118,7 +118,7 @@ class Host:
         """
         reported: set[str] = set()
         while True:
-            names = [token.name for token in self._participants()]
+            names = [token.name for token in TokenFile(self.tokens.path).tokens]
             evaluations = {name: self.evaluation(name) for name in names}
             for name, evaluation in evaluations.items():
                 if start:
@@ -135,10 +135,6 @@ class Host:
         self.closing.set()
         await asyncio.gather(*(evaluation.close() for evaluation in self._evaluations.values()))
         self._evaluations.clear()
-
-    def _participants(self) -> tuple[Token, ...]:
-        self.tokens.find("")  # reads the file again if it has changed
-        return self.tokens.tokens
 
     def _worker_settings(self, participant: str) -> WorkerSettings:
         seed = hmac.new(self._state.seed.encode(), participant.encode(), hashlib.sha256).hexdigest()
