@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from console_clients import browser_program as chromium
 from playwright.sync_api import Locator, sync_playwright
 
+from console_clients import chromium
 from scope_ptz.bench.leaderboard.page import write_leaderboard
 from tests.bench.leaderboard.test_leaderboard import entry
 
