@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.engine.context import Watcher
+from scope_ptz.bench.engine.context import OpenAgent, Order, Watcher
 from scope_ptz.factory.models import ModelOptions
 
 if TYPE_CHECKING:
@@ -50,6 +50,30 @@ class JudgeSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class HostedAgent:
+    """An external agent that runs elsewhere and connects for each run.
+
+    Attributes:
+        name: Its name in traces and on run cards.
+        open: Waits until the agent begins the next run, and connects it.
+        order: Orders the tasks, so that the agent cannot foresee them.
+        settings: What else determines its results, as JSON data: a part of the identity of evaluations.
+        isolation: The label of its results.
+        source: Digest of its source, which is unknown.
+    """
+
+    name: str
+    open: OpenAgent
+    order: Order
+    settings: dict[str, Any]
+    isolation: Isolation = "hosted"
+    source: str = ""
+
+    async def check(self) -> None:
+        """Do nothing: whether the agent works turns out in its first run."""
+
+
+@dataclass(frozen=True, slots=True)
 class EvaluationOptions:
     """What to evaluate and how. The defaults run the built-in planner on the published tasks.
 
@@ -74,6 +98,7 @@ class EvaluationOptions:
         resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
         judge: Settings of the judge that scores each run; None for no judge.
+        hosted_agent: An external agent that runs elsewhere. It replaces ``agent``.
     """
 
     models: ModelOptions = field(default_factory=ModelOptions)
@@ -96,6 +121,7 @@ class EvaluationOptions:
     resume: Path | None = None
     price: Price | None = None
     judge: JudgeSettings | None = None
+    hosted_agent: HostedAgent | None = None
 
 
 @dataclass(frozen=True, slots=True)

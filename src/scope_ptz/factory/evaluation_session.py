@@ -55,7 +55,7 @@ class EvaluationSession:
 
         self.options, self.pair, self.progress = options, pair, progress
         self.judge: JudgeServer | None = None
-        self.agent = external_agent(options)
+        self.agent = options.hosted_agent or external_agent(options)
         self.agent_name = self.agent.name if self.agent is not None else BUILT_IN_AGENT
         self.agent_source = self.agent.source if self.agent is not None else ""
         self.planner = planner_for(pair.planner) if self.agent is None else None
@@ -171,7 +171,8 @@ class EvaluationSession:
 
         options = self.options
         open_agent = self.agent.open if self.agent is not None else None
-        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries, open_agent=open_agent)
+        order = options.hosted_agent.order if options.hosted_agent is not None else None
+        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries, open_agent=open_agent, order=order)
         if judge is not None:
             context = with_judge(context, judge)
         return benchmark_task(lambda _: context)(
@@ -203,8 +204,9 @@ class EvaluationSession:
         perception = inspect_model(pair.perception.name, connections, url=url)
         judging = judge_model(judge, self.concurrency * 2) if judge is not None else None
         return EngineSetup(
-            options.out, planner, perception, judging, self.concurrency, self.identity, card, realtime=not _is_built_in(pair)
-        )
+            options.out, planner, perception, judging, self.concurrency, self.identity, card,
+            realtime=options.hosted_agent is not None or not _is_built_in(pair),
+        )  # fmt: skip
 
     def _plan(self, finished: tuple[Trial, ...], stored: Sequence[StoredLog]) -> EvaluationPlan:
         from scope_ptz.bench.engine.entries import digest

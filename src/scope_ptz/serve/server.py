@@ -43,16 +43,29 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
     async with site, AsyncExitStack() as stack:
         if app is None:
             app = application(site, access, await stack.enter_async_context(mcp_route(site, access)))
-        server = _Server(configuration(app))
-        running = asyncio.create_task(server.serve([listener]))
-        try:
-            await _wait_until_ready(server, running)
-            yield int(listener.getsockname()[1])
-        finally:
-            with anyio.CancelScope(shield=True):
-                site.closing.set()
-                server.should_exit = True
-                await asyncio.gather(running, return_exceptions=True)
+        async with serving(app, listener, site.closing) as bound:
+            yield bound
+
+
+@asynccontextmanager
+async def serving(app: ASGIApp, listener: socket.socket, closing: asyncio.Event) -> AsyncIterator[int]:
+    """Serve an application while the context is open, and yield the port.
+
+    Args:
+        app: The application, wrapped in a ``Gate``.
+        listener: The listening socket, which is closed at the end.
+        closing: Set when the server shuts down, so that streams end.
+    """
+    server = _Server(configuration(app))
+    running = asyncio.create_task(server.serve([listener]))
+    try:
+        await _wait_until_ready(server, running)
+        yield int(listener.getsockname()[1])
+    finally:
+        with anyio.CancelScope(shield=True):
+            closing.set()
+            server.should_exit = True
+            await asyncio.gather(running, return_exceptions=True)
 
 
 @asynccontextmanager

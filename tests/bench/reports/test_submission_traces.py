@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 from scope_ptz.bench.reports.submission import submission_schema, without_secrets
 from scope_ptz.bench.reports.submission_checks import check_submission
-from scope_ptz.bench.reports.submission_evaluated import signature_file
 from scope_ptz.bench.reports.submission_traces import MAX_TRACE_BYTES, packed, public_trace, unpacked
+from scope_ptz.bench.signatures.detached import sign
+from scope_ptz.bench.signatures.keys import generate_key, load_private_key, raw_bytes
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
 from tests.bench.engine.conftest import a_log, evaluated, one_search_for_packages, scenes, scope, tasks_file
@@ -224,19 +225,15 @@ def test_hosted_needs_a_valid_signature(made: Path, tasks_file: Path, tmp_path: 
     rows = rows_of(made)
     rows[0]["evaluated"] = "hosted"
     path, tasks = written(rows, tmp_path / "hosted.jsonl"), load_tasks(tasks_file)
-
-    def verifier(content: bytes, signature: bytes) -> str | None:
-        return "the operator" if content == path.read_bytes() and signature == b"signed" else None
-
-    found = check_submission(path, tasks, verifier)
-    assert found.evaluated == "self-reported" and any("no signature" in note for note in found.notes)
-    signature_file(path).write_bytes(b"signed")
-    assert check_submission(path, tasks).evaluated == "self-reported"
-    found = check_submission(path, tasks, verifier)
+    trusted = {raw_bytes(generate_key(tmp_path / "host.key")): "the operator"}
+    found = check_submission(path, tasks, trusted)
+    assert found.evaluated == "self-reported" and "no signature" in found.faults[0]
+    sign(path, load_private_key(tmp_path / "host.key"))
+    found = check_submission(path, tasks, trusted)
     assert (found.evaluated, found.faults) == ("hosted", ())
-    assert "hosted by the operator" in found.notes
-    signature_file(path).write_bytes(b"forged")
-    found = check_submission(path, tasks, verifier)
-    assert found.evaluated == "self-reported" and "not valid under a trusted key" in found.faults[0]
-    signature_file(made).write_bytes(b"signed")
-    assert check_submission(made, tasks, lambda *_: "anyone").evaluated == "self-reported"
+    assert any("signed by the operator" in note for note in found.notes)
+    found = check_submission(path, tasks)
+    assert found.evaluated == "self-reported" and "unknown key" in found.faults[0]
+    path.write_bytes(path.read_bytes() + b"\n")
+    found = check_submission(path, tasks, trusted)
+    assert found.evaluated == "self-reported" and any("edited after it was signed" in fault for fault in found.faults)

@@ -63,8 +63,9 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         """
         context = provide_context(seed)
         entries = select(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
+        ordered = context.order(entries) if context.order is not None else viewpoint_order(entries, context.open_scene)
         return Task(
-            dataset=dataset_of(viewpoint_order(entries, context.open_scene), name=f"{datasets(entries)} {Path(split).name}"),
+            dataset=dataset_of(ordered, name=f"{datasets(entries)} {Path(split).name}"),
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
             scorer=[checks_scorer(context), *(judge_scorer(context, repeat) for repeat in range(judgements))],
             epochs=Epochs(epochs, "mean"),

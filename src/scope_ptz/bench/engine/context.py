@@ -5,7 +5,7 @@ Inspect creates solvers and scorers from names. The context provides the objects
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +37,8 @@ class ModelRequest:
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
 """Returns the true count for a perception call in the scene with the given name; None if the ground truth does not define it."""
+Order = Callable[[Sequence[Entry]], list[Entry]]
+"""Returns entries in the order in which they are run."""
 OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
 """Starts or connects an external agent for one run."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
@@ -65,6 +67,7 @@ class EvalContext:
         load_tasks: Loads the entries of a split or a task file.
         true_count: Returns the true counts for perception calls; None if there is no ground truth.
         watcher: Notified when a run begins or ends.
+        order: Orders the entries; None for the order that needs the least memory.
         open_agent: Starts or connects the external agent for a run; None to start the agent that the task names.
         perception_note: Note for the trace about the origin of the perception backend.
         perception: A perception backend that was created in advance, if any. Its creator closes it.
@@ -77,6 +80,7 @@ class EvalContext:
     load_tasks: LoadTasks
     true_count: TrueCount | None = None
     watcher: Watcher = field(default_factory=Watcher)
+    order: Order | None = None
     open_agent: OpenAgent | None = None
     perception_note: str = ""
     perception: Perception | None = None

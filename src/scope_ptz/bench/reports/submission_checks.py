@@ -13,9 +13,9 @@ from pydantic import ValidationError
 
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
-from scope_ptz.bench.reports.submission_evaluated import EvaluatedBy, Verifier, evaluated_by
 from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults
 from scope_ptz.bench.reports.submission_trials import trial_faults
+from scope_ptz.bench.signatures.provenance import Provenance, provenance_of
 from scope_ptz.bench.tasks.splits import SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.builtin_names import DETERMINISTIC
@@ -67,13 +67,15 @@ class SubmissionFindings:
         }
 
 
-def check_submission(path: Path, tasks: Sequence[Task] | None = None, verifier: Verifier | None = None) -> SubmissionFindings:
+def check_submission(
+    path: Path, tasks: Sequence[Task] | None = None, trusted: Mapping[bytes, str] | None = None
+) -> SubmissionFindings:
     """Validate a submission. For format 2, the checks are executed again on its traces.
 
     Args:
         path: The file.
         tasks: The tasks that it must cover. The default is the published split that its header names.
-        verifier: Checks the signature of a hosted evaluation; None if no host is trusted.
+        trusted: The public keys of trusted hosts, with their names. By default, no host is trusted.
 
     Raises:
         InputError: The file cannot be read, or its split is unknown and no tasks are given.
@@ -94,8 +96,8 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None, verifier: 
     faults += _completeness_faults(header, trials, tasks_by_id)
     runs = runs_in(header, trials, tasks_by_id) if header.format == 2 else {}
     faults += _trace_faults(header, lines, runs, tasks_by_id)
-    who = evaluated_by(path, header, verifier)
-    faults += [f"line 1: {who.fault}"] if who.fault else []
+    who = provenance_of(path, trusted or {})
+    faults += who.faults
     totals = totals_of(trials)
     models = (header.card.planner, header.card.perception)
     unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
@@ -125,10 +127,9 @@ def _trace_faults(
     yield from copied_traces([line for _, line in lines])
 
 
-def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: EvaluatedBy) -> list[str]:
+def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: Provenance) -> list[str]:
     """Return notes on what the file proves: who ran the evaluation, and what cannot be computed again."""
-    notes = [f"hosted by {who.host}"] if who.host else []
-    notes += [who.note] if who.note else []
+    notes = list(who.notes)
     notes += [NO_TRACES] if header.format == 1 else []
     if header.card.isolation is not None:
         notes.append(f"the agent was {header.card.isolation}")

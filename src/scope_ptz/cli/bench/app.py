@@ -10,9 +10,11 @@ from scope_ptz.cli.bench.browse import browse
 from scope_ptz.cli.bench.build import build, card, gold_app, validate
 from scope_ptz.cli.bench.drafts import drafts
 from scope_ptz.cli.bench.generate import generate, import_tasks
+from scope_ptz.cli.bench.host import host, keygen
 from scope_ptz.cli.bench.human import human
 from scope_ptz.cli.bench.judge import agree, judge_gold, rescore
 from scope_ptz.cli.bench.label import label
+from scope_ptz.cli.bench.leaderboard import leaderboard
 from scope_ptz.cli.bench.report import gate, report, submission_app
 from scope_ptz.cli.bench.run import run
 from scope_ptz.cli.bench.sweep import sweep
@@ -56,6 +58,9 @@ for panel, name, function in (
     (TASKS, "validate", validate),
     (TASKS, "card", card),
     (TASKS, "schema", schema),
+    (SHARE, "host", host),
+    (SHARE, "keygen", keygen),
+    (SHARE, "leaderboard", leaderboard),
 ):
     bench_app.command(name, rich_help_panel=panel)(command(function))
 

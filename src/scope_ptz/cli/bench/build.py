@@ -56,7 +56,7 @@ def build(
         return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
     scenes = list(open_scenes(scene).values())
     if numbers:
-        built = build_unseen(scenes, numbers, quotas, print_error, is_answerable)
+        built = build_unseen(scenes, numbers, quotas, print_error, is_answerable, seed)
     else:
         built = build_tasks(scenes, seed, quotas, print_error, is_answerable)
     out.parent.mkdir(parents=True, exist_ok=True)

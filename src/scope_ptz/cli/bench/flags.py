@@ -25,6 +25,10 @@ TasksOption = Annotated[str, typer.Option("--tasks", help=f"Split ({SPLITS}) or 
 SceneNames = Annotated[
     list[str] | None, typer.Option("--scene", help="Scene to make tasks for (repeatable; default: every scene).")
 ]
+HostKeys = Annotated[
+    list[Path] | None,
+    typer.Option("--host-key", help="Public key of a trusted host, or folder of such keys (*.pub; repeatable)."),
+]
 JudgeRepeats = Annotated[
     int, typer.Option("--judge-repeats", min=1, help="Number of judgements of each run.", rich_help_panel="Judge")
 ]

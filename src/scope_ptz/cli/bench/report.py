@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import published_tasks
+from scope_ptz.cli.bench.flags import HostKeys, published_tasks
 from scope_ptz.cli.bench.reading import print_findings, read_log
 from scope_ptz.cli.bench.verify import verify_and_show
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
@@ -46,7 +46,7 @@ def report(
 
     It contains all tables and figures of the paper, for any set of runs.
     """
-    _require_extra()
+    require_report_packages()
     from scope_ptz.bench.reports.writer import write_report
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.registry import load_registry
@@ -130,7 +130,7 @@ def submission_make(
 
     A log that does not cover its split is rejected.
     """
-    _require_extra()
+    require_report_packages()
     from scope_ptz.bench.reports.submission import submission_lines, write_submission
     from scope_ptz.bench.tasks.splits import SPLITS
 
@@ -162,15 +162,19 @@ def submission_validate(
         bool,
         typer.Option("--verify", help="Make the calls of every run again, which must come out as recorded. This takes minutes."),
     ] = False,
+    host_key: HostKeys = None,
     as_json: JsonOption = False,
 ) -> int:
     """Check that a submission is complete and consistent, and that its verdicts follow from its traces.
 
+    It is accepted as hosted only if the key of a trusted host signed exactly this file. Otherwise it is self-reported.
+
     The exit code is 1 on any fault.
     """
     from scope_ptz.bench.reports.submission_checks import check_submission
+    from scope_ptz.bench.signatures.keys import trusted_keys
 
-    result = check_submission(file, _split(tasks))
+    result = check_submission(file, _split(tasks), trusted_keys(host_key or ()))
     verified = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
     differing = verified.of("differs") if verified is not None else []
     if as_json:
@@ -206,7 +210,8 @@ def _first(faults: Sequence[str]) -> str:
     return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more faults" if more > 0 else "")
 
 
-def _require_extra() -> None:
+def require_report_packages() -> None:
+    """Raise ``ConfigError`` if the packages that write reports are not installed."""
     from scope_ptz.perception.backends.spec import require_packages
 
     require_packages("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")

@@ -38,10 +38,10 @@ async def serve_mcp(site: Site, access: Access) -> AsyncIterator[Route]:
         site: The site, whose context the caller must enter.
         access: The access rules, whose rate limits apply.
     """
-    server = mcp_server(site, access.limits, _client_of)
+    server = mcp_server(site, access.limits, client_of)
     manager = StreamableHTTPSessionManager(server, max_request_body_size=MAX_BODY_BYTES, max_sessions=MAX_SESSIONS)
     async with manager.run():
-        yield Route(MCP_PATH, _Endpoint(manager, site.closing))
+        yield Route(MCP_PATH, McpEndpoint(manager, site.closing))
 
 
 def mcp_application(access: Access, mcp: Route) -> ASGIApp:
@@ -62,7 +62,7 @@ def mcp_client(client: Client) -> Client:
     return replace(client, key=f"{client.key}:mcp") if client.key == client.name else client
 
 
-class _Endpoint:
+class McpEndpoint:
     """Passes requests to the session manager, and ends streams when the server shuts down."""
 
     def __init__(self, manager: StreamableHTTPSessionManager, closing: asyncio.Event) -> None:
@@ -102,7 +102,8 @@ class _Endpoint:
             await send({"type": "http.response.body", "body": b""})
 
 
-def _client_of(context: Context) -> Client:
+def client_of(context: Context) -> Client:
+    """Return the client that sends a request."""
     request = context.request
     assert isinstance(request, Request)  # noqa: S101 - the transport attaches the request to each message
     client: Client = request.scope["state"]["mcp_client"]

@@ -59,7 +59,7 @@ def build_dataset(
         True if every quota was met and every task was validated.
     """
     core = build(list(scenes.values()), seed, quotas, notify, can_answer)
-    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer)
+    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer, seed)
     short = [missing_tasks_message(core), missing_tasks_message(unseen, " unseen")]
     for text in filter(None, short):
         notify(text)

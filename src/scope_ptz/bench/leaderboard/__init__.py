@@ -1,0 +1,1 @@
+"""A static leaderboard page, made from a folder of submissions."""

@@ -1,0 +1,301 @@
+"""The evaluation of one participant, as the host sees it: whose turn it is, and the messages that pass.
+
+The host knows a run only by an opaque key. The worker, which knows the tasks, offers runs one after another.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from dataclasses import dataclass
+from typing import Literal
+
+from scope_ptz.bench.agents.messages import (
+    MAX_MESSAGE_BYTES,
+    PROTOCOL,
+    End,
+    Error,
+    Hello,
+    HostMessage,
+    TaskMessage,
+    parse_agent_message,
+)
+from scope_ptz.errors import PlannerError, ScopeError
+from scope_ptz.serve.bench_host.journal import Journal
+from scope_ptz.serve.bench_host.links import HostSide, OpenLink
+from scope_ptz.serve.bench_host.wire import (
+    Begin,
+    Deliver,
+    Event,
+    Failed,
+    Finished,
+    Gone,
+    Offered,
+    Over,
+    Ready,
+    Sent,
+    WorkerSettings,
+)
+
+logger = logging.getLogger(__name__)
+
+Phase = Literal["stopped", "preparing", "offered", "turn", "working", "finished", "failed"]
+"""The phases of an evaluation.
+
+"stopped": no worker runs. "preparing": the worker has not offered the next run yet. "offered": a run waits for the agent's hello.
+"turn": it is the agent's turn. "working": the engine works on the agent's message. "finished": every run has ended. "failed": the
+worker failed repeatedly.
+"""
+MAX_RESTARTS = 3
+"""A worker that ends this often without making progress is not started again."""
+MAX_WAIT_S = 300.0
+"""Maximum seconds that ``hello`` waits for the next run."""
+BROKEN = "The host cannot continue this evaluation. Its operator must restart it. No task was lost."
+ALL_DONE = "All tasks have been attempted. The evaluation is finished."
+ABSENT = "The participant did not continue before the host closed the evaluation."
+
+
+class NotYourTurnError(ScopeError):
+    """The message does not fit the phase of the evaluation."""
+
+
+class NotReadyError(ScopeError):
+    """The host cannot serve the participant at the moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """What a participant may know about its evaluation.
+
+    Attributes:
+        phase: "ready" for the next hello, "your_turn", "wait", or "finished".
+        runs: Number of runs; None until the worker has reported it.
+        begun: Number of runs that have begun.
+        last: The last message of the host in the current run, for an agent that lost its connection.
+    """
+
+    phase: Literal["ready", "your_turn", "wait", "finished"]
+    runs: int | None
+    begun: int
+    last: HostMessage | None
+
+
+class HostedEvaluation:
+    """The evaluation of one participant.
+
+    Args:
+        settings: The settings of its worker.
+        journal: Its journal.
+        open_link: Starts a worker.
+        absent: Whether the participant is absent: all runs that have not ended fail, so that the evaluation can be finished.
+    """
+
+    def __init__(self, settings: WorkerSettings, journal: Journal, open_link: OpenLink, *, absent: bool = False) -> None:
+        self.settings, self.journal, self._open_link, self._absent = settings, journal, open_link, absent
+        self.phase: Phase = "finished" if journal.submission is not None else "stopped"
+        self.runs: int | None = None
+        self._run = ""
+        self._task: TaskMessage | None = None
+        self._last: HostMessage | None = None
+        self._replay: deque[str] = deque()
+        self._link: HostSide | None = None
+        self._working: asyncio.Task[None] | None = None
+        self._changed = asyncio.Condition()
+        self._answer: asyncio.Future[HostMessage] | None = None
+
+    @property
+    def finished(self) -> bool:
+        """Whether every run has ended and the submission is signed."""
+        return self.phase == "finished"
+
+    @property
+    def progress(self) -> Progress:
+        """What the participant may know about its evaluation."""
+        phase: Literal["ready", "your_turn", "wait", "finished"] = "wait"
+        if self.phase in ("stopped", "offered"):
+            phase = "ready"
+        elif self.phase == "turn":
+            phase = "your_turn"
+        elif self.phase == "finished":
+            phase = "finished"
+        return Progress(phase, self.runs, self.journal.attempted, self._last)
+
+    def start(self) -> None:
+        """Start the worker if it does not run."""
+        if self.phase == "stopped":
+            self.phase = "preparing"
+            self._working = asyncio.ensure_future(self._supervise())
+
+    async def close(self) -> None:
+        """Stop the worker. The evaluation can be resumed later."""
+        if self._working is not None:
+            self._working.cancel()
+            await asyncio.gather(self._working, return_exceptions=True)
+        self.journal.close()
+
+    async def exchange(self, line: bytes) -> HostMessage:
+        """Pass a message of the agent to the engine, and return the host's next message.
+
+        ``hello`` begins the next run. While a run is in progress it returns the run's task again, and nothing begins anew.
+
+        Args:
+            line: The message as the agent sent it. A message that is not valid ends the run.
+
+        Raises:
+            NotYourTurnError: There is no run in progress, or an earlier message is still being worked on.
+            NotReadyError: The worker fails.
+        """
+        hello = _hello_of(line)
+        if hello is None:
+            return await self._continue(line)
+        if hello.protocol != PROTOCOL:
+            return Error(message=f"This host speaks version {PROTOCOL} of the protocol, not {hello.protocol}.")
+        return await self._hello(line)
+
+    async def _hello(self, line: bytes) -> HostMessage:
+        self.start()
+        async with self._changed:
+            try:
+                async with asyncio.timeout(MAX_WAIT_S):
+                    await self._changed.wait_for(lambda: self.phase not in ("preparing", "working"))
+            except TimeoutError:
+                raise NotReadyError("The host is still preparing the task. Send hello again.") from None
+            if self.phase == "turn" and self._task is not None:
+                return self._task
+            if self.phase == "finished":
+                return End(reason=ALL_DONE)
+            self._check_alive()
+            answer = await self._deliver(line)
+        return await answer
+
+    async def _continue(self, line: bytes) -> HostMessage:
+        async with self._changed:
+            if self.phase == "finished":
+                raise NotYourTurnError(ALL_DONE)
+            self._check_alive()
+            if self.phase == "working":
+                raise NotYourTurnError("Your earlier message is still being worked on. Wait for its reply.")
+            if self.phase != "turn":
+                ended = f" The last one ended: {self._last.message}" if isinstance(self._last, Error) else ""
+                raise NotYourTurnError(f"No task is in progress.{ended} Send hello to begin the next one.")
+            answer = await self._deliver(line)
+        return await answer
+
+    def _check_alive(self) -> None:
+        if self.phase == "failed":
+            raise NotReadyError(BROKEN)
+
+    async def _deliver(self, line: bytes) -> asyncio.Future[HostMessage]:
+        """Record a message and pass it to the worker. Return the future of the answer. The caller holds the condition."""
+        assert self._link is not None  # noqa: S101 - the worker offered the run
+        text = line[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")
+        self.journal.record(self._run, text)
+        begins, self.phase = self.phase == "offered", "working"
+        self._answer = answer = asyncio.get_running_loop().create_future()
+        if begins:
+            await self._link.send(Begin(run=self._run))
+        await self._link.send(Deliver(run=self._run, line=text))
+        return answer
+
+    def _respond(self, message: HostMessage) -> None:
+        """Answer the agent's message, if it waits for an answer, and keep the answer for an agent that lost its connection."""
+        self._last = message
+        if self._answer is not None and not self._answer.done():
+            self._answer.set_result(message)
+
+    async def _supervise(self) -> None:
+        """Run the worker, and start it again if it ends early."""
+        failures = 0
+        while not self.finished and failures < MAX_RESTARTS:
+            ended = self.journal.ended
+            try:
+                await self._work()
+            except Exception:  # for example a full disk; the host and its other participants go on
+                logger.exception("The evaluation of %s stopped", self.settings.participant)
+            failures = failures + 1 if self.journal.ended == ended else 1
+            if not self.finished:
+                await self._set_phase("preparing")
+        if not self.finished:
+            logger.warning("The evaluation of %s cannot continue. Restart the host to try again.", self.settings.participant)
+            await self._set_phase("failed")
+            if self._answer is not None and not self._answer.done():
+                self._answer.set_exception(NotReadyError(BROKEN))
+
+    async def _work(self) -> None:
+        """Start a worker, and handle its events until it ends."""
+        self._link = link = await self._open_link(self.settings)
+        try:
+            while (event := await link.receive()) is not None:
+                async with self._changed:
+                    await self._handle(event, link)
+                    self._changed.notify_all()
+        finally:
+            self._link = None
+            await asyncio.shield(asyncio.ensure_future(link.close()))
+
+    async def _set_phase(self, phase: Phase) -> None:
+        async with self._changed:
+            self.phase = phase
+            self._changed.notify_all()
+
+    async def _handle(self, event: Event, link: HostSide) -> None:
+        match event:
+            case Ready():
+                self.runs = event.runs
+            case Offered():
+                await self._offered(event.run, link)
+            case Sent():
+                await self._sent(event, link)
+            case Over():
+                self._over(event)
+            case Finished():
+                self.journal.record_done(event.submission)
+                self.phase = "finished"
+            case Failed():
+                logger.warning("The evaluation of %s failed: %s", self.settings.participant, event.message)
+
+    async def _offered(self, run: str, link: HostSide) -> None:
+        """Offer a run to the agent. A run that had begun before a restart is carried on from the journal."""
+        self._run, self._task, self._last = run, None, None
+        self._replay = deque(self.journal.messages(run))
+        if self._replay or self._absent or self.journal.has_ended(run):
+            self.phase = "working"
+            await link.send(Begin(run=run))
+            await self._next_recorded(link)
+        else:
+            self.phase = "offered"
+
+    async def _next_recorded(self, link: HostSide) -> None:
+        """Give the engine the next recorded message, or report that no further message will come."""
+        if self._replay:
+            await link.send(Deliver(run=self._run, line=self._replay.popleft()))
+        else:
+            await link.send(Gone(run=self._run, reason=ABSENT))
+
+    async def _sent(self, event: Sent, link: HostSide) -> None:
+        if isinstance(event.message, TaskMessage):
+            self._task = event.message
+        if isinstance(event.message, Error):
+            self._respond(event.message)  # The run is about to end.
+        elif self._replay or self._absent or self.journal.has_ended(event.run):
+            await self._next_recorded(link)
+        else:
+            self.phase = "turn"
+            self._respond(event.message)
+
+    def _over(self, event: Over) -> None:
+        self.journal.record_end(event.run)
+        self._replay.clear()
+        if not isinstance(self._last, Error):
+            self._respond(End(reason=event.reason))
+        self._task, self.phase = None, "preparing"
+
+
+def _hello_of(line: bytes) -> Hello | None:
+    """Return a message if it is a valid hello, else None."""
+    try:
+        message = parse_agent_message(line)
+    except PlannerError:
+        return None
+    return message if isinstance(message, Hello) else None

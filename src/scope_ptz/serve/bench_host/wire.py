@@ -1,0 +1,145 @@
+"""The messages between the host and a worker: JSON lines over the worker's standard input and output."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from scope_ptz.bench.agents.messages import HostMessage
+
+MAX_LINE_BYTES = 64 * 1024 * 1024
+"""Maximum size of a line. A frame of a simulated camera has less than 1 MB."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class PerceptionSettings(_Part):
+    """The perception that the host provides to all participants. The fields are those of ``factory.models.ModelOptions``."""
+
+    perception: str | None = None
+    perception_url: str | None = None
+    perception_model: str | None = None
+    perception_key_file: Path | None = None
+    perception_options: tuple[str, ...] = ()
+
+
+class EvaluationSettings(_Part):
+    """What is evaluated. A host folder belongs to one such setting.
+
+    Attributes:
+        tasks: Split or task file.
+        perception: The perception that the host provides.
+        epochs: Number of runs of each task.
+        seed: Seed of the evaluation, for example for noisy perception.
+        max_steps: Maximum number of steps of a run.
+        step_s: Maximum seconds that an agent may take for one step.
+        task_s: Maximum seconds that an agent may take for all steps of a task.
+    """
+
+    tasks: str
+    perception: PerceptionSettings = PerceptionSettings()
+    epochs: Annotated[int, Field(ge=1)] = 1
+    seed: int = 1
+    max_steps: Annotated[int, Field(ge=1)] = 60
+    step_s: Annotated[float, Field(gt=0)] = 300.0
+    task_s: Annotated[float, Field(gt=0)] = 1800.0
+
+
+class WorkerSettings(_Part):
+    """The first line that a worker receives.
+
+    Attributes:
+        evaluation: What is evaluated.
+        participant: Name of the participant.
+        folder: Folder for the log, the submission and its signature.
+        key: File of the private key that signs the submission.
+        order_seed: Secret seed of the participant's task order.
+        check_only: Whether to check the settings, report the number of runs, and end.
+    """
+
+    evaluation: EvaluationSettings
+    participant: str
+    folder: Path
+    key: Path
+    order_seed: str = Field(repr=False)
+    check_only: bool = False
+
+
+class Begin(_Part):
+    """The host wants to begin the offered run."""
+
+    type: Literal["begin"] = "begin"
+    run: str
+
+
+class Deliver(_Part):
+    """A message from the agent, as it was sent. ``run`` is the key of the run that it belongs to."""
+
+    type: Literal["deliver"] = "deliver"
+    run: str
+    line: str = Field(repr=False)
+
+
+class Gone(_Part):
+    """The agent will send nothing more in this run."""
+
+    type: Literal["gone"] = "gone"
+    run: str
+    reason: str
+
+
+class Ready(_Part):
+    """The worker has loaded its tasks. ``runs`` is the number of runs of the evaluation."""
+
+    type: Literal["ready"] = "ready"
+    runs: int
+
+
+class Offered(_Part):
+    """A run waits for its agent. ``run`` is an opaque key, which is the same after a restart."""
+
+    type: Literal["offered"] = "offered"
+    run: str
+
+
+class Sent(_Part):
+    """A message for the agent."""
+
+    type: Literal["sent"] = "sent"
+    run: str
+    message: Annotated[HostMessage, Field(discriminator="type")]
+
+
+class Over(_Part):
+    """A run has ended for its agent."""
+
+    type: Literal["over"] = "over"
+    run: str
+    reason: str
+
+
+class Finished(_Part):
+    """Every run has ended. ``submission`` is the file that the worker has written and signed."""
+
+    type: Literal["finished"] = "finished"
+    submission: Path
+
+
+class Failed(_Part):
+    """The worker cannot go on. The message is for the operator only."""
+
+    type: Literal["failed"] = "failed"
+    message: str
+
+
+Command = Begin | Deliver | Gone
+"""A message from the host to a worker."""
+Event = Ready | Offered | Sent | Over | Finished | Failed
+"""A message from a worker to the host."""
+
+COMMAND: TypeAdapter[Command] = TypeAdapter(Annotated[Command, Field(discriminator="type")])
+EVENT: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="type")])
