@@ -14,7 +14,7 @@ macro accuracy is its unweighted mean over the categories.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import fsum
 
 import numpy as np
@@ -33,7 +33,7 @@ class ConstantAgentScore:
         answer: The constant answer.
         correct: Number of tasks that it passes.
         consistent: Number of tasks that it passes if a task of a pair counts only if both tasks of the pair pass.
-        tasks: Number of tasks that expect an answer.
+        tasks: Number of tasks that expect an answer, a clarifying question or a refusal.
     """
 
     answer: str
@@ -61,6 +61,7 @@ class ChanceLevel:
         without_calls: The best constant answer of an agent that makes no calls, by the checks.
         accepted: The most accepted constant answer, if only answers were checked.
         looking: The best constant answer of an agent that moves as asked and looks once, by the checks.
+        adaptive: The same agent with the best constant answer of each category.
         by_category: The largest pair-consistent fraction of the tasks of each category that a constant answer wins after moving as
             asked and looking once.
     """
@@ -69,6 +70,7 @@ class ChanceLevel:
     without_calls: ConstantAgentScore
     accepted: ConstantAgentScore
     looking: ConstantAgentScore
+    adaptive: ConstantAgentScore
     by_category: Mapping[str, float]
 
 
@@ -127,18 +129,21 @@ def chance_corrected(scores: Scores, by_category: Mapping[str, float]) -> Chance
         tuple(units[i] for i in kept),
     )
     equal = macro_weights(known)
-    weights = {name: weight / (1 - by_category[str(name)]) for name, weight in equal.items()}
-    consistent, weighted = proportion(known, equal), proportion(known, weights)
+    unscaled = {name: weight / (1 - by_category[str(name)]) for name, weight in equal.items()}
+    scale, offset = fsum(unscaled.values()), fsum(weight * by_category[str(name)] for name, weight in unscaled.items())
+    consistent, weighted = proportion(known, equal), proportion(known, {name: w / scale for name, w in unscaled.items()})
     if consistent is None or weighted is None:
         return None
     chance = fsum(weight * by_category[str(name)] for name, weight in equal.items())
-    scale, offset = fsum(weights.values()), fsum(weight * by_category[str(name)] for name, weight in weights.items())
 
-    def moved(value: float | None) -> float | None:
-        return None if value is None else scale * value - offset
+    def corrected(value: float) -> float:
+        return scale * value - offset
 
-    corrected = IntervalEstimate(
-        scale * weighted.value - offset, moved(weighted.low), moved(weighted.high),
-        None if weighted.se is None else weighted.se, weighted.n, weighted.clusters, weighted.without,
-    )  # fmt: skip
-    return ChanceCorrected(consistent, chance, corrected)
+    estimate = replace(
+        weighted,
+        value=corrected(weighted.value),
+        low=None if weighted.low is None else corrected(weighted.low),
+        high=None if weighted.high is None else corrected(weighted.high),
+        se=None if weighted.se is None else scale * weighted.se,
+    )
+    return ChanceCorrected(consistent, chance, estimate)
