@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from scope_ptz.bench.reports.accuracy import KIND_TITLES, accuracy_section
+from scope_ptz.bench.reports.chance_section import chance_lines, chance_section
 from scope_ptz.bench.reports.display_names import served_instead
 from scope_ptz.bench.reports.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
@@ -29,6 +30,7 @@ from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_secti
 from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, interval
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.registry import Registry
 
@@ -55,13 +57,19 @@ class EvaluationReport:
         return tuple(table for section in self.sections for table in section.tables)
 
 
-def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: Mapping[str, str] | None = None) -> EvaluationReport:
+def build_report(
+    evaluations: Sequence[Evaluation],
+    registry: Registry,
+    pages: Mapping[str, str] | None = None,
+    tasks: Mapping[str, Task] | None = None,
+) -> EvaluationReport:
     """Build a report.
 
     Args:
         evaluations: The evaluations.
         registry: The registry that describes the models.
         pages: Link to the page of each failed task, by the task's id.
+        tasks: The known tasks by id, for what constant answers win.
 
     Raises:
         InputError: The evaluations contain no trials.
@@ -77,6 +85,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     links = pages or {}
     sections: list[Section | None] = [
         accuracy_section(runs),
+        chance_section(runs, tasks or {}),
         comparison_section(ranked),
         repeats_section(main),
         error_section(ranked_and_reference) if ranked_and_reference else None,
@@ -98,7 +107,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     ]
     return EvaluationReport(
         runs,
-        _summary(runs, ranked, comparable),
+        (*_summary(runs, ranked, comparable), *chance_lines(runs, tasks or {})),
         _warnings(runs, ranked, comparable),
         tuple(_without_empty_tables(s) for s in sections if s is not None),
     )

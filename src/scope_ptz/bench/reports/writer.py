@@ -53,7 +53,7 @@ def write_report(
         registry: The registry that describes the models.
         out: The folder of the report. An earlier report in it is replaced.
         open_sample: Opens the stored run of a trial. Without it, the pages show no trajectories.
-        tasks: The tasks by id, for the evidence on their pages.
+        tasks: The tasks by id, for the evidence on their pages and for what constant answers win.
         progress: Called after each page with the number of finished pages and the total number of pages.
         pages: Whether to write pages for failed tasks.
 
@@ -65,7 +65,7 @@ def write_report(
         InputError: The evaluations contain no trials.
     """
     files = page_files(evaluations) if pages else {}
-    report = build_report(evaluations, registry, files)
+    report = build_report(evaluations, registry, files, tasks)
     try:
         _clear(out)
         (out / "tables").mkdir(parents=True, exist_ok=True)
