@@ -215,12 +215,20 @@ class Evaluation(_Record):
         trials: The finished runs.
         wanted: Number of trials in the complete evaluation: tasks times epochs.
         log: Path of the log.
+        failure: The error that ended the evaluation; empty if none did.
     """
 
     card: RunCard
     trials: tuple[Trial, ...]
     wanted: Count
     log: str = ""
+    failure: str = ""
+
+    @model_serializer(mode="wrap")
+    def _without_empty_failure(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out an empty ``failure``, so that older versions can also read the result."""
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if name != "failure" or value}
 
     @property
     def finished(self) -> bool:

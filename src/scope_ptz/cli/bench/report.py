@@ -35,7 +35,8 @@ def report(
     tasks: Annotated[
         str | None,
         typer.Option(
-            "--tasks", help="Split or task file with the tasks of the logs, for evidence and chance levels (default: all published tasks)."
+            "--tasks",
+            help="Split or task file with the tasks of the logs, for evidence and chance levels (default: all published tasks).",
         ),
     ] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,
@@ -45,6 +46,7 @@ def report(
     It contains all tables and figures of the paper, for any set of runs.
     """
     _require_extra()
+    from scope_ptz.bench.reports.terminal import terminal_lines
     from scope_ptz.bench.reports.writer import write_report
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.registry import load_registry
@@ -71,7 +73,7 @@ def report(
         progress=_print_progress if sys.stderr.isatty() else None,
         pages=pages,
     )
-    for line in (*result.summary, *result.warnings):
+    for line in terminal_lines(result):
         put(line)
     put(f"{out / 'index.html'}")
 
