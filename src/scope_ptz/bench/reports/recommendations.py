@@ -166,7 +166,7 @@ def _spread(
             rows.append((name, len(values), "all equal", low, "all equal", high, 0.0, "not shown"))
             continue
         worst, best = extremes(values)
-        ends = [[run for run in own if changed(run) in names.split(", ")] for names in (worst, best)]
+        ends = [[run for run in own if run.macro and abs(run.macro.value - end) < ROUNDING] for end in (low, high)]
         shown = any(distinctions.told_apart(one, other) for one in ends[0] for other in ends[1])
         rows.append((name, len(values), worst, low, best, high, high - low, "yes" if shown else "not shown"))
     notes = ("This table covers only runs of SCOPE's own agent loop with its standard prompt.",)

@@ -25,9 +25,11 @@ def problems(runs: Sequence[ReportRun]) -> tuple[str, ...]:
 
 def _problem(run: ReportRun) -> str:
     evaluation = run.evaluation
-    trials = [t for t in run.main_trials or evaluation.trials if t.headline == "infrastructure" or not without_verdict(t)]
-    lost = [t for t in trials if t.headline == "infrastructure"]
     missing = max(0, evaluation.wanted - len(evaluation.trials))
+    # It is not known which of the missing trials would have been included in accuracy.
+    included = evaluation.trials if missing else run.main_trials or evaluation.trials
+    trials = [t for t in included if not without_verdict(t)]
+    lost = [t for t in trials if t.headline == "infrastructure"]
     causes = []
     if evaluation.failure:
         causes.append(f"the log ended in an error ({_shortened(evaluation.failure)})")
