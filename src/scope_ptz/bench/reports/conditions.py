@@ -78,7 +78,7 @@ def _task_table(runs: Sequence[ReportRun]) -> ReportTable:
         Column("category", "Category"), Column("tasks", "Tasks", "count"), Column("current", "Current view", "count"),
         Column("full", "Full scene", "count"), *(Column(name, name.capitalize(), "count") for name in CLASSES),
     )  # fmt: skip
-    rows = []
+    rows: list[tuple[CellValue, ...]] = []
     for category, title in (*CATEGORY_TITLES.items(), ("", "All")):
         own = [task for task in facts.values() if category in (task.category, "")]
         if own:

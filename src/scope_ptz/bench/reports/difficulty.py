@@ -177,18 +177,20 @@ def _monotone(steps: Sequence[ClassStep]) -> str:
 def _cross_table(runs: Sequence[ReportRun]) -> ReportTable:
     """Return a table of the numbers of tasks by the class of the rule and the class by item statistics."""
     facts = {t.task.id: t.task for run in runs for t in run.scored_trials}
-    counts = Counter((facts[task].category, facts[task].difficulty, item_class(share)) for task, share in item_shares(runs).items())
+    counts = Counter[tuple[str, str, str]]()
+    for task, share in item_shares(runs).items():
+        counts[facts[task].category, facts[task].difficulty, item_class(share)] += 1
     columns = (
         Column("category", "Category"), Column("rule", "By the rule"),
         *(Column(name, f"{name.capitalize()} by item statistics", "count") for name in CLASSES),
     )  # fmt: skip
-    rows = tuple(
-        (title, rule, *(counts[category, rule, name] for name in CLASSES))
-        for category, title in CATEGORY_TITLES.items()
-        for rule in CLASSES
-        if any(counts[category, rule, name] for name in CLASSES)
-    )
-    return ReportTable("difficulty_items", "Tasks by the rule and by item statistics", columns, rows)
+    rows: list[tuple[CellValue, ...]] = []
+    for category, title in CATEGORY_TITLES.items():
+        for rule in CLASSES:
+            numbers = [counts[category, rule, name] for name in CLASSES]
+            if any(numbers):
+                rows.append((title, rule, *numbers))
+    return ReportTable("difficulty_items", "Tasks by the rule and by item statistics", columns, tuple(rows))
 
 
 def _item_table(runs: Sequence[ReportRun]) -> ReportTable:

@@ -60,7 +60,8 @@ def _bounds(trials: Sequence[Trial], lost: Sequence[Trial], missing: int) -> str
             macro(scores_of(trials, [t.headline == "correct" or (t.headline == "infrastructure" and right) for t in trials]))
             for right in (False, True)
         )
-        name, values = "Macro", tuple(estimate.value if estimate else 0.0 for estimate in (measured, lowest, highest))
+        estimates = [estimate.value if estimate else 0.0 for estimate in (measured, lowest, highest)]
+        name, values = "Macro", (estimates[0], estimates[1], estimates[2])
     value, low, high = (cell_text(v, "share") for v in values)
     return (
         f"{name} accuracy is {value}% without the lost and missing trials, {low}% if all of them were incorrect, and {high}% if "
