@@ -59,7 +59,7 @@ class ChanceLevel:
     Attributes:
         tasks: Number of tasks.
         without_calls: The best constant answer of an agent that makes no calls, by the checks.
-        accepted: The most accepted constant answer, if only answers were checked.
+        accepted: The most accepted constant reply, if only answers and outcomes were checked.
         looking: The best constant answer of an agent that moves as asked and looks once, by the checks.
         adaptive: The same agent with the best constant answer of each category.
         by_category: The largest pair-consistent fraction of the tasks of each category that a constant answer wins after moving as
