@@ -122,7 +122,8 @@ class GroundTruthPerception(Perception):
             raise PerceptionError("The description is empty.")
         parsed, view = parse_description(description), self.view(frame, description)
         things = find(view, parsed)
-        if not things and not any(nouns_in(phrase.words, view.nouns) for phrase in parsed.phrases):
+        absent = self.open_scene(frame.origin.scene).file.absent if frame.origin is not None else ()
+        if not things and not any(nouns_in(phrase.words, view.nouns | frozenset(absent)) for phrase in parsed.phrases):
             raise NotUnderstoodError(
                 f"The description '{description}' is not understood, because it names no known kind of thing. Describe the things "
                 "by a noun."
