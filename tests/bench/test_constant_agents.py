@@ -30,6 +30,7 @@ from tests.bench.making import samples
 
 pytestmark = pytest.mark.anyio
 
+
 @pytest.mark.parametrize("split", ["core", "lite", "unseen"])
 def test_constant_answers_win_little(split: str) -> None:
     level = chance_level(load_split(split))

@@ -109,7 +109,9 @@ def constant_replies(tasks: Sequence[Task]) -> tuple[ConstantReply, ...]:
             text = constant_text(task.expected)
             counts[text] += 1
             kinds.setdefault(text, set()).add(task.expected.kind)
-    frequent = sorted((text for text, n in counts.items() if n > 1 and text not in _GENERIC), key=lambda text: (-counts[text], text))[:MAX_ANSWERS]
+    frequent = sorted(
+        (text for text, n in counts.items() if n > 1 and text not in _GENERIC), key=lambda text: (-counts[text], text)
+    )[:MAX_ANSWERS]
     return (
         *(ConstantReply(text) for text in _GENERIC),
         *(ConstantReply(text, kinds=frozenset(kinds[text])) for text in frequent),

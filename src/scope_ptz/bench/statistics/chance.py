@@ -101,9 +101,7 @@ def whole_pairs(correct: Sequence[bool], units: Sequence[str], twins: Sequence[s
         Each outcome, but False if the twin has an incorrect outcome. A twin without an outcome changes nothing.
     """
     by_unit = dict(zip(units, correct, strict=True))
-    return [
-        value and by_unit.get(twin, True) if twin is not None else value for value, twin in zip(correct, twins, strict=True)
-    ]
+    return [value and by_unit.get(twin, True) if twin is not None else value for value, twin in zip(correct, twins, strict=True)]
 
 
 def chance_corrected(scores: Scores, by_category: Mapping[str, float]) -> ChanceCorrected | None:

@@ -20,7 +20,6 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.bench.tasks.task import Task
 
-
 ABSENT = "no"
 """Key of the answers "no" and "there is none", which the same text gives."""
 

@@ -35,7 +35,8 @@ def report(
     tasks: Annotated[
         str | None,
         typer.Option(
-            "--tasks", help="Split or task file with the tasks of the logs, for evidence and chance levels (default: all published tasks)."
+            "--tasks",
+            help="Split or task file with the tasks of the logs, for evidence and chance levels (default: all published tasks).",
         ),
     ] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,

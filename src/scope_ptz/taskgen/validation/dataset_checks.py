@@ -20,7 +20,7 @@ MAX_ADAPTIVE_SHARE = 0.05
 MEASURED_ADAPTIVE_SHARES = {"scope1": 0.08}
 """Limits for datasets that were published before ``MAX_ADAPTIVE_SHARE``: their measured fractions, rounded up.
 
-In scope1, the agents that give the first or the last offered option win 7%, because many of its questions offer two to four options.
+In scope1, the agents that give the first or the last offered option win 7%, because many questions offer two to four options.
 """
 
 _MIN_TASKS_FOR_SHARE = 300  # minimum number of core tasks for the checks of these fractions
