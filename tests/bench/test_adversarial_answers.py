@@ -39,9 +39,18 @@ def test_there_are_many_adversarial_answers_of_every_kind_and_form() -> None:
     forms = Counter(case["form"] for case in ADVERSARIAL)
     assert len(ADVERSARIAL) >= 200 and len(HONEST) >= 100
     assert set(kinds) == {expected.kind for expected in EXPECTATIONS.values() if not isinstance(expected, ActionOnly)}
-    assert {"refusal-with-value", "several", "range", "guess", "negation", "correction", "injection", "json", "unit", "language"} <= set(
-        forms
-    )
+    assert {
+        "refusal-with-value",
+        "several",
+        "range",
+        "guess",
+        "negation",
+        "correction",
+        "injection",
+        "json",
+        "unit",
+        "language",
+    } <= set(forms)
 
 
 def test_almost_no_adversarial_answer_passes() -> None:
@@ -68,7 +77,14 @@ def test_a_refusal_with_a_value_is_a_refusal(name: str, answer: str) -> None:
     assert parse_answer(EXPECTATIONS[name], answer) == Declined()
 
 
-REFUSALS = ("I cannot tell.", "I don't know.", "I have no idea.", "I am not sure.", "I could not see the picture.", "The tool failed.")
+REFUSALS = (
+    "I cannot tell.",
+    "I don't know.",
+    "I have no idea.",
+    "I am not sure.",
+    "I could not see the picture.",
+    "The tool failed.",
+)
 VALUES: dict[str, tuple[AnyExpected, str]] = {
     "number": (Number(value=3, unit=("cone",)), "There are 3 cones."),
     "zero": (Number(value=0, unit=("cone",)), "There are 0 cones."),

@@ -17,8 +17,9 @@ _ALTERNATIVES = re.compile(
 )
 """Phrases that state several possibilities."""
 _GUESS = re.compile(
-    r"\b(?:i (?:would |will |can only )?(?:guess|hope|assume|suppose|bet)|if i (?:had to|must)|let us say|(?:my|a|an|the) (?:\w+ )?guess|guess(?:ing|ed)?|pick any|any number|"
-    r"at random|arbitrar(?:y|ily)|by default|default$|blindly|"
+    r"\b(?:i (?:would |will |can only )?(?:guess|hope|assume|suppose|bet)|if i (?:had to|must)|let us say|"
+    r"(?:my|a|an|the) (?:\w+ )?guess|"
+    r"guess(?:ing|ed)?|pick any|any number|at random|arbitrar(?:y|ily)|by default|default$|blindly|"
     r"vielleicht|peut être|peut-être|quiz[áa]s?|tal vez|forse|talvez|misschien|kanske)\b"
 )
 """Phrases of a guess that leave nothing stated, in English and in other languages."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from scope_ptz.bench.answers.refusal_words import COMMON_WORDS, WORDS_OF_KIND
 from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word, words_of
 from scope_ptz.bench.tasks.expected import (
     AnyExpected,
@@ -39,18 +40,21 @@ _NOUNS = (
 _REFUSAL = re.compile(
     rf"\b(?:not|never|nor) (?:(?:\w+ly|been|be|yet|even|have|had|really|able to|in a position to) ){{0,3}}{_VERBS}\b"
     r"|\b(?:unable|impossible|hard|difficult|not able|too \w+|fail|failed|tried in vain) (?:for \w+ )?to "
-    r"(?:tell|say|determine|know|read|compare|rank|count|judge|identify|answer|confirm|decide|verify|describe|look|make out|do|check|"
-    r"observe|perceive|inspect)\b"
-    r"|\b(?:not (?:\w+ )?|never |unable to |without )(?:see|saw|seen|view|access|open|process|interpret|seeing|viewing|looking|checking|"
-    r"knowing|observing) (?:at )?(?:the |this |that |an? |any )?(?:image|images|picture|pictures|photo|photos|scene|frame|video|view|"
+    r"(?:tell|say|determine|know|read|compare|rank|count|judge|identify|answer|confirm|decide|verify|describe|look|make out|do|"
+    r"check|observe|perceive|inspect)\b"
+    r"|\b(?:not (?:\w+ )?|never |unable to |without )(?:see|saw|seen|view|access|open|process|interpret|seeing|viewing|looking|"
+    r"checking|knowing|observing) (?:at )?(?:the |this |that |an? |any )?"
+    r"(?:image|images|picture|pictures|photo|photos|scene|frame|video|view|"
     r"camera|anything|it|clearly|enough|well)\b"
     r"|\bwithout (?:looking|checking|seeing|observing|knowing|counting|access)\b"
     rf"|\b(?:no|without|lack|lacks|lacked|not (?:have|had|get|got|receive|received|obtain|reach|given))"
     rf"(?: (?:any|an?|the|enough|usable|valid|clear|useful|further|sufficient|reliable|more|such|camera|tool|perception)){{0,3}} "
     rf"{_NOUNS}\b(?! (?:of|with|that) (?:an?|the) )"
     r"|\b(?:illegible|unreadable|unknown|indeterminable|undetermined|undecided|unavailable|uncertain|unclear|unverified|unanswerable)\b"
-    rf"|\bno (?:\w+ ){{0,3}}(?:information|data|access|results?|counts?|reply|output)(?: (?:is|are|was|were))?(?: (?:available|returned|given|known))?$"
-    r"|\b(?:refuse|decline|abstain|refrain)\b|\b(?:give|gave|given|giving) up\b|\bskipped\b|\bsight unseen\b|(?<!no )(?<!without )\berror\b"
+    rf"|\bno (?:\w+ ){{0,3}}(?:information|data|access|results?|counts?|reply|output)"
+    r"(?: (?:is|are|was|were))?(?: (?:available|returned|given|known))?$"
+    r"|\b(?:refuse|decline|abstain|refrain)\b|\b(?:give|gave|given|giving) up\b|\bskipped\b|\bsight unseen\b"
+    r"|(?<!no )(?<!without )\berror\b"
     r"|\bnothing (?:(?:i|we) can (?:say|tell|report)|to (?:say|tell|report)|could be (?:seen|observed|read|counted|determined))\b"
     r"|\b(?:no one|nobody|who|god) knows\b"
     r"|\btoo (?:\w+ )?(?:dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (?:\w+ )?"
@@ -65,18 +69,14 @@ _REFUSAL = re.compile(
 _ABANDONED = re.compile(r"\b(?:i|we) (?:refuse|decline|abstain|(?:give|gave) up|skipped)\b|\bsight unseen\b")
 """Phrases that abandon the task, whatever they name."""
 _FOREIGN = re.compile(
-    r"\b(?:no (?:lo )?(?:s[ée]|puedo)|no tengo (?:ni )?idea|non (?:lo )?so|non posso|je ne (?:sais|peux|vois) (?:pas|rien)|aucune id[ée]e|"
-    r"(?:wei(?:ß|ss)|kann|sehe) (?:es |ich |das |den |die )?(?:es |das |bild )?(?:nicht|nichts)|keine ahnung|n[ãa]o (?:sei|posso|consigo)|"
+    r"\b(?:no (?:lo )?(?:s[ée]|puedo)|no tengo (?:ni )?idea|non (?:lo )?so|non posso|je ne (?:sais|peux|vois) (?:pas|rien)|"
+    r"aucune id[ée]e|(?:wei(?:ß|ss)|kann|sehe) (?:es |ich |das |den |die )?(?:es |das |bild )?(?:nicht|nichts)|keine ahnung|"
+    r"n[ãa]o (?:sei|posso|consigo)|"
     r"(?:weet|kan) (?:het |ik )?niet|(?:vet|kan) inte|nie (?:wiem|mog[ęe]))\b"
 )
 """Refusals in other languages."""
 READINGS = re.compile(r"\"[^\"]*\"|\b[A-Z0-9][A-Z0-9'&-]+(?:[ /]+[A-Z0-9'&-]+)*\b")
 """Quoted texts and texts in capitals, which are read from signs and decline nothing ("NO ACCESS")."""
-_FOREIGN = re.compile(
-    r"\b(?:no (?:lo )?(?:s[ée]|puedo)|no tengo (?:ni )?idea|non (?:lo )?so|je ne (?:sais|peux) pas|aucune id[ée]e|"
-    r"wei(?:ß|ss) (?:es |ich )?(?:es )?nicht|keine ahnung|n[ãa]o (?:sei|posso)|weet (?:het |ik )?niet|vet inte|nie wiem)\b"
-)
-"""Refusals in other languages."""
 _RETRIED = re.compile(r"\b(?:first|initially|earlier|previously|before|until|again|retried|repeated|second|once|originally)\b")
 """Words that show that a failure was overcome later."""
 _BECAUSE = re.compile(r"^(?:because|since|as)\b")
@@ -91,28 +91,6 @@ _SPECULATION = re.compile(
     r"\b(?:probably|likely|presumably|surely|must|should|would|guess|assume|typical|typically|usually|normally|generally|often|expected)\b"
 )
 """Words that make a statement after a refusal a guess."""
-
-_COMMON = frozenset(
-    "a an the this that these those it its them they their i we you me my your he she one any some all each both either neither "
-    "myself is are was were be been being am has have had do does did can could will would may might must should not no and or of "
-    "in on at to for from with by as so if than then there here where how many much which what whether out now yet still also too "
-    "but really actually clearly exactly reliably certainly definitely honestly honest unfortunately sorry afraid however though "
-    "although just only even ever at all far sure certain true correct question answer result value ai language model assistant "
-    "image images picture pictures photo photos scene frame video feed view views camera tool tools perception call calls detector "
-    "eyes ability information data access response reply output evidence anything something else enough well way tell say know "
-    "see look looked about regarding reported returned loaded count counted number amount quantity total determine read answered "
-    "right wrong please because since while currently present visible available unavailable failed error take word put simply "
-    "frankly truly none zero nothing yes 0 go moment today possible able given need".split()
-)
-"""Words that do not name a subject of their own."""
-_OF_KIND: dict[str, frozenset[str]] = {
-    "choice": frozenset("colour shade side part position place half quarter more most fewer least option difference".split()),
-    "text": frozenset("text sign signs says writing written words letters price plate number board label name lettering".split()),
-    "ordering": frozenset("order distance distances nearest farthest closest position ranking rank compare more most".split()),
-    "relation": frozenset("more fewer less most same difference compare comparison".split()),
-    "number": frozenset("count counts number sum difference".split()),
-}
-"""Words for what questions of each kind ask."""
 
 
 def declines(expected: AnyExpected, cleaned: str) -> bool:
@@ -165,7 +143,7 @@ def _is_absence_given_as_reason(clause: list[Word], first: int, rest: list[Word]
 
 def _is_about(expected: AnyExpected, words: list[str]) -> bool:
     """Return whether a refusal has no subject of its own, other than what the question asks."""
-    known = _COMMON | _OF_KIND.get(expected.kind, frozenset())
+    known = COMMON_WORDS | WORDS_OF_KIND.get(expected.kind, frozenset())
     named = [part for wording in _wordings(expected) for part in plain_words(wording)]
     match = _REFUSAL.search(" ".join(words))
     phrase = set(match.group().split()) if match else set[str]()

@@ -48,7 +48,8 @@ _DECLINES = re.compile(
 
 _CORRECTED = re.compile(
     r"\b(?:correction|i mean|i meant|or rather(?! than)|(?:scratch|strike) that|make (?:that|it)(?= \w+\W*$)|i stand corrected|"
-    r"on second thoughts?|my mistake|oops|at first (?:it|they|there|i)\b[^.;!?\n]*?,? but)\b|(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
+    r"on second thoughts?|my mistake|oops|at first (?:it|they|there|i)\b[^.;!?\n]*?,? but)\b|"
+    r"(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
     re.IGNORECASE,
 )
 """Phrases that withdraw everything before them."""

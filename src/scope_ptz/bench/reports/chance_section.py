@@ -22,9 +22,9 @@ _ABOUT = (
     "In a contrast pair, two tasks have similar wording; the thing in question is present in one and absent in the other. In "
     "pair-consistent shares, a task of a pair counts only if both tasks of the pair are correct (contrast consistency, Gardner et "
     "al. 2020). Tasks without a pair, or whose twin was not run, count as they are.",
-    "Chance-corrected accuracy is the mean over the categories of (p - c) / (1 - c), where p is the pair-consistent accuracy in the "
-    "category and c that of the best constant answer after moving and looking once (Abbott 1925). It is 0% for the best constant "
-    "answers, 100% if every trial is correct, and negative below chance.",
+    "Chance-corrected accuracy is the mean over the categories of (p - c) / (1 - c), where p is the pair-consistent accuracy in "
+    "the category and c is that of the best constant answer after moving and looking once (Abbott 1925). It is 0% for the best "
+    "constant answers, 100% if every trial is correct, and negative below chance.",
 )
 
 

@@ -9,7 +9,7 @@ therefore an upper bound of what such an agent can win.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from scope_ptz.bench.scoring.checks import check_answer, run_checks
@@ -99,14 +99,19 @@ def expects_reply(task: Task) -> bool:
 
 
 def constant_replies(tasks: Sequence[Task]) -> tuple[ConstantReply, ...]:
-    """Return the constant replies to try: generic ones, and the most frequent correct answers of the tasks."""
+    """Return the constant replies to try: generic ones, and the most frequent correct answers of at least two tasks.
+
+    An answer that is correct for a single task is no guess that its frequency suggests.
+    """
     counts, kinds = Counter[str](), dict[str, set[str]]()
     for task in tasks:
         if not isinstance(task.expected, ActionOnly):
             text = constant_text(task.expected)
             counts[text] += 1
             kinds.setdefault(text, set()).add(task.expected.kind)
-    frequent = sorted((text for text in counts if text not in _GENERIC), key=lambda text: (-counts[text], text))[:MAX_ANSWERS]
+    frequent = sorted(
+        (text for text, n in counts.items() if n > 1 and text not in _GENERIC), key=lambda text: (-counts[text], text)
+    )[:MAX_ANSWERS]
     return (
         *(ConstantReply(text) for text in _GENERIC),
         *(ConstantReply(text, kinds=frozenset(kinds[text])) for text in frequent),
@@ -156,13 +161,13 @@ def idle_episode(task: Task) -> Episode:
 
 
 def passes_without_answer(task: Task, episode: Episode) -> bool:
-    """Return whether a run passes every check except that of the answer."""
-    return all(result.passed is True for result in run_checks(task, episode) if result.name != "answer")
+    """Return whether a run passes every check except those of the answer and of the outcome."""
+    return all(result.passed is True for result in run_checks(task, episode) if result.name not in ("answer", "outcome"))
 
 
-def accepts_answer(task: Task, reply: ConstantReply) -> bool:
-    """Return whether the answer check accepts a reply."""
-    if reply.kinds and task.expected.kind not in reply.kinds:
+def accepts_reply(task: Task, reply: ConstantReply) -> bool:
+    """Return whether the checks of the answer and of the outcome accept a reply."""
+    if reply.outcome not in task.behaviour.outcomes or (reply.kinds and task.expected.kind not in reply.kinds):
         return False
     result = check_answer(task, replace(_EMPTY, answer=reply.text, outcome=reply.outcome))
     return result is None or result.passed is True
@@ -171,24 +176,28 @@ def accepts_answer(task: Task, reply: ConstantReply) -> bool:
 _EMPTY = Episode("", CameraPosition(None, Pose()), (), CameraPosition(None, Pose()), "", "answered")
 """A run without calls, for the check of an answer, which considers only the text."""
 
+Won = dict[ConstantReply, frozenset[str]]
+"""The ids of the tasks that each reply wins."""
 
-def tasks_won(tasks: Sequence[Task], replies: Sequence[ConstantReply], *, looks: bool) -> dict[ConstantReply, frozenset[str]]:
-    """Return the ids of the tasks that each reply wins.
+
+def tasks_accepting(tasks: Sequence[Task], replies: Sequence[ConstantReply]) -> Won:
+    """Return the tasks whose checks of the answer and of the outcome accept each reply."""
+    asked = [task for task in tasks if expects_reply(task)]
+    return {reply: frozenset(task.id for task in asked if accepts_reply(task, reply)) for reply in replies}
+
+
+def tasks_won(tasks: Sequence[Task], accepted: Won, *, looks: bool) -> Won:
+    """Return the tasks that each reply wins by all checks.
 
     Args:
         tasks: The tasks.
-        replies: The replies.
+        accepted: The tasks that accept each reply.
         looks: Whether the agent moves as asked and looks once; otherwise it makes no call.
     """
-    won: dict[ConstantReply, set[str]] = {reply: set() for reply in replies}
-    for task in filter(expects_reply, tasks):
-        episode = looking_episode(task) if looks else idle_episode(task)
-        for outcome in dict.fromkeys(reply.outcome for reply in replies):
-            if passes_without_answer(task, replace(episode, outcome=outcome)):
-                for reply in replies:
-                    if reply.outcome == outcome and accepts_answer(task, reply):
-                        won[reply].add(task.id)
-    return {reply: frozenset(ids) for reply, ids in won.items()}
+    candidates = frozenset[str]().union(*accepted.values())
+    rows = [task for task in tasks if task.id in candidates]
+    passing = {t.id for t in rows if passes_without_answer(t, looking_episode(t) if looks else idle_episode(t))}
+    return {reply: ids & passing for reply, ids in accepted.items()}
 
 
 _cache: dict[str, ChanceLevel] = {}
@@ -205,22 +214,16 @@ def chance_level(tasks: Sequence[Task]) -> ChanceLevel:
 
 
 def _chance_level(tasks: Sequence[Task]) -> ChanceLevel:
-    replies = constant_replies(tasks)
     asked = [task for task in tasks if expects_reply(task)]
-    looking = tasks_won(tasks, replies, looks=True)
-    answerable = [task for task in asked if not isinstance(task.expected, ActionOnly)]
-    accepted = {
-        reply: frozenset(task.id for task in answerable if accepts_answer(task, reply))
-        for reply in replies
-        if reply.outcome == "answered"
-    }
+    accepted = tasks_accepting(tasks, constant_replies(tasks))
+    looking = tasks_won(tasks, accepted, looks=True)
     by_category = {category: [t for t in tasks if t.category == category] for category in dict.fromkeys(t.category for t in tasks)}
     adaptive_correct = sum(max(len(_within(ids, rows)) for ids in looking.values()) for rows in by_category.values())
     consistent = {name: max(_whole(ids, rows) for ids in looking.values()) for name, rows in by_category.items()}
     return ChanceLevel(
         tasks=len(tasks),
-        without_calls=_best(tasks_won(tasks, replies, looks=False), asked),
-        accepted=_best(accepted, answerable),
+        without_calls=_best(tasks_won(tasks, accepted, looks=False), asked),
+        accepted=_best(accepted, asked),
         looking=_best(looking, asked),
         adaptive=ConstantAgentScore(BY_CATEGORY, adaptive_correct, sum(consistent.values()), len(asked)),
         by_category={name: consistent[name] / len(rows) for name, rows in by_category.items()},
@@ -236,12 +239,12 @@ def _whole(ids: frozenset[str], tasks: Sequence[Task]) -> int:
     return sum(whole_pairs([t.id in ids for t in tasks], [t.id for t in tasks], [t.pair for t in tasks]))
 
 
-def _best(won: Mapping[ConstantReply, frozenset[str]], tasks: Sequence[Task]) -> ConstantAgentScore:
+def _best(won: Won, tasks: Sequence[Task]) -> ConstantAgentScore:
     """Return the reply that wins the most tasks. Ties go to the first."""
     scores = list(_scores(won, tasks))
     return max(scores, key=lambda score: score.correct) if scores else ConstantAgentScore("", 0, 0, len(tasks))
 
 
-def _scores(won: Mapping[ConstantReply, frozenset[str]], tasks: Sequence[Task]) -> Iterator[ConstantAgentScore]:
+def _scores(won: Won, tasks: Sequence[Task]) -> Iterator[ConstantAgentScore]:
     for reply, ids in won.items():
         yield ConstantAgentScore(reply.text, len(_within(ids, tasks)), _whole(ids, tasks), len(tasks))

@@ -59,7 +59,7 @@ class ChanceLevel:
     Attributes:
         tasks: Number of tasks.
         without_calls: The best constant answer of an agent that makes no calls, by the checks.
-        accepted: The most accepted constant answer, if only answers were checked.
+        accepted: The most accepted constant reply, if only answers and outcomes were checked.
         looking: The best constant answer of an agent that moves as asked and looks once, by the checks.
         adaptive: The same agent with the best constant answer of each category.
         by_category: The largest pair-consistent fraction of the tasks of each category that a constant answer wins after moving as
@@ -101,9 +101,7 @@ def whole_pairs(correct: Sequence[bool], units: Sequence[str], twins: Sequence[s
         Each outcome, but False if the twin has an incorrect outcome. A twin without an outcome changes nothing.
     """
     by_unit = dict(zip(units, correct, strict=True))
-    return [
-        value and by_unit.get(twin, True) if twin is not None else value for value, twin in zip(correct, twins, strict=True)
-    ]
+    return [value and by_unit.get(twin, True) if twin is not None else value for value, twin in zip(correct, twins, strict=True)]
 
 
 def chance_corrected(scores: Scores, by_category: Mapping[str, float]) -> ChanceCorrected | None:

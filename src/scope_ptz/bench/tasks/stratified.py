@@ -20,7 +20,6 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.bench.tasks.task import Task
 
-
 ABSENT = "no"
 """Key of the answers "no" and "there is none", which the same text gives."""
 
@@ -75,7 +74,8 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
     """Return the ids of a sample that is balanced over answers.
 
     The tasks of a contrast pair are taken together, so that a sample contains as many absences as presences of paired things. One
-    pair may be halved if only one place is left and no unpaired task fits. Each step takes from the group that is least
+    pair may be halved if only one place is left and no unpaired task fits. Paired tasks have the same share of the sample as of all
+    tasks. Each step takes from the group that is least
     represented in the sample so far, relative to the numbers of tasks with each of its fields and to the number of paired or
     unpaired tasks of its category. Within a group, the task is taken whose answer the sample contains least often.
 
@@ -88,18 +88,23 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
     groups: dict[_Group, list[_Unit]] = {}
     for unit in _units(sorted(tasks, key=lambda task: (order(task.id), task.id))):
         groups.setdefault(_group_of(unit), []).append(unit)
+    pairs = sum(2 * len(units) for group, units in groups.items() if group.paired)
+    quotas = {True: 2 * round(number * pairs / len(tasks) / 2) if tasks else 0}
+    quotas[False] = number - quotas[True]
     totals = Counter(margin for group, units in groups.items() for unit in units for _ in unit for margin in _margins(group))
     taken, answers, chosen = Counter[_Margin](), Counter[str](), list[str]()
     while len(chosen) < number:
         free = number - len(chosen)
-        fitting = [group for group, units in groups.items() if units and (not group.paired or free > 1)]
+        remaining = [group for group, units in groups.items() if units]
+        fitting = [group for group in remaining if quotas[group.paired] > 0 and (not group.paired or free > 1)]
         # Ties go to the group with the most remaining tasks, so that they do not exhaust small groups.
         least = min(
-            fitting or [group for group, units in groups.items() if units],
+            fitting or remaining,
             key=lambda g: (sum(Fraction(taken[m], totals[m]) for m in _margins(g)), -len(groups[g]), g),
         )
         unit = min(groups[least], key=lambda u: _repetition(u, answers))
         groups[least].remove(unit)
+        quotas[least.paired] -= len(unit)
         for task in unit[:free]:
             chosen.append(task.id)
             taken.update(_margins(least))

@@ -109,8 +109,7 @@ class GroundTruthPerception(Perception):
         parsed, view = parse_question(question), self.view(frame, question)
         if parsed is None:
             raise NotUnderstoodError(
-                f"The question '{question}' is not understood. Ask in plain words about what the picture shows, for example "
-                "'Is there a red car?' or 'What colour is the van?'."
+                f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
             )
         return answer(view, parsed)
 
@@ -123,10 +122,11 @@ class GroundTruthPerception(Perception):
             raise PerceptionError("The description is empty.")
         parsed, view = parse_description(description), self.view(frame, description)
         things = find(view, parsed)
-        if not things and not any(nouns_in(phrase.words, view.nouns) for phrase in parsed.phrases):
+        absent = self.open_scene(frame.origin.scene).file.absent if frame.origin is not None else ()
+        if not things and not any(nouns_in(phrase.words, view.nouns | frozenset(absent)) for phrase in parsed.phrases):
             raise NotUnderstoodError(
                 f"The description '{description}' is not understood, because it names no known kind of thing. Describe the things "
-                "with a noun, for example 'red cars' or 'the man with the umbrella'."
+                "by a noun."
             )
         return things
 

@@ -28,7 +28,8 @@ _FORMS: tuple[tuple[Form, re.Pattern[str]], ...] = (
     (
         "exists",
         re.compile(
-            r"\b(is|are) (there|any|an?\b|one\b)|\bany\b|\b(see|look|find|check|whether|if) (\w+ ){0,4}?(for|an?|any|there)\b|\bfound\b",
+            r"\b(is|are) (there|any|an?\b|one\b)|\bany\b|\bfound\b"
+            r"|\b(see|look|find|check|whether|if) (\w+ ){0,4}?(for|an?|any|there)\b",
             re.IGNORECASE,
         ),
     ),
