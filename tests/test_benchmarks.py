@@ -53,6 +53,7 @@ def test_a_benchmark_can_be_imported_and_has_help(
     ("reading", ["--scene", "highway-works", "--views", "1"]),
     ("bench_numbers", ["--split", "lite"]),
     ("gym_steps", ["--rounds", "4", "--vector"]),
+    ("simulated_report", ["out"]),
     ("search_baselines", ["--episodes", "2", "--scene", "highway-works"]),
 ])  # fmt: skip
 def test_a_longer_benchmark_runs(name: str, arguments: list[str], tmp_path: Path) -> None:

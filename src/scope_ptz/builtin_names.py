@@ -18,6 +18,9 @@ NOISY_SOURCE = "noisy-ground-truth"
 SERVED_TRUTH = "simulation-only-truth"
 """Perception that asks a virtual camera on the same machine for the ground truth of its frames."""
 
+EXACT_PERCEPTION = (GROUND_TRUTH, SERVED_TRUTH)
+"""Perception that states only what is true of the frame."""
+
 BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY, SERVED_TRUTH)
 DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY, SERVED_TRUTH)
 """Planners and perception that need no model: the same input always gives the same output."""

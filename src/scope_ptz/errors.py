@@ -99,6 +99,10 @@ class PerceptionError(_ModelError):
     """Perception cannot interpret a frame. An empty result ("nothing there") is not an error."""
 
 
+class NotUnderstoodError(PerceptionError):
+    """Perception does not understand a question or a description. The caller can ask in other words."""
+
+
 class PlannerError(_ModelError):
     """The planner fails, or its reply is not a decision."""
 

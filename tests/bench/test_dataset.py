@@ -14,7 +14,8 @@ from tests.cli.conftest import Scope, scenes, scope
 __all__ = ["scenes", "scope"]
 
 FILES = {
-    "gold.jsonl.gz", "lite.txt", "manifest.json", "paraphrase.jsonl", "proof.json", "reaction.jsonl", "tasks.jsonl", "unseen.jsonl",
+    "gold.jsonl.gz", "lite.txt", "lite2.txt", "manifest.json", "paraphrase.jsonl", "proof.json", "reaction.jsonl", "tasks.jsonl",
+    "unseen.jsonl",
 }  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scope_ptz.bench.scoring.episode import Episode, Observation
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.verdict import score_episode
-from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Text
+from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Number, Text
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Item, RequiredCall, Task
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, confusion, mutate
 from tests.bench.making import (
@@ -226,6 +226,35 @@ def test_an_unfound_target_is_a_perception_error_and_an_unrequested_one_is_an_ag
     assert error_mode(track, tracked("the van", True)) is None
     assert error_mode(track, tracked("the van", False)) is ErrorMode.VLM_QUERY
     assert error_mode(track, tracked("the bus", True)) is ErrorMode.TOOL_ARGS
+
+
+PERCEPTION_MODES = {ErrorMode.VLM_COUNTING, ErrorMode.VLM_QUERY}
+
+
+def test_exact_perception_is_never_to_blame() -> None:
+    """Runs with inserted faults of perception become errors of the agent if perception is known to be exact."""
+    faulty = [one for one in gold() if one.mode in PERCEPTION_MODES]
+    modes = {error_mode(one.task, one.episode, exact_perception=True) for one in faulty}
+    assert faulty and modes and not modes & PERCEPTION_MODES and None not in modes
+
+
+def test_a_question_that_exact_perception_could_not_answer_is_an_argument_error() -> None:
+    of = task(
+        96, "descriptor", Choice(value="red", options={"red": (), "blue": ()}), [told("It is red.", "What colour is the van?")],
+        evidence=[view(START, shows=Choice(value="red", options={"red": (), "blue": ()}), must_look=True, whole=True)],
+    )  # fmt: skip
+    asked = ("query_answer", {"question": "What colour is the van?"}, {"answer": "I cannot tell.", "known": False})
+    episode = play([asked], "I cannot tell.")
+    assert error_mode(of, episode) is ErrorMode.VLM_QUERY
+    assert error_mode(of, episode, exact_perception=True) is ErrorMode.TOOL_ARGS
+
+
+def test_a_reply_about_something_else_is_not_an_error_about_the_evidence() -> None:
+    cars = Number(value=3, unit=("car",))
+    of = task(95, "counting", cars, [counted(3, "cars")], evidence=[view(START, shows=cars, whole=True)])
+    other, own = counted(5, "people"), counted(5, "cars")
+    assert error_mode(of, play([other], "There are 5 cars.")) is ErrorMode.REASONING
+    assert error_mode(of, play([own], "There are 5 cars.")) is ErrorMode.VLM_COUNTING
 
 
 STEPS: st.SearchStrategy[Step] = st.sampled_from(

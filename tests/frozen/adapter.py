@@ -140,6 +140,7 @@ def read_log(log: Path) -> dict[str, Any]:
 
     content = read_evaluation(log).model_dump(mode="json", by_alias=True)
     del content["log"]
+    content.pop("failure", None)  # Version 0.1.0 did not read why an evaluation ended.
     return content
 
 

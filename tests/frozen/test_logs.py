@@ -42,11 +42,13 @@ def test_a_judge_gets_the_stored_requests(tmp_path: Path) -> None:
 
 
 def test_report_tables_have_the_stored_cells(tmp_path: Path) -> None:
+    """Later versions may add tables, and columns after the stored ones."""
     found = cases.tables(tmp_path)
     stored = {path.name: path.read_text("utf-8") for path in (cases.DATA / "tables").glob("*.csv")}
-    assert sorted(found) == sorted(stored)
+    assert stored.keys() <= found.keys()
     for name, text in stored.items():
-        assert list(csv.reader(io.StringIO(found[name]))) == list(csv.reader(io.StringIO(text))), name
+        rows = list(csv.reader(io.StringIO(text)))
+        assert [row[: len(rows[0])] for row in csv.reader(io.StringIO(found[name]))] == rows, name
 
 
 def test_making_a_submission_gives_the_stored_lines(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any, cast
@@ -9,7 +10,7 @@ from typing import Any, cast
 import pytest
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.errors import PackError, PerceptionError
+from scope_ptz.errors import NotUnderstoodError, PackError, PerceptionError
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
@@ -68,6 +69,26 @@ async def test_damaged_packs_are_errors() -> None:
 
     with pytest.raises(PerceptionError, match="damaged"):
         await GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), read_truth=broken).detect(yard.frame(), "car")
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("text", ["the gizmotron", "from the docks preset"])
+async def test_ground_truth_reports_a_description_that_names_nothing_it_knows(text: str) -> None:
+    """It is an error of the caller, and not a count of 0."""
+    with pytest.raises(NotUnderstoodError, match=re.escape(text)):
+        await ground_truth().detect(yard.frame(), text)
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("text", ["a dog", "red elephants", "purple vans"])
+async def test_known_things_that_are_not_in_view_are_not_an_error(text: str) -> None:
+    assert (await ground_truth().detect(yard.frame(), text)).boxes == ()
+
+
+@pytest.mark.anyio
+async def test_ground_truth_reports_a_question_that_it_does_not_understand() -> None:
+    with pytest.raises(NotUnderstoodError, match="what is the meaning of life"):
+        await ground_truth().query(yard.frame(), "what is the meaning of life and why")
 
 
 @pytest.mark.anyio

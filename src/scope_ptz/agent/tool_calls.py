@@ -14,7 +14,15 @@ from scope_ptz.agent.planner_views import PictureStore, SharedFrameCamera
 from scope_ptz.agent.records import Called, CallFault, Listener, Outcome, RecordedPose
 from scope_ptz.agent.timing import PerceptionReply, Stopwatch, TimedCamera, TimedPerception, Timings
 from scope_ptz.camera.base import Camera
-from scope_ptz.errors import CameraError, OutputError, PackError, PerceptionError, ToolCallError, UnknownNameError
+from scope_ptz.errors import (
+    CameraError,
+    NotUnderstoodError,
+    OutputError,
+    PackError,
+    PerceptionError,
+    ToolCallError,
+    UnknownNameError,
+)
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import CallTools, Exchange, ToolCall, ToolOutcome
@@ -150,7 +158,7 @@ class CallRunner:
                 frame = await self._images.save_frame(await camera.frame())
             last_picture = await images.last_picture() if self._accepts_images else None
             outcome = ToolOutcome(call=call, result=result.model_dump(mode="json"), picture=last_picture)
-        except (ToolCallError, UnknownNameError) as error:
+        except (ToolCallError, UnknownNameError, NotUnderstoodError) as error:
             outcome, fault = ToolOutcome(call=call, error=str(error)), "bad_call"
             self.bad_calls += 1
         except PerceptionError as error:

@@ -131,7 +131,7 @@ def load_tasks(
         tasks: a split ("core", "lite", "paraphrase", "reaction", "unseen" or "all"), or a task file (JSONL or YAML).
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
-        limit: at most this many tasks, sampled evenly across the selected categories and scenes.
+        limit: at most this many tasks, sampled evenly across the selected categories, scenes and answers.
 
     Returns:
         The tasks, always the same ones for the same arguments.
@@ -213,7 +213,7 @@ def evaluate(
         agent_in_process: run the agent inside this program, for debugging. It can reach the answers; its results are labelled so.
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
-        limit: at most this many tasks, sampled evenly across the selected categories and scenes.
+        limit: at most this many tasks, sampled evenly across the selected categories, scenes and answers.
         epochs: number of runs of each task.
         seed: seed for every random choice.
         max_steps: number of planner steps after which a run ends.

@@ -23,7 +23,7 @@ from scope_ptz.bench.scoring.episode import (
 from scope_ptz.bench.tasks.task import ProgramCall, Task
 from scope_ptz.camera.base import Camera, Frame, FrameOrigin
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.errors import PerceptionError, ToolCallError, UnknownNameError
+from scope_ptz.errors import NotUnderstoodError, PerceptionError, ToolCallError, UnknownNameError
 from scope_ptz.geometry import Perspective
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene
@@ -119,7 +119,7 @@ class EpisodeRecorder:
         result, error, fault = None, None, None
         try:
             result = (await run_tool(self._context, name, dict(arguments))).model_dump(mode="json")
-        except (ToolCallError, UnknownNameError) as exception:
+        except (ToolCallError, UnknownNameError, NotUnderstoodError) as exception:
             error, fault = str(exception), "bad_call"
         except PerceptionError as exception:
             error, fault = str(exception), "perception"

@@ -83,7 +83,7 @@ class EvaluationOptions:
         tasks: Split (core, lite, paraphrase, reaction, unseen, all) or task file.
         categories: Run only tasks of these categories; all when empty.
         scenes: Run only tasks of these scenes; all when empty.
-        limit: Run at most this many tasks, sampled evenly across the selected categories and scenes.
+        limit: Run at most this many tasks, sampled evenly across the selected categories, scenes and answers.
         epochs: Number of runs of each task.
         seed: Seed for every random choice.
         agent: "scope", or ``module:Class`` of an external agent.

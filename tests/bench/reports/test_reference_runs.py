@@ -121,13 +121,13 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
     assert len(edged) == 2
 
 
-def test_a_ring_does_not_touch_the_marker_inside_it() -> None:
-    from scope_ptz.bench.reports.candidates import candidates
+def test_a_broken_outline_differs_from_the_filling_of_its_marker() -> None:
+    from scope_ptz.bench.reports.choice.candidates import candidates
 
     runs = report_runs([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
     (found,) = candidates(runs, runs)
     assert found.on_front and found.contended
     svg = chart(build(*(r.evaluation for r in runs)), "chart-front").svg
-    assert svg.count("stroke-dasharray") >= 2, "a broken ring in the plot and one in the legend"
-    drawn = [part for part in svg.split("<path ")[1:] if "stroke-dasharray" in part]
-    assert all("fill: none" in part.split("/>")[0] for part in drawn), "no broken outline on a filling of its own colour"
+    assert svg.count("stroke-dasharray") >= 2, "a broken outline in the plot and one in the legend"
+    outlines = [part for part in re.findall(r'style="([^"]*)"', svg) if "stroke-dasharray" in part and "fill: #" in part]
+    assert outlines and all("stroke: var(--ink)" in part for part in outlines), "no broken outline on a filling of its own colour"

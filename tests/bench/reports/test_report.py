@@ -257,7 +257,7 @@ def test_unmeasured_quantities_are_never_numbers() -> None:
 def test_an_unfinished_run_is_reported_and_an_empty_one_is_refused() -> None:
     whole = evaluation("qwen3-4b", "moondream2", facts(2), 0.6)
     cut = whole.model_copy(update={"trials": whole.trials[:5]})
-    assert any("5 of 16 trials" in warning for warning in build_report([cut], load_registry()).warnings)
+    assert any("5 of 16 trials" in problem for problem in build_report([cut], load_registry()).problems)
     with pytest.raises(InputError, match="no finished run"):
         build_report([whole.model_copy(update={"trials": ()})], load_registry())
 
@@ -293,7 +293,7 @@ def test_categories_with_one_viewpoint_are_named_with_the_macro_average() -> Non
     assert isinstance(single, IntervalEstimate) and single.low is None
     page = html(made)
     assert "without location" in page and "interval unknown" in page
-    assert "without location" in made.summary[1]
+    assert "without location" in made.sections[0].text[0]
 
 
 def test_one_viewpoint_gives_no_interval() -> None:

@@ -30,6 +30,8 @@ def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
     after_noun = words[end : end + 1]
     if after_noun and after_noun[0].text in _TOOL_WORDS and not after_noun[0].gap.strip():
         return Claim.NOTHING
+    if words[start].text in _DIRECTIONS and _MOVED.search(before):
+        return Claim.NOTHING
     if _NO_KNOWLEDGE.search(before) or _ONLY_CHECKED.match(after):
         return Claim.NOTHING
     if not _is_sought(before, after):
@@ -80,6 +82,13 @@ _MISSED = re.compile(
     r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"
 )
 """Results of a search that found nothing, such as "found none" and "without success"."""
+_DIRECTIONS = frozenset({"left", "right", "up", "down"})
+"""Directions in which the camera can be moved."""
+_MOVED = re.compile(
+    r"(?:^|\b(?:i|we|camera|after|by|having|then|and|was|is) )(?:\w+ )?"
+    r"(?:turned|turning|panned|panning|rotated|rotating|swung|swinging|moved|moving) (?:(?!(?:and|so|it|is|was)\b)\w+ ){0,6}$"
+)
+"""The beginning of a report of a camera's move, such as "I turned 20 degrees to the"."""
 _TOOL_WORDS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
 """Nouns that turn the name of a thing into that of a tool or a request ("the car detector")."""
 _NO_KNOWLEDGE = re.compile(

@@ -99,7 +99,9 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
             at += 1
             continue
         is_glued = at > 0 and words[at].gap == ""
-        if not is_glued and (_followed_by(words, end, unit) or not _is_measure_or_label(words, at, end)):
+        if not is_glued and (
+            (_followed_by(words, end, unit) and not _is_length_of(words, end)) or not _is_measure_or_label(words, at, end)
+        ):
             mentions.append(_number_mention(text, value, at, end, unit))
         at = end
     return mentions
@@ -125,6 +127,12 @@ def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: 
         denied=_is_denied(words, start),
         total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (counts_unit or bare)),
     )
+
+
+def _is_length_of(words: Sequence[Word], end: int) -> bool:
+    """Return whether a number is a measure of a row or group of things, as in "5 metres of cones"."""
+    after = [word.text for word in words[end : end + 2]]
+    return after[1:] == ["of"] and any(same_word(after[0], measure) for measure in _MEASURES if measure not in ("x", "time"))
 
 
 def _is_measure_or_label(words: Sequence[Word], start: int, end: int) -> bool:

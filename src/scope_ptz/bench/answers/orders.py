@@ -35,6 +35,8 @@ def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
     start = final_order_start(text, all_mentions, set(expected.options))
     mentions = [m for m in all_mentions if m.start >= start]
     order = list(dict.fromkeys(m.name for m in mentions))
+    if _gives_two_orders([m.name for m in mentions], len(expected.options)):
+        return Unreadable("it states several orders")
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
     ends = [m for m in text.mentions({"first": expected.first, "last": expected.last}) if m.start >= start]
@@ -44,6 +46,12 @@ def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
     if numbers_contradict(text, all_mentions, stated, expected.first):
         return Unreadable("its own numbers contradict the order")
     return ParsedValue(stated)
+
+
+def _gives_two_orders(names: Sequence[str], number: int) -> bool:
+    """Return whether the names are two complete lists in different orders."""
+    one, two = names[:number], names[number:]
+    return len(names) == 2 * number and len(set(one)) == len(set(two)) == number and list(one) != list(two)
 
 
 def _stated_order(

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from scope_ptz.bench.answers.choices import parse_choice, parse_description, parse_name_set
 from scope_ptz.bench.answers.counts import parse_number
+from scope_ptz.bench.answers.hedges import why_nothing_is_stated
 from scope_ptz.bench.answers.orders import parse_ordering, parse_relation
 from scope_ptz.bench.answers.parsed import Declined, ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.presence import parse_none_there, parse_yes_no
+from scope_ptz.bench.answers.refusals import declines
 from scope_ptz.bench.answers.strings import parse_text, same_text
-from scope_ptz.bench.answers.text import AnswerText, answer_text
+from scope_ptz.bench.answers.text import AnswerText, answer_text, without_withdrawn
+from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -46,6 +49,12 @@ def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
         return Declined()
     if text.hedged and isinstance(parsed, Unreadable):
         return Unreadable("only a guess")
+    if isinstance(parsed, ParsedValue):
+        stated = without_withdrawn(clean(answer))
+        if declines(expected, stated):
+            return Declined()
+        if (reason := why_nothing_is_stated(expected, stated)) is not None:
+            return Unreadable(reason)
     return parsed
 
 

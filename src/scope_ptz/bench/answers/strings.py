@@ -21,7 +21,7 @@ _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", 
 _DIGITS = {word: str(number) for number, word in enumerate(SMALL_NUMBERS[:13])}
 """Number words and the digits that they are compared as."""
 _CUES = (
-    (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
+    (re.compile(r"\b(?:reads?(?! (?:the|its|this|that) \w+\s*:)|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
     (re.compile(r":\s+"), 14),
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
     (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),

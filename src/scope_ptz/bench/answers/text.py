@@ -17,7 +17,7 @@ NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none",
 """Words that deny the things that are named after them."""
 _CONTRAST_PHRASES = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
-    ("except",), ("except", "for"), ("besides",), ("excluding",),
+    ("except",), ("except", "for"), ("besides",), ("excluding",), ("anything", "but"),
 )  # fmt: skip
 """Phrases that name something only as a contrast."""
 _A_OR_THE = frozenset({"a", "an", "the"})
@@ -48,7 +48,8 @@ _DECLINES = re.compile(
 
 _CORRECTED = re.compile(
     r"\b(?:correction|i mean|i meant|or rather(?! than)|(?:scratch|strike) that|make (?:that|it)(?= \w+\W*$)|i stand corrected|"
-    r"on second thoughts?|my mistake|oops)\b|(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
+    r"on second thoughts?|my mistake|oops|at first (?:it|they|there|i)\b[^.;!?\n]*?,? but)\b|"
+    r"(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
     re.IGNORECASE,
 )
 """Phrases that withdraw everything before them."""
@@ -240,7 +241,7 @@ def answer_text(text: str) -> AnswerText:
     Questions, withdrawn statements, guesses and clauses that decline to answer are left out.
     """
     cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" is white
-    cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
+    cleaned = without_withdrawn(cleaned)
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     stating_words, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
@@ -257,6 +258,11 @@ def answer_text(text: str) -> AnswerText:
         else:
             stating_words += clause_words
     return AnswerText(tuple(stating_words), declined, hedged)
+
+
+def without_withdrawn(cleaned: str) -> str:
+    """Return a cleaned text from its last correction on ("scratch that", "I mean")."""
+    return cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
 
 
 def _premise(words: Sequence[Word], refusal: int) -> Sequence[Word]:

@@ -52,7 +52,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             split: Split of the dataset (core, lite, paraphrase, reaction, unseen, all), or a task file.
             category: Run only tasks of these categories, separated by commas.
             scene: Run only tasks of these scenes, separated by commas.
-            limit: Run at most this many tasks, sampled evenly across the selected categories and scenes.
+            limit: Run at most this many tasks, sampled evenly across the selected categories, scenes and answers.
             agent: "scope" for the built-in loop, or ``module:Class`` of an external agent.
             pictures: Render frames and log them.
             max_steps: Planner steps after which a run ends.

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from fractions import Fraction
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from scope_ptz.bench.tasks.imported import ImportedTask
+from scope_ptz.bench.tasks.stratified import SampledTask, answer_key, balanced_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.bench.tasks.task_wording import facts_of
@@ -101,8 +100,8 @@ def select(
 ) -> tuple[Entry, ...]:
     """Return the entries of the given categories and scenes. No categories means all categories; no scenes means all scenes.
 
-    If there are more than ``limit`` entries, they are sampled evenly across categories, scenes and scopes. The sampling is
-    deterministic.
+    If there are more than ``limit`` entries, they are sampled evenly across categories, scenes, scopes and answers. Both
+    tasks of a pair of an absence and a presence are sampled together. The sampling is deterministic.
 
     Raises:
         UnknownNameError: One of the categories or scenes matches no entry.
@@ -126,31 +125,21 @@ def select(
 
 
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
-    """Sample entries evenly, and return them in their original order.
-
-    Each step takes one more entry from the group (category, scene, scope) that is least represented in the sample so far, relative
-    to the numbers of entries with its category, its scene and its scope. Within a group, the sampled entries are evenly spaced.
-    """
-    groups: dict[tuple[str, str, str], list[Entry]] = {}
-    for entry in entries:
-        groups.setdefault((entry.facts.category, entry.facts.scene, entry.facts.scope), []).append(entry)
-    totals = Counter((field, name) for group, members in groups.items() for field, name in enumerate(group) for _ in members)
-    taken, group_sizes = Counter[tuple[int, str]](), Counter[tuple[str, str, str]]()
-    for _ in range(limit):
-        candidates = [group for group, members in groups.items() if group_sizes[group] < len(members)]
-        # Ties go to the group with the most remaining entries, so that they do not exhaust small groups.
-        least = min(
-            candidates,
-            key=lambda g: (sum(Fraction(taken[f], totals[f]) for f in enumerate(g)), group_sizes[g] - len(groups[g])),
-        )
-        group_sizes[least] += 1
-        taken.update(enumerate(least))
-    selected = {
-        id(members[index * len(members) // group_sizes[group]])
-        for group, members in groups.items()
-        for index in range(group_sizes[group])
-    }
-    return tuple(entry for entry in entries if id(entry) in selected)
+    """Sample entries evenly over categories, scenes, scopes and answers, and return them in their original order."""
+    index_of = {entry.facts.id: f"{index:09}" for index, entry in enumerate(entries)}
+    chosen = balanced_sample(
+        [
+            SampledTask(
+                f"{index:09}",
+                (entry.facts.category, entry.facts.scene, entry.facts.scope),
+                "" if entry.task is None else answer_key(entry.task.expected),
+                index_of.get(entry.facts.pair or ""),
+            )
+            for index, entry in enumerate(entries)
+        ],
+        limit,
+    )
+    return tuple(entry for index, entry in enumerate(entries) if f"{index:09}" in chosen)
 
 
 def digest(entries: Iterable[Entry]) -> str:

@@ -59,7 +59,21 @@ def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = No
     order = {str(name): index for index, name in enumerate(header.eval.dataset.sample_ids or ())}
     trials.sort(key=lambda trial: (order.get(trial.task.id, len(order)), trial.task.id, trial.epoch))
     priced = (t.model_copy(update={"cost_usd": cost_usd(card, t.input_tokens, t.output_tokens)}) for t in trials)
-    return Evaluation(card=card, trials=tuple(priced), wanted=expected_trials, log=str(path), findings=findings)
+    return Evaluation(
+        card=card,
+        trials=tuple(priced),
+        wanted=expected_trials,
+        log=str(path),
+        findings=findings,
+        failure=_failure(header),
+    )
+
+
+def _failure(header: EvalLog) -> str:
+    """Return the error that ended an evaluation; empty if none did."""
+    if header.status != "error":
+        return ""
+    return header.error.message if header.error is not None else "some of its runs failed"
 
 
 def trials_by_sample(path: Path) -> dict[str, Trial]:

@@ -18,6 +18,7 @@ from scope_ptz.bench.scoring.error_modes import error_mode
 from scope_ptz.bench.scoring.imported_check import check_imported_calls
 from scope_ptz.bench.scoring.trials import CheckRecord, Judgement, ObservationTime, Trial
 from scope_ptz.bench.scoring.verdict import AGENT_FAILURES, score_episode
+from scope_ptz.builtin_names import EXACT_PERCEPTION
 
 _TIMED_TOOLS = ("count_objects", "query_answer")
 """Tools whose calls are reported as perception calls with their times."""
@@ -60,7 +61,12 @@ def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dic
         "headline": verdict.headline,
         "scored_by": "checks",
         "reason": _with_fault(trace.ended, verdict.reason),
-        "error_mode": error_mode(entry.task, episode, truth if stored_run.truths else None),
+        "error_mode": error_mode(
+            entry.task,
+            episode,
+            truth if stored_run.truths else None,
+            exact_perception=trace.started.perception in EXACT_PERCEPTION,
+        ),
         "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         "collateral": verdict.moved_needlessly,
     }

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz.bench.reports import charts as drawing
+from scope_ptz.bench.reports.choice.ties import ROUNDING, Leaders
 from scope_ptz.bench.reports.report_judge import judge_name, verdicts
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macro, of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
@@ -20,21 +21,29 @@ KIND_TITLES = {
     "blind": "blind baseline",
     "person": "person",
 }
-ROUNDING = 1e-9
-"""Values that differ by less than this are treated as equal."""
 INTERVALS_NOTE = (
     "Each value has a 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom "
     "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. "
     "With only one viewpoint the interval is unknown. “Without” lists categories with only one viewpoint. They are included in "
     "the macro average but do not widen its interval, which is therefore too narrow."
 )
+MARKS_NOTE = (
+    "Bold: the highest value with this perception model. Underlined: the highest value on these tasks. Equal values are marked "
+    "alike, and values that are all equal have no mark. A mark does not mean that the value differs from the others: macro "
+    "averages that the paired comparisons do not tell apart from the highest have a note, and values by category are not tested."
+)
 
 
-def accuracy_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the section on the accuracy of every run with core tasks. Model pairs and other runs have separate tables."""
+def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> Section:
+    """Return the section on the accuracy of every run with core tasks. Model pairs and other runs have separate tables.
+
+    Args:
+        runs: The runs of the report.
+        best: The model pairs with the highest macro accuracy on the main task set, and those that are not told apart from them.
+    """
     scored_runs = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in scored_runs if r.ranked], [r for r in scored_runs if not r.ranked]
-    tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
+    tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True, best=best)]
     if others:
         tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
     tables.append(_outcome_table(scored_runs))
@@ -68,10 +77,11 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
 
-def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool) -> ReportTable:
+def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool, best: Leaders | None = None) -> ReportTable:
     """Return a table with one row per run, grouped by perception model.
 
-    With ``rank``, the best value of each perception model is bold, and the best value over the same tasks is underlined.
+    With ``rank``, the highest value of each perception model is bold, and the highest value over the same tasks is underlined.
+    Values that are all equal have no marks. Macro averages that are not told apart from the highest have a note.
     """
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
     columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
@@ -85,8 +95,10 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
             groups[number], previous = group, group
         cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
         cells[0] = _partial_macro(cells[0], run)
+        if best is not None and run in best.close:
+            cells[0] = _with_note(cells[0], "not told apart from the highest")
         rows.append((run.label, *cells, len(run.tasks)))
-    notes = (INTERVALS_NOTE, "Bold: the best value with this perception model. Underlined: the best value on these tasks.")
+    notes = (INTERVALS_NOTE, MARKS_NOTE)
     return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS_NOTE,), groups)
 
 
@@ -106,8 +118,8 @@ def _marked(
 
 
 def _is_best(value: float, values: Sequence[float]) -> bool:
-    """Return whether a value is the maximum of several values. Values that differ only by rounding are equal."""
-    return len(values) > 1 and value > max(values) - ROUNDING
+    """Return whether a value is the maximum of several values that are not all equal."""
+    return max(values) - min(values) > ROUNDING and value > max(values) - ROUNDING
 
 
 def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
@@ -115,8 +127,12 @@ def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
     number = len({t.task.category for t in run.scored_trials})
     if number == len(CATEGORY_TITLES):
         return value
+    return _with_note(value, f"over {number} of {len(CATEGORY_TITLES)} categories")
+
+
+def _with_note(value: CellValue, note: str) -> MarkedCell:
     marks = value if isinstance(value, MarkedCell) else MarkedCell(unmarked(value))
-    return replace(marks, note=f"over {number} of {len(CATEGORY_TITLES)} categories")
+    return replace(marks, note="; ".join(filter(None, (marks.note, note))))
 
 
 def _outcome_table(runs: Sequence[ReportRun]) -> ReportTable:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
 
-from scope_ptz.bench.reports.accuracy import KIND_TITLES, accuracy_section
+from scope_ptz.bench.reports.accuracy import accuracy_section
+from scope_ptz.bench.reports.chance_section import chance_lines, chance_section, run_chance
+from scope_ptz.bench.reports.choice.problems import problems
+from scope_ptz.bench.reports.choice.section import choice_section
+from scope_ptz.bench.reports.choice.ties import distinguish, leaders, listed
+from scope_ptz.bench.reports.conditions import conditions_section
+from scope_ptz.bench.reports.difficulty import difficulty_section
 from scope_ptz.bench.reports.display_names import served_instead
 from scope_ptz.bench.reports.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
 from scope_ptz.bench.reports.log_findings import finding_lines, stored_verdict_lines
-from scope_ptz.bench.reports.paired_comparison import compare, comparison_section, comparison_table
+from scope_ptz.bench.reports.paired_comparison import comparison_section
 from scope_ptz.bench.reports.paper import paper_section
 from scope_ptz.bench.reports.recommendations import architecture_section, design_section, scope_section, spread_section
 from scope_ptz.bench.reports.report_runs import (
@@ -27,9 +33,11 @@ from scope_ptz.bench.reports.report_runs import (
 from scope_ptz.bench.reports.review import audit_section, conduct_section, costs_section
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
-from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, interval
+from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.registry import Registry
 
@@ -40,12 +48,16 @@ class EvaluationReport:
 
     Attributes:
         runs: The runs in the order of the report.
+        problems: Evaluations that ended in an error, are unfinished, or lost many trials to infrastructure, with bounds.
+        notice: A notice that applies to the whole report, such as that its runs are simulated; may be empty.
         summary: The main results.
         warnings: Limitations of the results.
-        sections: The sections.
+        sections: The sections. The first one shows which pair to choose.
     """
 
     runs: tuple[ReportRun, ...]
+    problems: tuple[str, ...]
+    notice: str
     summary: tuple[str, ...]
     warnings: tuple[str, ...]
     sections: tuple[Section, ...]
@@ -56,13 +68,19 @@ class EvaluationReport:
         return tuple(table for section in self.sections for table in section.tables)
 
 
-def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: Mapping[str, str] | None = None) -> EvaluationReport:
+def build_report(
+    evaluations: Sequence[Evaluation],
+    registry: Registry,
+    pages: Mapping[str, str] | None = None,
+    tasks: Mapping[str, Task] | None = None,
+) -> EvaluationReport:
     """Build a report.
 
     Args:
         evaluations: The evaluations.
         registry: The registry that describes the models.
         pages: Link to the page of each failed task, by the task's id.
+        tasks: The known tasks by id, for what constant answers win.
 
     Raises:
         InputError: The evaluations contain no trials.
@@ -76,30 +94,40 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     exact = [run for run in main if run.is_exact_reference]
     ranked_and_reference = [*ranked, *(run for run in main if run.kind == "reference")]
     links = pages or {}
+    distinctions = distinguish(ranked)
+    best = leaders(comparable, distinctions)
+    baselines = [run for run in main if not run.ranked]
     sections: list[Section | None] = [
-        accuracy_section(runs),
-        comparison_section(ranked),
+        choice_section(
+            comparable, [run for run in ranked if run not in comparable], baselines, runs, best, partial(_corrected, tasks or {})
+        ),
+        accuracy_section(runs, best),
+        chance_section(runs, tasks or {}),
+        comparison_section(ranked, distinctions.comparisons),
         repeats_section(main),
         error_section(ranked_and_reference) if ranked_and_reference else None,
         oracle_section(comparable, runs),
-        spread_section(comparable),
+        spread_section(comparable, distinctions),
         scope_section(ranked_and_reference),
         latency_section(runs),
-        design_section(comparable, runs),
+        design_section(comparable, runs, distinctions),
         architecture_section(comparable, runs),
         sensitivity_section(runs),
         reaction_section(runs),
         baseline_section(runs),
         audit_section(ranked, exact, links),
+        difficulty_section(comparable),
         costs_section(runs),
         conduct_section(runs),
         _failed_tasks(runs, links),
-        _overview(runs),
+        conditions_section(runs),
         paper_section(),
     ]
     return EvaluationReport(
         runs,
-        _summary(runs, ranked, comparable),
+        problems(runs),
+        _notice(runs),
+        (*_summary(runs, ranked, comparable), *chance_lines(runs, tasks or {})),
         _warnings(runs, ranked, comparable),
         tuple(_without_empty_tables(s) for s in sections if s is not None),
     )
@@ -114,86 +142,9 @@ def _without_empty_tables(section: Section) -> Section:
     return replace(section, text=text, tables=tuple(table for table in section.tables if table.rows))
 
 
-def _overview(runs: Sequence[ReportRun]) -> Section:
-    columns = (
-        Column("run", "Run"),
-        Column("kind", "Kind"),
-        Column("dataset", "Dataset"),
-        Column("split", "Split"),
-        Column("trials", "Trials", "count"),
-        Column("wanted", "Planned trials", "count"),
-        Column("epochs", "Repeats", "count"),
-        Column("agent", "Agent"),
-        Column("variant", "Variant"),
-        Column("max_steps", "Step limit", "count"),
-        Column("seed", "Seed"),
-        Column("sampling", "Sampling", "prose"),
-        Column("prompt", "Prompt"),
-        Column("planner_reported", "Reported by the planner's server", "prose"),
-        Column("eyes_reported", "Reported by the perception server", "prose"),
-        Column("concurrency", "Concurrency", "count"),
-        Column("timing", "Timing"),
-        Column("package", "scope-ptz"),
-        Column("engine", "Engine"),
-        Column("tasks_digest", "Digest of the tasks"),
-        Column("started", "Started"),
-        Column("host", "Host"),
-    )
-    text = ("The conditions of each run, from its run card.",)
-    table = ReportTable("runs", "Runs and their conditions", columns, tuple(_card_row(run) for run in runs))
-    return Section("runs", "Conditions", text, (), (table,), frozenset({"runs"}))
-
-
-def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
-    card = run.evaluation.card
-    sampling = ", ".join(f"{key} {value}" for key, value in _flattened(card.sampling))
-    return (
-        run.label,
-        KIND_TITLES[run.kind],
-        card.dataset,
-        run.task_set[1],
-        len(run.evaluation.trials),
-        run.evaluation.wanted,
-        card.epochs,
-        card.agent_label,
-        card.variant or "as it is",
-        card.max_steps,
-        None if card.seed is None else str(card.seed),
-        sampling or None,
-        card.prompt_digest[:12] or None,
-        _reported(card.planner.reported),
-        _reported(card.perception.reported),
-        card.concurrency,
-        "contended" if card.contended else "alone",
-        card.package_version,
-        card.engine_version,
-        card.dataset_digest[:12] or None,
-        card.started,
-        card.host or None,
-    )
-
-
-def _flattened(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield nested settings with their full names, such as ``planner.temperature``."""
-    for key, value in sorted(settings.items()):
-        if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
-
-
-def _reported(reported: Mapping[str, str]) -> str | None:
-    return ", ".join(f"{key} {value}" for key, value in sorted(reported.items())) or None
-
-
 def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     warnings = [line for run in runs for line in finding_lines(run.evaluation)]
     warnings += stored_verdict_lines([run.evaluation for run in runs])
-    warnings += [
-        f"{run.label} is unfinished: {len(run.evaluation.trials)} of {run.evaluation.wanted} trials."
-        for run in runs
-        if not run.evaluation.finished
-    ]
     if left_out := [run.label for run in ranked if run not in comparable]:
         warnings.append(
             f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "
@@ -237,6 +188,21 @@ def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     ]
 
 
+def _corrected(tasks: Mapping[str, Task], run: ReportRun) -> IntervalEstimate | None:
+    """Return the chance-corrected accuracy of a run; None if its tasks are not known."""
+    chance = run_chance(run, tasks)
+    return chance.corrected.corrected if chance is not None and chance.corrected is not None else None
+
+
+def _notice(runs: Sequence[ReportRun]) -> str:
+    """Return the notice that runs are simulated; empty if none is."""
+    simulated = sum(run.simulated for run in runs)
+    if not simulated:
+        return ""
+    number = "All runs of this report are" if simulated == len(runs) else f"{simulated} of the {len(runs)} runs of this report are"
+    return f"{number} simulated: no model was run. The results of simulated runs say nothing about any model."
+
+
 def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     lines = [
@@ -245,36 +211,17 @@ def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable:
         + (f" ({_number(len(comparable[0].tasks), 'task')})" if comparable else "")
         + (f"; {_number(len(ranked) - len(comparable), 'more pair')} on other tasks." if len(ranked) > len(comparable) else ".")
     ]
-    order = sorted((r for r in comparable if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
-    if order and order[0].macro:
-        lines.append(f"Highest macro accuracy: {order[0].label}, {_percent(order[0])}.")
-    if len(order) > 1 and (comparison := compare(order[0], order[1])) is not None:
-        (row,) = comparison_table("x", "x", [comparison]).rows
-        result = "is significant" if row[11] == "yes" else "is not significant"
-        lines.append(
-            f"Second: {order[1].label}, {_percent(order[1])}. In a single test, the difference between these two {result}."
-        )
-    if not ranked:
-        lines.append("These runs include no pair of models, so nothing is ranked.")
     modes = sum((modes_by_rules(run) for run in comparable), start=Counter[ErrorMode]())
     if modes:
-        mode, number = modes.most_common(1)[0]
+        number = max(modes.values())
+        most = [MODE_TITLES[mode] for mode in MODE_TITLES if modes[mode] == number]
         unscored = sum(trial.headline == "unscored" for run in comparable for trial in run.scored_trials)
         lines.append(
-            f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of "
-            f"{_number(modes.total(), 'incorrect trial')}"
+            f"Most frequent error mode{'s' if len(most) > 1 else ''} of model pairs: {listed(most)}, {number}"
+            f"{' each' if len(most) > 1 else ''} of {_number(modes.total(), 'incorrect trial')}"
             + (f"; {_number(unscored, 'more is', 'more are')} unscored and have no error mode." if unscored else ".")
         )
     return tuple(lines)
-
-
-def _percent(run: ReportRun) -> str:
-    macro = run.macro
-    if macro is None:
-        return "not measured"
-    bounds, limits = interval(macro, "share")
-    certainty = ", ".join(filter(None, (f"95% interval {bounds}" if bounds else "", limits)))
-    return f"{100 * macro.value:.1f}% ({certainty})"
 
 
 def _number(count: int, singular: str, plural: str = "") -> str:

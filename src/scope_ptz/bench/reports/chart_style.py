@@ -72,19 +72,34 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
     return Chart(key, title, alt, svg, round(figure.get_figwidth() * PX))
 
 
+_FILE_STYLE = (
+    "<style>:root{--ink:#1b1f24;--line:#d8dee4;--paper:#ffffff}"
+    "@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--line:#363c44;--paper:#14171b}svg>g{filter:brightness(1.3)}}"
+    "svg{background:var(--paper)}</style>"
+)
+"""Style of a chart in a file of its own, with the colours of the page."""
+
+
+def standalone_svg(chart: Chart) -> str:
+    """Return a chart as the content of an SVG file, with its own colours for light and dark themes."""
+    start = chart.svg.index(">") + 1
+    return chart.svg[:start] + _FILE_STYLE + chart.svg[start:]
+
+
 def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     """Return the colour of each run, by its label.
 
     Runs with the same perception model share a hue, in stronger shades for later runs. Runs that are not ranked are grey.
     """
-    perception = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
+    ordered = sorted(runs, key=lambda run: run.number)  # So that a run has the same colour in each chart.
+    perception = list(dict.fromkeys(run.perception_name for run in ordered if run.ranked))
     colour_of_run = {}
-    for run in runs:
+    for run in ordered:
         if not run.ranked:
             colour_of_run[run.label] = GREY
             continue
         name = run.perception_name
-        same = [r for r in runs if r.ranked and r.perception_name == name]
+        same = [r for r in ordered if r.ranked and r.perception_name == name]
         rank = (same.index(run) + 1) / len(same)
         colour_of_run[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * rank)
     return colour_of_run
@@ -115,12 +130,12 @@ def shorten_label(label: str, max_chars: int = 46) -> str:
     return shown if len(shown) <= max_chars else shown[: max_chars - 1] + "…"
 
 
-def wrap_label(label: str, max_chars: int = 42) -> str:
+def wrap_label(label: str, max_chars: int = 46) -> str:
     """Return a label wrapped to at most three lines."""
-    return "\n".join(wrap(shorten_label(label, 3 * max_chars - 8), max_chars) or [""])
+    return "\n".join(wrap(shorten_label(label, 3 * max_chars - 8), max_chars, break_on_hyphens=False) or [""])
 
 
-def legend_columns(labels: Sequence[str], max_chars: int = 52) -> int:
+def legend_columns(labels: Sequence[str], max_chars: int = 58) -> int:
     """Return the number of legend columns: two if every label fits into half the width, otherwise one."""
     return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from math import sqrt
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,6 @@ from scope_ptz.bench.reports.chart_style import (
     FAINT,
     GREY,
     HUES,
-    INK,
     PAPER,
     as_chart,
     bar_styles,
@@ -33,10 +31,6 @@ from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PathCollection
-
-    from scope_ptz.bench.reports.candidates import Candidate
 
 
 def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
@@ -65,6 +59,10 @@ def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
         return as_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
 
 
+MAX_GROUPED_RUNS = 8
+"""Bars of more runs cannot be told apart in groups."""
+
+
 def mode_chart(
     key: str,
     title: str,
@@ -74,7 +72,7 @@ def mode_chart(
     titles: Mapping[ErrorMode, str],
     all_runs: Sequence[ReportRun],
 ) -> Chart:
-    """Draw grouped bars with one group per error mode.
+    """Draw grouped bars with one group per error mode. Many runs are drawn in panels instead, with one row per run.
 
     Args:
         key: Key of the chart.
@@ -87,6 +85,8 @@ def mode_chart(
     """
     from matplotlib.patches import Patch
 
+    if len(runs) > MAX_GROUPED_RUNS:
+        return _mode_panels(key, title, runs, counts, trials, titles, all_runs)
     keys: list[Artist] = []
     fills = dict(zip((run.label for run in all_runs), bar_styles(all_runs), strict=True))
     labels = [shorten_label(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
@@ -108,9 +108,39 @@ def mode_chart(
         axes.set_ylim(bottom=0)
         axes.set_ylabel("Incorrect trials per 100")
         legend_below(figure, labels, keys)
-        totals = ", ".join(f"{words} {sum(counts[r.label][mode] for r in runs)}" for mode, words in titles.items())
-        alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has all values."
-        return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
+        return as_chart(f"chart-{key.replace('_', '-')}", title, _mode_alt(runs, counts, titles), figure)
+
+
+def _mode_alt(runs: Sequence[ReportRun], counts: Mapping[str, Counter[ErrorMode]], titles: Mapping[ErrorMode, str]) -> str:
+    totals = ", ".join(f"{words} {sum(counts[r.label][mode] for r in runs)}" for mode, words in titles.items())
+    return f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has all values."
+
+
+def _mode_panels(
+    key: str,
+    title: str,
+    runs: Sequence[ReportRun],
+    counts: Mapping[str, Counter[ErrorMode]],
+    trials: Mapping[str, int],
+    titles: Mapping[ErrorMode, str],
+    all_runs: Sequence[ReportRun],
+) -> Chart:
+    """Draw a panel for each error mode, with a row for each run. The panels have the same scale."""
+    ordered = [*(r for r in reversed(runs) if not r.ranked), *(r for r in reversed(runs) if r.ranked)]
+    colour_of_run = colours(all_runs)
+    labels = [wrap_label(run.label + ("" if run.ranked else " (not ranked)")) for run in ordered]
+    rates = {mode: [100 * counts[r.label][mode] / max(1, trials[r.label]) for r in ordered] for mode in titles}
+    with panels(1180, 110 + row_px(labels, 24) * len(ordered), len(titles)) as (figure, grid):
+        for axes, (mode, words) in zip(grid, titles.items(), strict=True):
+            axes.barh(range(len(ordered)), rates[mode], color=[colour_of_run[run.label] for run in ordered], height=0.72)
+            axes.set_title(words.replace(" ", "\n", 1), fontsize=9.5)
+            axes.grid(axis="y", visible=False)
+            axes.set_xlim(0, 1.05 * max(1.0, *(rate for values in rates.values() for rate in values)))
+            axes.tick_params(axis="y", length=0)
+        grid[0].set_yticks(range(len(ordered)), labels)
+        grid[0].set_ylim(-0.6, len(ordered) - 0.4)
+        figure.supxlabel("Incorrect trials per 100", fontsize=10.5)
+        return as_chart(f"chart-{key.replace('_', '-')}", title, _mode_alt(runs, counts, titles), figure)
 
 
 MEASURED, CORRECTED, RERUN = ("o", HUES[0]), ("s", HUES[1]), ("D", HUES[2])
@@ -154,6 +184,7 @@ def oracle_chart(table: ReportTable) -> Chart:
             axes.set_xlim(0, 102)
             axes.set_ylim(-0.6, len(rows) - 0.4)
         grid[0].set_yticks(range(len(rows)), labels)
+        figure.set_layout_engine("constrained", wspace=0.05)
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
         return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(parts)}.", figure)
 
@@ -190,6 +221,7 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
             words = f"{left[y]:.2f} s + camera {mean['capture_s']:.2f} s"
             axes.annotate(words, (left[y], y), (5, 0), textcoords="offset points", va="center", fontsize=9.5)
         axes.set_xlim(0, max(left) * 1.45)
+        axes.set_ylim(-0.6, len(rows) - 0.4)
         axes.set_yticks(range(len(rows)), labels)
         axes.grid(axis="y", visible=False)
         axes.set_xlabel("Mean wall-clock seconds per trial without the camera, by stage")
@@ -197,74 +229,6 @@ def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
         totals = "; ".join(f"{r.label} {m['own_s']:.2f} s and the camera {m['capture_s']:.2f} s" for r, m in reversed(rows))
         alt = f"Mean wall-clock seconds of a trial by stage, without the camera. Totals: {totals}."
         return as_chart("chart-time", "Time of each pair by stage", alt, figure)
-
-
-def front_chart(candidates: Sequence[Candidate]) -> Chart:
-    """Draw accuracy against latency. The area of a ring shows the memory of the pair; filled rings are on the Pareto front.
-
-    The numbers in the rings refer to the legend. A gap between fill and ring keeps a dashed ring visible.
-    """
-    from matplotlib.legend_handler import HandlerTuple
-    from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
-
-    complete = [c for c in candidates if c.accuracy is not None and c.latency_s is not None and c.memory_gb is not None]
-    complete.sort(key=lambda c: -(c.accuracy or 0.0))
-    colour_of_run = colours([c.run for c in candidates])
-    with canvas(980, max(460, 150 + 26 * len(complete))) as (figure, axes):
-        keys, names = list[Any](), list[str]()
-        for number, c in enumerate(complete, 1):
-            colour, position = colour_of_run[c.run.label], (c.latency_s or 0.0, 100 * (c.accuracy or 0.0))
-            area = max(280.0, 12.0 * (c.memory_gb or 0.0))
-            _draw_ring(axes, position, area, colour, c)
-            keys.append(_draw_ring(axes, (), 150.0, colour, c))
-            names.append(wrap_label(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
-            axes.annotate(
-                str(number),
-                position,
-                ha="center",
-                va="center",
-                fontsize=9.5,
-                fontweight="bold",
-                color="#000" if c.on_front else INK,
-            )
-        axes.set_xscale("log")
-        axes.margins(x=0.12, y=0.14)
-        axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)))
-        axes.xaxis.set_major_formatter(ScalarFormatter())
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel("Median wall-clock seconds per trial without the camera: planner, perception and tools (logarithmic)")
-        axes.set_ylabel("Macro accuracy (%)")
-        overlaid = {tuple: HandlerTuple(ndivide=1)}
-        figure.legend(keys, names, handler_map=overlaid, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
-        on_front = "; ".join(
-            f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB"
-            for c in complete
-            if c.on_front
-        )
-        alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on_front}."
-        title = "Accuracy, latency and memory. Filled: on the Pareto front. Area: memory. Dashed ring: timed under contention"
-        return as_chart("chart-front", title, alt, figure)
-
-
-def _draw_ring(
-    axes: Axes, position: tuple[float, ...], area: float, colour: str, candidate: Candidate
-) -> tuple[PathCollection, ...]:
-    """Draw the ring of a candidate, filled if it is on the Pareto front.
-
-    Args:
-        axes: The axes.
-        position: Coordinates of the ring; empty for the legend.
-        area: Area of the ring in square points.
-        colour: Colour of the ring.
-        candidate: The candidate.
-    """
-    x, y = ([position[0]], [position[1]]) if position else ([], [])
-    width = 2.0
-    line_style = (0, (3.0, 1.8)) if candidate.contended else "-"
-    ring = axes.scatter(x, y, s=area, facecolor="none", edgecolor=colour, lw=width, linestyle=line_style)
-    if not candidate.on_front:
-        return (ring,)
-    return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=colour, edgecolor="none", alpha=0.85)
 
 
 def repeats_chart(table: ReportTable, max_trials: int) -> Chart:

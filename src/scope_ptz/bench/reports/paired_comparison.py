@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from math import sqrt
 from statistics import median
 
@@ -111,7 +110,7 @@ def comparison_table(key: str, title: str, comparisons: Sequence[PairedCompariso
         Column("p_clustered", "Clustered p", "p"), Column("p_clustered_holm", "Holm", "p"),
         Column("differ", "Differ"), Column("least", "Smallest detectable difference (points)", "width"),
     )  # fmt: skip
-    mcnemar, clustered = holm([c.p_mcnemar for c in comparisons]), holm([c.p_clustered for c in comparisons])
+    mcnemar, clustered = _adjusted(comparisons)
     rows = tuple(
         (
             c.first,
@@ -123,6 +122,16 @@ def comparison_table(key: str, title: str, comparisons: Sequence[PairedCompariso
     return ReportTable(key, title, columns, rows, notes)
 
 
+def shown_differences(comparisons: Sequence[PairedComparison]) -> list[bool]:
+    """Return whether each comparison shows a difference, after adjustment for the number of comparisons."""
+    return [differ(*p_values) == "yes" for p_values in zip(*_adjusted(comparisons), strict=True)]
+
+
+def _adjusted(comparisons: Sequence[PairedComparison]) -> tuple[list[float | None], list[float | None]]:
+    """Return the adjusted p values of McNemar's test and of the clustered test."""
+    return holm([c.p_mcnemar for c in comparisons]), holm([c.p_clustered for c in comparisons])
+
+
 def differ(*adjusted: float | None) -> str:
     """Return "yes" if every adjusted p value is below 0.05, otherwise "not shown"."""
     return "yes" if all(p is not None and p < ALPHA for p in adjusted) else "not shown"
@@ -132,9 +141,13 @@ def _interval(bounds: tuple[float, float] | None) -> str | None:
     return None if bounds is None else f"{100 * bounds[0]:+.1f} to {100 * bounds[1]:+.1f}"
 
 
-def comparison_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the section that compares each pair of runs."""
-    comparisons = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
+def comparison_section(runs: Sequence[ReportRun], comparisons: Sequence[PairedComparison]) -> Section:
+    """Return the section that compares each pair of runs.
+
+    Args:
+        runs: The runs of the model pairs.
+        comparisons: The comparison of each run with each other run.
+    """
     text = [
         "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test "
         "checks whether one run is better on significantly more tasks than the other (with repeats it is the sign test of the "
@@ -150,7 +163,7 @@ def comparison_section(runs: Sequence[ReportRun]) -> Section:
             (),
             (unpaired,),
         )
-    number = sum(row[11] == "yes" for row in comparison_table("x", "x", comparisons).rows)
+    number = sum(shown_differences(comparisons))
     smallest = [c.smallest_detectable for c in comparisons if c.smallest_detectable is not None]
     power = (
         f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."

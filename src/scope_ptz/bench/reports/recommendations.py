@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.candidates import Candidate, candidates
+from scope_ptz.bench.reports.choice.candidates import Candidate, candidates
+from scope_ptz.bench.reports.choice.ties import ROUNDING, Distinctions, extremes, listed
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
 from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of
 from scope_ptz.bench.reports.sections import Section
@@ -20,8 +20,14 @@ SIZES_GB = (8, 16, 24, 48, 80, 160)
 """Common sizes of accelerator memory in GB. The last size is that of two accelerators of 80 GB."""
 
 
-def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> Section:
-    """Return the section on accuracy, latency and memory of each pair, with the best pair for each memory size."""
+def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun], distinctions: Distinctions) -> Section:
+    """Return the section on accuracy, latency and memory of each pair, with the best pair for each memory size.
+
+    Args:
+        ranked: The runs of model pairs over the same tasks.
+        all_runs: All runs of the report.
+        distinctions: The pairs that the paired comparisons tell apart.
+    """
     pairs = candidates(ranked, all_runs)
     columns = (
         Column("run", "Run"),
@@ -53,31 +59,54 @@ def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -
         "Latency is the time of planner, perception and tools, without the camera. It excludes the time for rendering, because "
         "that depends on the simulator and on the views that a pair requests.",
     )
-    charts = (drawing.front_chart(pairs),) if any(c.complete for c in pairs) else ()
-    tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _memory_table(pairs))
-    return Section("design", "Accuracy, latency, memory", text, charts, tables)
+    tables = (
+        ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes),
+        _memory_table(pairs, distinctions),
+    )
+    return Section("design", "Accuracy, latency, memory", text, (), tables)
 
 
-def _memory_table(pairs: Sequence[Candidate]) -> ReportTable:
+def _memory_table(pairs: Sequence[Candidate], distinctions: Distinctions) -> ReportTable:
     columns = (
         Column("memory", "Memory"),
-        Column("run", "Most accurate pair that fits"),
+        Column("run", "Highest accuracy that fits"),
         Column("macro", "Macro (%)", "share"),
         Column("latency_s", LATENCY.capitalize(), "seconds"),
         Column("memory_gb", "Memory (GB, computed)", "gb"),
+        Column("tied", "Not told apart from it", "prose"),
     )
     rows: list[tuple[CellValue, ...]] = []
     for size in SIZES_GB:
-        candidates_that_fit = [c for c in pairs if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
-        if candidates_that_fit:
-            best = max(candidates_that_fit, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
-            rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Memory sizes of {', '.join(map(str, SIZES_GB))} GB. Sizes in which no pair fits are left out.",)
-    return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
+        fitting = [c for c in pairs if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
+        if fitting:
+            best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0), -(c.memory_gb or 0.0)))
+            tied = _tied_names(best, fitting, distinctions) or "none"
+            rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb, tied))
+    notes = (
+        f"Memory sizes of {', '.join(map(str, SIZES_GB))} GB. Sizes in which no pair fits are left out. Of pairs with equal "
+        "accuracy, the fastest is shown and the others are marked as equal. The last column lists the pairs that fit, and whose "
+        "difference from this pair the paired comparisons do not show.",
+    )
+    return ReportTable("memory_fits", "Highest accuracy by memory size", columns, tuple(rows), notes)
 
 
-def spread_section(ranked: Sequence[ReportRun]) -> Section:
-    """Return the section on how much accuracy depends on the planner and on the perception model."""
+def _tied_names(best: Candidate, pairs: Sequence[Candidate], distinctions: Distinctions) -> str:
+    """Return the names of the pairs that are not told apart from the best one, in the order of their accuracy."""
+    tied = [c for c in pairs if c is not best and not distinctions.told_apart(c.run, best.run)]
+    tied.sort(key=lambda c: -(c.accuracy or 0.0))
+    names = [
+        c.run.label + (" (equal)" if abs((c.accuracy or 0.0) - (best.accuracy or 0.0)) < ROUNDING else "") for c in tied
+    ]  # fmt: skip
+    return listed(names)
+
+
+def spread_section(ranked: Sequence[ReportRun], distinctions: Distinctions) -> Section:
+    """Return the section on how much accuracy depends on the planner and on the perception model.
+
+    Args:
+        ranked: The runs of model pairs over the same tasks.
+        distinctions: The pairs that the paired comparisons tell apart.
+    """
     tables = (
         _spread(
             "spread_planner",
@@ -86,6 +115,7 @@ def spread_section(ranked: Sequence[ReportRun]) -> Section:
             ranked,
             lambda r: r.system[1],
             lambda r: r.system[0],
+            distinctions,
         ),
         _spread(
             "spread_eyes",
@@ -94,11 +124,13 @@ def spread_section(ranked: Sequence[ReportRun]) -> Section:
             ranked,
             lambda r: r.system[0],
             lambda r: r.system[1],
+            distinctions,
         ),
     )
     text = (
         "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It increases with the "
-        "number of pairs and with noise. The paired comparisons state which differences are significant.",
+        "number of pairs and with noise. The last column states whether the paired comparisons show a difference between the "
+        "lowest and the highest pair. Models with equal values share a cell.",
     )
     return Section("spread", "Spread by planner and by perception model", text, (), tables)
 
@@ -110,6 +142,7 @@ def _spread(
     runs: Sequence[ReportRun],
     fixed: Callable[[ReportRun], str],
     changed: Callable[[ReportRun], str],
+    distinctions: Distinctions,
 ) -> ReportTable:
     columns = (
         Column("held", fixed_title),
@@ -119,17 +152,23 @@ def _spread(
         Column("highest", "Highest"),
         Column("high", "Macro (%)", "share"),
         Column("spread", "Spread (points)", "points"),
+        Column("differ", "Differ"),
     )
     rows: list[tuple[CellValue, ...]] = []
     for name in dict.fromkeys(fixed(run) for run in runs):
-        values = [
-            (run.macro.value, changed(run)) for run in runs if fixed(run) == name and run.macro and run.system[2:] == ("scope", "")
-        ]
-        if len({model for _, model in values}) > 1:
-            (low, worst), (high, best) = min(values), max(values)
-            rows.append((name, len(values), worst, low, best, high, high - low))
-        else:
-            rows.append((name, len(values), None, None, None, None, None))
+        own = [run for run in runs if fixed(run) == name and run.macro and run.system[2:] == ("scope", "")]
+        values = [(run.macro.value, changed(run)) for run in own if run.macro]
+        if len({model for _, model in values}) < 2:
+            rows.append((name, len(values), *(None,) * 6))
+            continue
+        low, high = min(values)[0], max(values)[0]
+        if high - low < ROUNDING:
+            rows.append((name, len(values), "all equal", low, "all equal", high, 0.0, "not shown"))
+            continue
+        worst, best = extremes(values)
+        ends = [[run for run in own if run.macro and abs(run.macro.value - end) < ROUNDING] for end in (low, high)]
+        shown = any(distinctions.told_apart(one, other) for one in ends[0] for other in ends[1])
+        rows.append((name, len(values), worst, low, best, high, high - low, "yes" if shown else "not shown"))
     notes = ("This table covers only runs of SCOPE's own agent loop with its standard prompt.",)
     return ReportTable(key, title, columns, tuple(rows), notes)
 

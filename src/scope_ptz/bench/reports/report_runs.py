@@ -26,6 +26,8 @@ RunKind = Literal["models", "reference", "blind", "person"]
 """
 PERSON = "person"
 """Provider of the planner in the run card of a human run."""
+SIMULATED = "simulated"
+"""Provider of the planner in the run card of a simulated run, whose outcomes were drawn at random."""
 MAIN_STRATA = ("core", "imported")
 """Strata whose tasks are included in accuracy."""
 FULL_PRECISION = ("fp32", "fp16", "bf16")
@@ -74,10 +76,21 @@ class ReportRun:
         return self.kind == "models"
 
     @property
+    def simulated(self) -> bool:
+        """Whether the outcomes were drawn at random and no model was run."""
+        return self.evaluation.card.planner.provider == SIMULATED
+
+    @property
     def uses_exact_ground_truth(self) -> bool:
         """Whether its perception is the exact ground truth."""
         perception = self.evaluation.card.perception
         return perception.deterministic and perception.name == GROUND_TRUTH
+
+    @property
+    def built_in(self) -> bool:
+        """Whether both planner and perception are built in and not models."""
+        card = self.evaluation.card
+        return self.kind == "reference" and card.planner.deterministic and card.perception.deterministic
 
     @property
     def is_exact_reference(self) -> bool:
@@ -110,11 +123,13 @@ class ReportRun:
     def memory_gb(self) -> float | None:
         """Computed memory in GB to serve both models at the registry's precision. A model in both roles counts once.
 
-        None if a model is not in the registry.
+        The grammar planner and ground-truth perception need none. None if a model is not in the registry.
         """
-        if self.planner is None or self.perception is None:
+        card = self.evaluation.card
+        models = ((card.planner, self.planner), (card.perception, self.perception))
+        if any(model is None and not requested.deterministic for requested, model in models):
             return None
-        return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.perception)}.values())
+        return sum(model.memory_for() for model in {m.name: m for _, m in models if m is not None}.values())
 
     @cached_property
     def main_trials(self) -> tuple[Trial, ...]:

@@ -6,6 +6,7 @@ import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLin
 from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults
 from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.signatures.provenance import Provenance, provenance_of
-from scope_ptz.bench.tasks.splits import SPLITS, load_split
+from scope_ptz.bench.tasks.splits import EARLIER_VERSIONS, SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import InputError
@@ -186,11 +187,12 @@ def _reject_constant(name: str) -> float:
 
 
 def _published_tasks(header: Header) -> Sequence[Task]:
-    if header.card.split not in SPLITS:
+    if header.card.split not in (*SPLITS, *chain(*EARLIER_VERSIONS.values())):
         raise InputError(
             f"The submission is for '{header.card.split}', which is not a published split. Give its tasks with --tasks."
         )
-    return load_split(header.card.split)
+    versions = [load_split(name) for name in (header.card.split, *EARLIER_VERSIONS.get(header.card.split, ()))]
+    return next((tasks for tasks in versions if tasks_digest(tasks) == header.tasks_digest), versions[0])
 
 
 def _header_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[str, Task]) -> Iterator[str]:

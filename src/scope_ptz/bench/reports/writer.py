@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.chart_style import standalone_svg
 from scope_ptz.bench.reports.tables import (
     MISSING,
     CellValue,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 GENERATOR = "scope bench report"
 """Value of the page's ``generator`` tag, which identifies an earlier report."""
-_REPORT_FILES = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
+_REPORT_FILES = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"), ("charts", "*.svg"))
 """Folders and file patterns of a report."""
 
 
@@ -46,14 +47,14 @@ def write_report(
     progress: Callable[[int, int], None] | None = None,
     pages: bool = True,
 ) -> EvaluationReport:
-    """Write a report: ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
+    """Write a report: ``index.html``, ``report.md``, ``charts/*.svg``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
 
     Args:
         evaluations: The evaluations.
         registry: The registry that describes the models.
         out: The folder of the report. An earlier report in it is replaced.
         open_sample: Opens the stored run of a trial. Without it, the pages show no trajectories.
-        tasks: The tasks by id, for the evidence on their pages.
+        tasks: The tasks by id, for the evidence on their pages and for what constant answers win.
         progress: Called after each page with the number of finished pages and the total number of pages.
         pages: Whether to write pages for failed tasks.
 
@@ -65,7 +66,7 @@ def write_report(
         InputError: The evaluations contain no trials.
     """
     files = page_files(evaluations) if pages else {}
-    report = build_report(evaluations, registry, files)
+    report = build_report(evaluations, registry, files, tasks)
     try:
         _clear(out)
         (out / "tables").mkdir(parents=True, exist_ok=True)
@@ -80,6 +81,9 @@ def write_report(
                 progress(number, len(page_builders))
         for table in report.tables:
             (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
+        (out / "charts").mkdir(exist_ok=True)
+        for chart in (chart for section in report.sections for chart in section.charts):
+            (out / "charts" / f"{chart.key}.svg").write_text(standalone_svg(chart), "utf-8")
         (out / "report.md").write_text(markdown(report), "utf-8")
         (out / "index.html").write_text(html(report, environment), "utf-8")
     except OSError as error:
@@ -108,13 +112,17 @@ def html(report: EvaluationReport, environment: Environment | None = None) -> st
 
 
 def markdown(report: EvaluationReport) -> str:
-    """Return the report as Markdown, without charts."""
-    parts = ["# SCOPE benchmark report", *(escape(line) for line in report.summary)]
-    parts += ["> " + escape(line) for line in report.warnings]
-    for section in report.sections:
+    """Return the report as Markdown. Its charts are the files in ``charts/``."""
+    parts = ["# SCOPE benchmark report"]
+    parts += [f"> **{escape(report.notice)}**"] if report.notice else []
+    parts += ["> " + escape(line) for line in report.problems]
+    for number, section in enumerate(report.sections):
         parts.append(f"## {escape(section.title)}")
         parts += [escape(line) for line in section.text]
+        parts += [f"![{escape(chart.title)}](charts/{chart.key}.svg)" for chart in section.charts]
         parts += [as_markdown(table) for table in section.tables]
+        if number == 0:
+            parts += ["## Summary", *(escape(line) for line in report.summary), *("> " + escape(line) for line in report.warnings)]
     return "\n\n".join(parts) + f"\n\n*Made by scope-ptz {__version__}.*\n"
 
 

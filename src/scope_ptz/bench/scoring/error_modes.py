@@ -49,6 +49,7 @@ class _Case:
     episode: Episode
     verdict: Verdict
     truth: CountTruth | None
+    exact_perception: bool
 
     @property
     def attempted(self) -> set[str]:
@@ -93,13 +94,17 @@ class _Case:
         return self.attempted - self.needed - replacements_used - {"get_presets"}
 
 
-def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) -> ErrorMode | None:
+def error_mode(
+    task: Task, episode: Episode, truth: CountTruth | None = None, *, exact_perception: bool = False
+) -> ErrorMode | None:
     """Return the error mode of a failed run.
 
     Args:
         task: The task.
         episode: The run.
         truth: Returns the true count for an observation. If it is None, the task's evidence decides whether a count is wrong.
+        exact_perception: Whether perception was the exact ground truth. What it states is true of the frame, so it is never to
+            blame: a question that it could not answer, or that has another true answer, is the agent's error.
 
     Returns:
         The error mode, or None if the run is correct, could not be scored, or was broken by infrastructure.
@@ -107,7 +112,7 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
     verdict = score_episode(task, episode)
     if verdict.headline != "incorrect":
         return None
-    case = _Case(task, episode, verdict, truth)
+    case = _Case(task, episode, verdict, truth, exact_perception)
     return next((mode for mode, applies in _RULES if applies(case)), ErrorMode.REASONING)
 
 
@@ -168,6 +173,8 @@ def _all_perception_failed(case: _Case) -> bool:
 
 def _was_left_unanswered(case: _Case) -> bool:
     """Return whether, apart from the answer, only coverage failed: perception could not answer a question about the right view."""
+    if case.exact_perception:
+        return False
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
     observations = [replace(observation, known=True) for observation in case.episode.observations]
     return wrong == {"coverage"} and all(
@@ -178,7 +185,9 @@ def _was_left_unanswered(case: _Case) -> bool:
 def _was_misled(case: _Case) -> bool:
     """Return whether the camera missed the target because perception found nothing or the wrong thing for a right description."""
     required = case.task.behaviour.calls
-    if not case.acted_wrongly or (case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None):
+    if case.exact_perception or not case.acted_wrongly:
+        return False
+    if case.verdict.failed("calls") and _missing_call(case, required, {"found"}) is not None:
         return False
     locators = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
@@ -229,13 +238,14 @@ def _hallucinated(case: _Case) -> bool:
 
 
 def _miscounted(case: _Case) -> bool:
-    return case.verdict.failed("answer") and wrong_counts(case.task, case.episode, case.truth)
+    return not case.exact_perception and case.verdict.failed("answer") and wrong_counts(case.task, case.episode, case.truth)
 
 
 def _misread(case: _Case) -> bool:
-    return (
-        _was_misled(case) or _was_left_unanswered(case) or (case.verdict.failed("answer") and wrong_reads(case.task, case.episode))
-    )
+    if case.exact_perception:
+        return False
+    answered_wrongly = case.verdict.failed("answer") and wrong_reads(case.task, case.episode)
+    return _was_misled(case) or _was_left_unanswered(case) or answered_wrongly
 
 
 _RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (

@@ -32,10 +32,11 @@ def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool
             if true_count != counted:
                 return True
             continue
-        if any(_miscounts(view.shows, counted) for view in shown_by(task, observation)):
+        views = (view for view in shown_by(task, observation) if _asks_about(view.shows, observation.asked))
+        if any(_miscounts(view.shows, counted) for view in views):
             return True
     return any(
-        isinstance(view.shows, Number) and _misreads(view.shows, call)
+        isinstance(view.shows, Number) and _asks_about(view.shows, observation.asked) and _misreads(view.shows, call)
         for call, observation in _observations(episode)
         for view in shown_by(task, observation)
     )
@@ -66,6 +67,8 @@ def wrong_reads(task: Task, episode: Episode) -> bool:
 
 def _answers_wrongly(view: EvidenceView, observation: Observation, call: EpisodeCall) -> bool:
     """Return whether a reply is wrong about an evidence view. If its question names one of several things, only that is checked."""
+    if not _asks_about(view.shows, observation.asked):
+        return False
     thing = _thing_asked_about(view, observation.asked)
     if thing is None:
         return _misreads(view.shows, call)
@@ -78,6 +81,23 @@ def _answers_wrongly(view: EvidenceView, observation: Observation, call: Episode
         return True
     is_not_named = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
     return is_not_named and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
+
+
+def _asks_about(expected: AnyExpected | None, asked: str) -> bool:
+    """Return whether a question or description names what the evidence counts or finds; True if the evidence names nothing.
+
+    A reply about something else may be right of the frame although it differs from the evidence.
+    """
+    match expected:
+        case Number():
+            wordings = expected.unit
+        case NoneThere():
+            wordings = expected.subject
+        case YesNo():
+            wordings = (*expected.affirms, *expected.denies)
+        case _:
+            return True
+    return not wordings or names_any(asked, wordings)
 
 
 def _thing_asked_about(view: EvidenceView, asked: str) -> str | None:

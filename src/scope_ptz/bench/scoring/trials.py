@@ -242,6 +242,7 @@ class Evaluation(_Record):
         wanted: Number of trials in the complete evaluation: tasks times epochs.
         log: Path of the log.
         findings: Contradictions between the log and its traces. They are not part of stored copies of an evaluation.
+        failure: The error that ended the evaluation; empty if none did.
     """
 
     card: RunCard
@@ -249,6 +250,13 @@ class Evaluation(_Record):
     wanted: Count
     log: str = ""
     findings: tuple[LogFinding, ...] = Field(default=(), exclude=True, repr=False)
+    failure: str = ""
+
+    @model_serializer(mode="wrap")
+    def _without_empty_failure(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out an empty ``failure``, so that older versions can also read the result."""
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if name != "failure" or value}
 
     @property
     def finished(self) -> bool:

@@ -54,7 +54,7 @@ class SelectionFlags:
         typer.Option(
             "--limit",
             min=1,
-            help="Run at most N tasks, sampled evenly across the selected categories and scenes.",
+            help="Run at most N tasks, sampled evenly across the selected categories, scenes and answers.",
             rich_help_panel=TASKS_PANEL,
         ),
     ] = None

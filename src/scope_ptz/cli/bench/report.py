@@ -37,7 +37,8 @@ def report(
     tasks: Annotated[
         str | None,
         typer.Option(
-            "--tasks", help="Split or task file with the tasks whose evidence the pages show (default: all published tasks)."
+            "--tasks",
+            help="Split or task file with the tasks of the logs, for evidence and chance levels (default: all published tasks).",
         ),
     ] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,
@@ -47,6 +48,7 @@ def report(
     It contains all tables and figures of the paper, for any set of runs.
     """
     require_report_packages()
+    from scope_ptz.bench.reports.terminal import terminal_lines
     from scope_ptz.bench.reports.writer import write_report
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.registry import load_registry
@@ -63,17 +65,17 @@ def report(
         path = path_of[id(evaluation)]
         return open_run(path, trial.sample) if path.suffix == HUMAN_RESULT_SUFFIX else open_sample(path, trial.sample)
 
-    evidence: Sequence[Task] = () if not pages else load_split(tasks) if tasks is not None else published_tasks()
+    known: Sequence[Task] = load_split(tasks) if tasks is not None else published_tasks()
     result = write_report(
         evaluations,
         load_registry(load_settings().models_file()),
         out,
         open_sample=open_trial,
-        tasks={task.id: task for task in evidence},
+        tasks={task.id: task for task in known},
         progress=_print_progress if sys.stderr.isatty() else None,
         pages=pages,
     )
-    for line in (*result.summary, *result.warnings):
+    for line in terminal_lines(result):
         put(line)
     put(f"{out / 'index.html'}")
 

@@ -10,7 +10,7 @@ from anyio import to_thread
 
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.camera.base import Frame
-from scope_ptz.errors import PackError, PerceptionError, UnknownNameError
+from scope_ptz.errors import NotUnderstoodError, PackError, PerceptionError, UnknownNameError
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Point, Points
 from scope_ptz.simulator.pack import Scene
@@ -110,15 +110,29 @@ class GroundTruthPerception(Perception):
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
-        return answer(self.view(frame, question), parse_question(question))
+        parsed, view = parse_question(question), self.view(frame, question)
+        if parsed is None:
+            raise NotUnderstoodError(
+                f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
+            )
+        return answer(view, parsed)
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
         from scope_ptz.perception.ground_truth.language import parse_description
+        from scope_ptz.perception.ground_truth.language.concepts import nouns_in
         from scope_ptz.perception.ground_truth.thing_search import find
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
-        return find(self.view(frame, description), parse_description(description))
+        parsed, view = parse_description(description), self.view(frame, description)
+        things = find(view, parsed)
+        absent = self.open_scene(frame.origin.scene).file.absent if frame.origin is not None else ()
+        if not things and not any(nouns_in(phrase.words, view.nouns | frozenset(absent)) for phrase in parsed.phrases):
+            raise NotUnderstoodError(
+                f"The description '{description}' is not understood, because it names no known kind of thing. Describe the things "
+                "by a noun."
+            )
+        return things
 
 
 def _ids(things: list[Thing]) -> str:

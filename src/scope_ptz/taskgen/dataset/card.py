@@ -19,7 +19,8 @@ from scope_ptz.taskgen.picture_audit import Audit, AuditedAnswer, read_audit, ta
 GOLD, PROOF, AUDIT = "gold.jsonl.gz", "proof.json", "audit.json"
 _ABOUT = {
     "core": "the tasks from which scores are computed",
-    "lite": "a tenth of the core tasks, stratified by category, scene and difficulty",
+    "lite": "a tenth of the core tasks, balanced over categories, scenes, difficulties and answers",
+    "lite1": "the first version of lite, not balanced over answers; logs of version 0.1.0 that state lite used these tasks",
     "paraphrase": "further wordings of core tasks",
     "reaction": "requests that require a clarifying question or a refusal",
     "unseen": "tasks in variations of the scenes, made by the same rules",

@@ -135,12 +135,9 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
 
     They pass only if the answer happens to be correct.
     """
-    perceiving = [
-        index for index, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"
-    ]
-    if not perceiving or isinstance(task.expected, ActionOnly):
+    program = looking_program(task)
+    if not program or isinstance(task.expected, ActionOnly):
         return
-    program = task.reference[: perceiving[-1] + 1]
     names = offered_answers(task.expected, task.instruction)
     answers: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
     answers |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
@@ -148,6 +145,14 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
     for name, text in answers.items():
         if text is not None:
             yield Attempt(f"looked-and-guessed: {name}", program, text)
+
+
+def looking_program(task: Task) -> tuple[ProgramCall, ...]:
+    """Return the reference program up to its last perception call; empty if it has none."""
+    perceiving = [
+        index for index, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"
+    ]
+    return task.reference[: perceiving[-1] + 1] if perceiving else ()
 
 
 def without_moves(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:

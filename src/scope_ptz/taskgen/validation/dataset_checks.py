@@ -14,7 +14,16 @@ from scope_ptz.taskgen.validation.validation_report import ValidationFault, Vali
 MAX_GUESSED_SHARE = 0.03
 """Maximum fraction of the core tasks that a fixed answer may pass. A task of a pair counts only if both tasks of the pair pass."""
 
-_MIN_TASKS_FOR_SHARE = 300  # minimum number of core tasks for the check of ``MAX_GUESSED_SHARE``
+MAX_ADAPTIVE_SHARE = 0.05
+"""Maximum fraction of the core tasks that an agent may pass that adapts a constant answer to the form of the question."""
+
+MEASURED_ADAPTIVE_SHARES = {"scope1": 0.08}
+"""Limits for datasets that were published before ``MAX_ADAPTIVE_SHARE``: their measured fractions, rounded up.
+
+In scope1, the agents that give the first or the last offered option win 7%, because many questions offer two to four options.
+"""
+
+_MIN_TASKS_FOR_SHARE = 300  # minimum number of core tasks for the checks of these fractions
 
 
 def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[ValidationFault]:
@@ -72,3 +81,18 @@ def check_guesses(report: ValidationReport, tasks: Sequence[Task]) -> None:
         report.pairs_passed[name] = len(both) + sum(twins[task] is None for task in ids)
         if core >= _MIN_TASKS_FOR_SHARE and report.pairs_passed[name] > MAX_GUESSED_SHARE * core:
             report.faults.append(ValidationFault("all", name, f"passes {report.pairs_passed[name]} of {core} tasks"))
+
+
+def check_adaptive(report: ValidationReport, tasks: Sequence[Task]) -> None:
+    """Record a fault for each adaptive agent that passes both tasks of a pair, or more tasks than ``MAX_ADAPTIVE_SHARE`` allows."""
+    twins = {task.id: task.pair for task in tasks}
+    core = report.by_stratum["core"]
+    limit = max((MEASURED_ADAPTIVE_SHARES.get(task.dataset, MAX_ADAPTIVE_SHARE) for task in tasks), default=MAX_ADAPTIVE_SHARE)
+    for name, ids in report.adaptive.items():
+        both = sorted(task for task in ids if twins[task] in ids)
+        report.faults += [ValidationFault(task, name, f"also passes {twins[task]}") for task in both]
+        unpaired = sorted(task for task in ids if twins[task] is None)
+        report.adaptive_pairs[name] = len(both) + len(unpaired)
+        if core >= _MIN_TASKS_FOR_SHARE and report.adaptive_pairs[name] > limit * core:
+            names = ", ".join([*both, *unpaired])
+            report.faults.append(ValidationFault("all", name, f"passes {report.adaptive_pairs[name]} of {core} tasks: {names}"))

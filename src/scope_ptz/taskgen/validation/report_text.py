@@ -28,6 +28,11 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     for name, row in content["looked_and_guessed"].items():
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
+    if content["adaptive"]:
+        yield "core tasks that answers adapted to the form of the question pass (right-hand numbers: with pairs counted whole)"
+    for name, row in content["adaptive"].items():
+        agent = name.removeprefix("adaptive: ")
+        yield f"  {agent:<28}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     yield from _listed("correct attempts and checks that failed", report.faults)
     yield from _listed("adversarial attempts that passed", report.adversarial_passes)
     yield from _listed("differences between ground-truth perception and the evidence", report.disagreements)

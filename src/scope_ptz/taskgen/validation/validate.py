@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
@@ -15,6 +15,7 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+from scope_ptz.taskgen.validation.adaptive import Form, adaptive_attempts, common_by_form
 from scope_ptz.taskgen.validation.adversarial import (
     Attempt,
     adversarial_attempts,
@@ -24,7 +25,7 @@ from scope_ptz.taskgen.validation.adversarial import (
     other_correct_wordings,
 )
 from scope_ptz.taskgen.validation.consistency import TruthReader, inconsistencies
-from scope_ptz.taskgen.validation.dataset_checks import check_guesses, sibling_answers, structural_faults
+from scope_ptz.taskgen.validation.dataset_checks import check_adaptive, check_guesses, sibling_answers, structural_faults
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 Progress = Callable[[int, int], None]
@@ -57,6 +58,7 @@ async def validate(
     Returns:
         The report.
     """
+    common_forms = common_by_form(tasks)
     report, common, common_unpaired = ValidationReport(), common_answers(tasks), common_answers(tasks, exclude_pairs=True)
     siblings = sibling_answers(tasks)
     runners = {name: ProgramRunner(scene, make_context, TASK_CAMERA) for name, scene in scenes.items()}
@@ -75,10 +77,12 @@ async def validate(
         await validation.run(common.get(task.category, _FALLBACK_GUESS), siblings.get(task.id), seed)
         if task.stratum == "core":
             await validation.guess(common_unpaired.get(task.category, _FALLBACK_GUESS))
+            await validation.adapt(common_forms)
         if progress is not None:
             progress(number, len(tasks))
     report.faults += structural_faults(tasks, dataset)
     check_guesses(report, tasks)
+    check_adaptive(report, tasks)
     return report
 
 
@@ -114,8 +118,15 @@ class _TaskValidation:
 
     async def guess(self, common: str) -> None:
         """Record which fixed answers happen to be correct."""
-        for attempt in guess_attempts(self.task, common):
-            passed = self.report.guessed.setdefault(attempt.name, set())
+        await self._record_passed(self.report.guessed, guess_attempts(self.task, common))
+
+    async def adapt(self, common: Mapping[Form, str]) -> None:
+        """Record which answers that only fit the form of the question happen to be correct."""
+        await self._record_passed(self.report.adaptive, adaptive_attempts(self.task, common))
+
+    async def _record_passed(self, passed_by: dict[str, set[str]], attempts: Iterable[Attempt]) -> None:
+        for attempt in attempts:
+            passed = passed_by.setdefault(attempt.name, set())
             if score_episode(self.task, await self._episode(attempt)).headline == "correct":
                 passed.add(self.task.id)
 

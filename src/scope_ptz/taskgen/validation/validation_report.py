@@ -39,6 +39,8 @@ class ValidationReport:
         from_start: Number of core tasks that can be answered from the start view.
         guessed: Ids of the core tasks that a fixed answer passes, by the name of the guess.
         pairs_passed: Number of tasks in ``guessed``, where a task of a pair counts only if both tasks of the pair pass.
+        adaptive: Ids of the core tasks that each agent passes that adapts a constant answer to the form of the question.
+        adaptive_pairs: Number of tasks in ``adaptive``, with pairs counted whole.
         faults: Correct attempts that failed, and failed checks.
         adversarial_passes: Adversarial attempts that passed.
         disagreements: Counts and answers of ground-truth perception that differ from the evidence. They do not make a dataset
@@ -54,6 +56,8 @@ class ValidationReport:
     from_start: int = 0
     guessed: dict[str, set[str]] = field(default_factory=dict)
     pairs_passed: dict[str, int] = field(default_factory=dict)
+    adaptive: dict[str, set[str]] = field(default_factory=dict)
+    adaptive_pairs: dict[str, int] = field(default_factory=dict)
     faults: list[ValidationFault] = field(default_factory=list)
     adversarial_passes: list[ValidationFault] = field(default_factory=list)
     disagreements: list[ValidationFault] = field(default_factory=list)
@@ -84,16 +88,22 @@ class ValidationReport:
                 name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share}
                 for name, share in self.adversarial_shares.items()
             },
-            "looked_and_guessed": {
-                name: {
-                    "passed": len(ids),
-                    "share": len(ids) / core,
-                    "pairs_whole": self.pairs_passed[name],
-                    "share_pairs_whole": self.pairs_passed[name] / core,
-                }
-                for name, ids in self.guessed.items()
-            },
+            "looked_and_guessed": _shares(self.guessed, self.pairs_passed, core),
+            "adaptive": _shares(self.adaptive, self.adaptive_pairs, core),
             "faults": [vars(fault) for fault in self.faults],
             "cheated": [vars(fault) for fault in self.adversarial_passes],
             "disagreements": [vars(fault) for fault in self.disagreements],
         }
+
+
+def _shares(passed: dict[str, set[str]], whole: dict[str, int], core: int) -> dict[str, dict[str, float]]:
+    """Return how many of the core tasks each agent passes, and how many with pairs counted whole."""
+    return {
+        name: {
+            "passed": len(ids),
+            "share": len(ids) / core,
+            "pairs_whole": whole[name],
+            "share_pairs_whole": whole[name] / core,
+        }
+        for name, ids in passed.items()
+    }

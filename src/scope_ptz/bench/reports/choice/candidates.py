@@ -6,8 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from scope_ptz.bench.reports.report_runs import ReportRun, timing_run
-from scope_ptz.bench.reports.stage_times import median, stage_seconds
+from scope_ptz.bench.reports.stage_times import median, p95, stage_seconds
+from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.pareto import undominated
+
+REAL_TIME_S = 0.5
+"""The paper's real-time criterion: a control loop of about 2 Hz, so at most 0.5 s per inference."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +21,10 @@ class Candidate:
     Attributes:
         run: The run of the pair.
         accuracy: Macro accuracy; None if not measured.
-        latency_s: Median seconds of a trial without the camera; None if not measured.
+        latency_s: Median seconds of a turn (one trial) without the camera; None if not measured.
+        p95_s: 95th percentile of these seconds; None if not measured.
+        inference_s: Median seconds of one inference: of a planner step or a perception call, whichever is slower; None if one of
+            them is not measured.
         memory_gb: Computed memory in GB; None if a model is not in the registry.
         contended: Whether the latency was measured under contention.
         on_front: Whether the pair is on the Pareto front of accuracy, latency and memory.
@@ -26,6 +33,8 @@ class Candidate:
     run: ReportRun
     accuracy: float | None
     latency_s: float | None
+    p95_s: float | None
+    inference_s: float | None
     memory_gb: float | None
     contended: bool
     on_front: bool = False
@@ -43,14 +52,31 @@ def candidates(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> li
         ranked: The runs of model pairs over the same tasks.
         all_runs: All runs of the report. Latencies are taken from a run without contention if there is one.
     """
-    measured = []
-    for run in ranked:
-        source = timing_run(run, all_runs)
-        seconds = median(stage_seconds(source, "own_s"))
-        accuracy = run.macro.value if run.macro else None
-        measured.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
+    measured = [candidate(run, all_runs) for run in ranked]
     complete = [c for c in measured if c.complete]
     # Accuracies are rounded, so that rounding errors do not decide between pairs of equal accuracy.
     points = [(-round(c.accuracy or 0.0, 9), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
     front = {id(c) for c, is_on_front in zip(complete, undominated(points), strict=True) if is_on_front}
     return [replace(c, on_front=id(c) in front) for c in measured]
+
+
+def candidate(run: ReportRun, all_runs: Sequence[ReportRun]) -> Candidate:
+    """Return one run as a candidate that is not on the Pareto front."""
+    source = timing_run(run, all_runs)
+    seconds = stage_seconds(source, "own_s")
+    return Candidate(
+        run,
+        run.macro.value if run.macro else None,
+        median(seconds),
+        p95(seconds),
+        _inference_s(source.scored_trials),
+        run.memory_gb,
+        source.evaluation.card.contended,
+    )
+
+
+def _inference_s(trials: Sequence[Trial]) -> float | None:
+    """Return the slower of the median planner step and the median perception call, in seconds."""
+    step = median([t.timings.planner_s / t.steps for t in trials if t.steps and t.timings.planner_s > 0])
+    call = median([look.eyes_s for t in trials for look in t.looks])
+    return None if step is None or call is None else max(step, call)

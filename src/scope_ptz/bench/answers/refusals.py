@@ -1,0 +1,185 @@
+"""Detect answers that decline the question, although they may also state a value.
+
+"I cannot tell. There are 0." is not an answer of 0, and neither is "0, because the tool failed". A refusal counts only if it is
+about what the question asks: "5 cones; I cannot tell who put them there" is an answer.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from scope_ptz.bench.answers.refusal_words import COMMON_WORDS, WORDS_OF_KIND
+from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word, words_of
+from scope_ptz.bench.tasks.expected import (
+    AnyExpected,
+    Choice,
+    Description,
+    NameSet,
+    NoneThere,
+    Number,
+    Ordering,
+    Relation,
+    Text,
+    YesNo,
+)
+
+_VERBS = (
+    r"(?:tell|say|determined?|know|known|readable|compared?|rank|ranked|counted|judged?|identify|identified|answer|answered|"
+    r"confirm|confirmed|decided?|sure|certain|possible|legible|establish|established|verify|verified|described?|look|looked|"
+    r"check|checked|observed?|perceived?|inspect|inspected|examined?|analysed?|measured?|make out|read|clear|available|"
+    r"load|loaded|succeed|succeeded|respond|responded|work|worked|count)"
+)
+"""Verbs and adjectives of observation and knowledge."""
+_NOUNS = (
+    r"(?:images?|pictures?|photos?|frames?|video|feed|footage|view|camera|eyes|vision|sight|visibility|tools?|calls?|data|information|"
+    r"info|access|results?|responses?|reply|replies|output|answers?|idea|clue|comment|knowledge|evidence|observations?|readings?|"
+    r"counts?|detections?|ability|means|way)"
+)
+"""Nouns of observation and knowledge."""
+_REFUSAL = re.compile(
+    rf"\b(?:not|never|nor) (?:(?:\w+ly|been|be|yet|even|have|had|really|able to|in a position to) ){{0,3}}{_VERBS}\b"
+    r"|\b(?:unable|impossible|hard|difficult|not able|too \w+|fail|failed|tried in vain) (?:for \w+ )?to "
+    r"(?:tell|say|determine|know|read|compare|rank|count|judge|identify|answer|confirm|decide|verify|describe|look|make out|do|"
+    r"check|observe|perceive|inspect)\b"
+    r"|\b(?:not (?:\w+ )?|never |unable to |without )(?:see|saw|seen|view|access|open|process|interpret|seeing|viewing|looking|"
+    r"checking|knowing|observing) (?:at )?(?:the |this |that |an? |any )?"
+    r"(?:image|images|picture|pictures|photo|photos|scene|frame|video|view|"
+    r"camera|anything|it|clearly|enough|well)\b"
+    r"|\bwithout (?:looking|checking|seeing|observing|knowing|counting|access)\b"
+    rf"|\b(?:no|without|lack|lacks|lacked|not (?:have|had|get|got|receive|received|obtain|reach|given))"
+    rf"(?: (?:any|an?|the|enough|usable|valid|clear|useful|further|sufficient|reliable|more|such|camera|tool|perception)){{0,3}} "
+    rf"{_NOUNS}\b(?! (?:of|with|that) (?:an?|the) )"
+    r"|\b(?:illegible|unreadable|unknown|indeterminable|undetermined|undecided|unavailable|uncertain|unclear|unverified|unanswerable)\b"
+    rf"|\bno (?:\w+ ){{0,3}}(?:information|data|access|results?|counts?|reply|output)"
+    r"(?: (?:is|are|was|were))?(?: (?:available|returned|given|known))?$"
+    r"|\b(?:refuse|decline|abstain|refrain)\b|\b(?:give|gave|given|giving) up\b|\bskipped\b|\bsight unseen\b"
+    r"|(?<!no )(?<!without )\berror\b"
+    r"|\bnothing (?:(?:i|we) can (?:say|tell|report)|to (?:say|tell|report)|could be (?:seen|observed|read|counted|determined))\b"
+    r"|\b(?:no one|nobody|who|god) knows\b"
+    r"|\btoo (?:\w+ )?(?:dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (?:\w+ )?"
+    r"(?:see|tell|say|read|count|make|determine|identify|judge|be)\b"
+    r"|\b(?:tools?|calls?|perception|detector|counts?|query|request|camera|sweep|model|image|picture|upload|connection) "
+    r"(?:has |have |had |is |was )?(?:failed|crashed|timed out|down|broken|missing|corrupt|blank|black)\b"
+    r"|\bnot (?:\w+ )?(?:find|locate|detect|spot|see|seen) (?:it|them|that|this|one|any)$"
+    r"|\bnot (?:\w+ )?(?:see|make out|observe) (?:\w+ ){1,4}at all\b"
+    r"|\b(?:not|never) (?:been )?seen (?:it|them|that|this)\b"
+)
+"""Phrases that decline to answer, or that say that nothing was observed."""
+_ABANDONED = re.compile(r"\b(?:i|we) (?:refuse|decline|abstain|(?:give|gave) up|skipped)\b|\bsight unseen\b")
+"""Phrases that abandon the task, whatever they name."""
+_FOREIGN = re.compile(
+    r"\b(?:no (?:lo )?(?:s[ée]|puedo)|no tengo (?:ni )?idea|non (?:lo )?so|non posso|je ne (?:sais|peux|vois) (?:pas|rien)|"
+    r"aucune id[ée]e|(?:wei(?:ß|ss)|kann|sehe) (?:es |ich |das |den |die )?(?:es |das |bild )?(?:nicht|nichts)|keine ahnung|"
+    r"n[ãa]o (?:sei|posso|consigo)|"
+    r"(?:weet|kan) (?:het |ik )?niet|(?:vet|kan) inte|nie (?:wiem|mog[ęe]))\b"
+)
+"""Refusals in other languages."""
+READINGS = re.compile(r"\"[^\"]*\"|\b[A-Z0-9][A-Z0-9'&-]+(?:[ /]+[A-Z0-9'&-]+)*\b")
+"""Quoted texts and texts in capitals, which are read from signs and decline nothing ("NO ACCESS")."""
+_RETRIED = re.compile(r"\b(?:first|initially|earlier|previously|before|until|again|retried|repeated|second|once|originally)\b")
+"""Words that show that a failure was overcome later."""
+_BECAUSE = re.compile(r"^(?:because|since|as)\b")
+_ABSENCE = re.compile(r"\b(?:no|none|not|nothing|neither|without|absent|missing|zero|0)\b")
+"""Words that state an absence, which can be the reason why a question about a thing has no answer."""
+
+_NOT_SEEN = re.compile(r"(?:find|locate|detect|spot|see) (?:it|them|that|this|one|any)$|at all$")
+"""The end of a statement that the thing was not seen."""
+_KINDS_OF_SEEN_THINGS = frozenset({"choice", "text", "ordering", "relation", "description"})
+"""Kinds of answers that can only be given of things that were seen."""
+_SPECULATION = re.compile(
+    r"\b(?:probably|likely|presumably|surely|must|should|would|guess|assume|typical|typically|usually|normally|generally|often|expected)\b"
+)
+"""Words that make a statement after a refusal a guess."""
+
+
+def declines(expected: AnyExpected, cleaned: str) -> bool:
+    """Return whether a text declines the question, whatever else it states.
+
+    Args:
+        expected: The expected answer. Only its type and its wordings are used.
+        cleaned: The answer as ``tokenizer.clean`` returns it, without withdrawn statements.
+    """
+    if _FOREIGN.search(cleaned.lower()) or re.search(r"\bn/a\b", cleaned.lower()):
+        return True
+    if isinstance(expected, Text):
+        cleaned = READINGS.sub(" ", cleaned)
+    words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
+    return any(_is_refusal(expected, clause) for clause in clauses_of(words))
+
+
+def _is_refusal(expected: AnyExpected, clause: list[Word]) -> bool:
+    text = joined(clause)
+    if _ABANDONED.search(text):
+        return True
+    match = _REFUSAL.search(text)
+    if match is None or _RETRIED.search(text):
+        return False
+    first = text[: match.start()].count(" ")
+    last = text[: match.end()].count(" ")
+    rest = clause[last + 1 :]
+    after_but = next((rest[at + 1 :] for at, word in enumerate(rest) if word.text == "but"), None)
+    if after_but is not None and not _SPECULATION.search(joined(after_but)):
+        return False
+    if not match.group().startswith("no ") and _is_absence_given_as_reason(clause, first, rest):
+        return False
+    if _NOT_SEEN.search(match.group()):  # "I could not find any" is an answer to "is there a van?"
+        return expected.kind in _KINDS_OF_SEEN_THINGS
+    segment = [word for word in clause if clause[first].segment <= word.segment <= clause[last].segment]
+    return _is_about(expected, [word.text for word in segment])
+
+
+def _is_absence_given_as_reason(clause: list[Word], first: int, rest: list[Word]) -> bool:
+    """Return whether an absence is the reason of a refusal: "no kite, so I cannot tell", "I cannot tell: I see no kite"."""
+    segment = [word for word in clause if word.segment == clause[first].segment]
+    before = clause[: clause.index(segment[0])]
+    if before and segment[0].text in ("so", "therefore", "thus", "hence") and _ABSENCE.search(joined(before)):
+        return True
+    for at, word in enumerate(rest):
+        if ":" in word.gap or _BECAUSE.match(word.text):
+            return _ABSENCE.search(joined(rest[at:])) is not None and not any(w.text[0].isdigit() for w in rest[at:])
+    return False
+
+
+def _is_about(expected: AnyExpected, words: list[str]) -> bool:
+    """Return whether a refusal has no subject of its own, other than what the question asks."""
+    known = COMMON_WORDS | WORDS_OF_KIND.get(expected.kind, frozenset())
+    named = [part for wording in _wordings(expected) for part in plain_words(wording)]
+    match = _REFUSAL.search(" ".join(words))
+    phrase = set(match.group().split()) if match else set[str]()
+    own = [word for word in words if not (word in known or word in phrase or any(same_word(word, name) for name in named))]
+    asks_whether = isinstance(expected, YesNo) and "whether" in words and any(same_word(words[-1], name) for name in named)
+    return not own or asks_whether
+
+
+def _wordings(expected: AnyExpected) -> Iterable[str]:
+    match expected:
+        case Number():
+            return expected.unit
+        case YesNo():
+            return (*expected.affirms, *expected.denies)
+        case NoneThere():
+            return expected.subject
+        case Choice():
+            return (*expected.subject, *expected.picks, *expected.options, *(w for ws in expected.options.values() for w in ws))
+        case NameSet() | Ordering():
+            return (*expected.options, *(w for ws in expected.options.values() for w in ws))
+        case Relation():
+            return (*expected.subject, *expected.object, *expected.forward, *expected.backward, *expected.same)
+        case Description():
+            return [w for fact in (*expected.facts, *expected.contradictions) for w in fact.any_of]
+        case _:
+            return ()
+
+
+def clauses_of(words: list[Word]) -> list[list[Word]]:
+    """Return the words of each clause."""
+    clauses: dict[int, list[Word]] = {}
+    for word in words:
+        clauses.setdefault(word.clause, []).append(word)
+    return list(clauses.values())
+
+
+def joined(words: Iterable[Word]) -> str:
+    """Return words joined by spaces."""
+    return " ".join(word.text for word in words)

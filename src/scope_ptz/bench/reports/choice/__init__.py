@@ -1,0 +1,1 @@
+"""The first screen of a report: which pair to choose for which accuracy, latency and memory."""
