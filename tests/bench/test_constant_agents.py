@@ -25,7 +25,7 @@ from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.stratified import answer_key
 from scope_ptz.bench.tasks.task import ProgramCall, Task
 from scope_ptz.factory.validation_perception import ground_truth_tools
-from scope_ptz.factory.worlds import scenes_named
+from scope_ptz.factory.worlds import open_scenes
 from tests.bench.making import samples
 
 pytestmark = pytest.mark.anyio
@@ -98,7 +98,7 @@ async def test_the_real_tools_give_the_same_verdicts(text: str) -> None:
         and not isinstance(task.expected, ActionOnly)
         and not any(step.tool in ("zoom_to_object", "track_object") for step in task.reference)
     ][::6]
-    scenes = scenes_named(["highway-works"])
+    scenes = open_scenes(["highway-works"])
     runner = ProgramRunner(scenes["highway-works"], ground_truth_tools(scenes), FRAME)
     won = tasks_won(tasks, tasks_accepting(tasks, [ConstantReply(text)]), looks=True)[ConstantReply(text)]
     for task in tasks:
@@ -115,7 +115,7 @@ def one_look(task: Task) -> list[ProgramCall]:
 @pytest.mark.parametrize("limit", [8, 20, 40, 60, 100])
 def test_a_limit_is_balanced_over_answers(limit: int) -> None:
     tasks = load_split("core")
-    scenes = scenes_named(sorted({task.scene for task in tasks}))
+    scenes = open_scenes(sorted({task.scene for task in tasks}))
     entries = tuple(entry_of(task, scenes[task.world]) for task in tasks)
     chosen = [entry.task for entry in select(entries, limit=limit) if entry.task is not None]
     assert len(chosen) == limit

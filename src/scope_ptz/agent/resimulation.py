@@ -12,7 +12,7 @@ from typing import Any
 
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Called, Decided, Ended, RecordedPose, Started
-from scope_ptz.agent.replay import REPEATABLE, RecordedPerception, complete_decisions, recorded_replies
+from scope_ptz.agent.replay import REPRODUCIBLE_OUTCOMES, RecordedPerception, complete_decisions, recorded_replies
 from scope_ptz.agent.timing import PerceptionReply
 from scope_ptz.agent.trace import Trace, trace_of
 from scope_ptz.agent.trace_faults import trace_faults
@@ -143,7 +143,7 @@ def _field_differences(what: str, before: Mapping[str, Any], now: Mapping[str, A
 
 
 def _end_differences(recorded: Ended, repeated: Ended) -> Iterator[str]:
-    if recorded.outcome not in REPEATABLE:
+    if recorded.outcome not in REPRODUCIBLE_OUTCOMES:
         return
     if (recorded.outcome, recorded.text) != (repeated.outcome, repeated.text):
         yield f"the run was recorded to end {recorded.outcome}, but ends {repeated.outcome}, or with another answer"

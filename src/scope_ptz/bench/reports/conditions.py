@@ -98,7 +98,7 @@ def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
         len(run.evaluation.trials),
         run.evaluation.wanted,
         card.epochs,
-        card.agent,
+        card.agent_label,
         card.variant or "as it is",
         card.max_steps,
         None if card.seed is None else str(card.seed),

@@ -128,7 +128,7 @@ def looking_episode(task: Task) -> Episode:
     for step in task.reference:
         if step.tool in _LOOKS and looked:
             continue
-        arguments = dict(step.arguments)
+        arguments: dict[str, object] = dict(step.arguments)
         if step.tool in _LOOKS:
             looked, arguments[_LOOKS[step.tool]] = True, task.instruction
         calls.append(_call(task, step.tool, arguments, position, view))

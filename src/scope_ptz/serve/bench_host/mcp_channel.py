@@ -50,8 +50,8 @@ from scope_ptz.serve.bench_host.http_routes import host_status_of, public_messag
 from scope_ptz.serve.mcp.http import MAX_SESSIONS, McpEndpoint, client_of
 from scope_ptz.serve.mcp.pictures import UNTRUSTED_META
 from scope_ptz.serve.mcp.server import Context
-from scope_ptz.serve.mcp.tool import ToolArguments, failure, parsed, reply, without_titles
-from scope_ptz.serve.mcp.untrusted import between_markers, marked
+from scope_ptz.serve.mcp.tool import ToolArguments, failure, parse_arguments, reply, without_titles
+from scope_ptz.serve.mcp.untrusted import between_markers, mark_texts
 from scope_ptz.serve.security.gate import MAX_BODY_BYTES, MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.tools.registry import TOOLS
@@ -186,12 +186,12 @@ def _message(name: str, arguments: dict[str, Any]) -> AgentMessage:
         ToolCallError: The arguments of one of the other tools are wrong.
     """
     if name == "begin_task":
-        return Hello(protocol=PROTOCOL, name="mcp", sees=parsed(BeginTask, name, arguments).frames)
+        return Hello(protocol=PROTOCOL, name="mcp", sees=parse_arguments(BeginTask, name, arguments).frames)
     if name == "view":
-        parsed(ViewFrame, name, arguments)
+        parse_arguments(ViewFrame, name, arguments)
         return ViewRequest()
     if name == "answer":
-        given = parsed(GiveAnswer, name, arguments)
+        given = parse_arguments(GiveAnswer, name, arguments)
         return Reply(kind=given.kind, text=given.text)
     return Calls(calls=(RequestedCall(id="call", name=name, arguments=arguments),))
 
@@ -206,7 +206,7 @@ def _result(name: str, message: HostMessage) -> CallToolResult:
             (result,) = message.results
             perceived = name in TOOLS.perceiving
             text = result.error if result.error is not None else str((result.result or {}).get("message", ""))
-            data = {"result": marked(result.result, perceived=perceived), "error": result.error}
+            data = {"result": mark_texts(result.result, perceived=perceived), "error": result.error}
             return reply(between_markers(text) if perceived else text, data, failed=result.error is not None)
         case View():
             return _view_result(message)
