@@ -212,6 +212,16 @@ async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, attack: str, mon
     wait_for_end(pid)
 
 
+async def test_an_agent_that_is_cancelled_while_it_starts(tmp_path: Path) -> None:
+    name = write_agent(tmp_path, "return 'x'", imports="import os, time\nopen(f'pid-{os.getpid()}', 'w').close()\ntime.sleep(60)")
+    starting = asyncio.ensure_future(started_in(tmp_path, name).open())
+    await asyncio.to_thread(wait_for_pid, tmp_path)
+    starting.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await starting
+    wait_for_end(pids_in(tmp_path)[0])
+
+
 async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
     body = """
     open(f"pid-{os.getpid()}", "w").close()

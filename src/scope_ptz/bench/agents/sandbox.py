@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import scope_ptz
 from scope_ptz.errors import ConfigError
 
 RUNNER = Path("/run/scope/runner.py")
@@ -54,7 +53,7 @@ class SandboxContents:
 
 def own_files() -> tuple[Path, ...]:
     """Return the folders of SCOPE itself: the package, and the checkout that it belongs to."""
-    package = Path(scope_ptz.__file__).resolve().parent
+    package = Path(__file__).resolve().parents[2]
     checkout = package.parent.parent
     return (package, checkout) if package.parent.name == "src" and (checkout / "pyproject.toml").is_file() else (package,)
 

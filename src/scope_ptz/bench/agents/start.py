@@ -46,7 +46,11 @@ class LocalAgent:
     async def open(self) -> ChannelPlanner:
         """Start the agent for one run. If it fails to start, the first step of the run reports that."""
         planner = ChannelPlanner(await self.open_channel(), self.name, self.options.times)
-        await planner.connect()
+        try:
+            await planner.connect()
+        except BaseException:  # also cancellation, which must leave no process behind
+            await planner.close()
+            raise
         return planner
 
     async def check(self) -> None:
@@ -91,7 +95,8 @@ def _class(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, .
     environment = agent_environment(options.variables, python_path=options.python is None)
     interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute(options.python))
     source = find_module(name, folder, interpreter.search_path)
-    if options.python is None and source is not None and source.folder != folder:
+    installed = source is not None and any(source.folder.is_relative_to(prefix) for prefix in interpreter.prefixes)
+    if options.python is None and source is not None and source.folder != folder and not installed:
         # Programs may have added folders to their own search path, which a new process does not have.
         environment["PYTHONPATH"] = os.pathsep.join(
             [str(source.folder), *environment.get("PYTHONPATH", "").split(os.pathsep)]

@@ -77,13 +77,15 @@ def agent_solver(
                 if open_agent is None
                 else await open_agent()
             )
-            run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
             try:
-                result = await run.run(Budgets(max_steps=max_steps, time_s=time_s))
+                run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
+                try:
+                    result = await run.run(Budgets(max_steps=max_steps, time_s=time_s))
+                finally:
+                    await run.store(state)
             finally:
                 if isinstance(planner, ChannelPlanner):
                     await planner.close()
-                await run.store(state)
             state.output = ModelOutput.from_content(planner.name, result.ended.text)
             state.completed = True
             failure = failure_at_end(result.ended)
