@@ -13,10 +13,10 @@ from inspect_ai.log import EvalLog
 
 from scope_ptz.bench.engine.entries import Entry, digest
 from scope_ptz.bench.engine.stored_run import sample_name
+from scope_ptz.bench.engine.traces.named_models import card_contradictions
 from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, unscored
 from scope_ptz.bench.engine.traces.traced_trials import TracedTrial
 from scope_ptz.bench.scoring.trials import LogFinding, RunCard, Trial
-from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
 
 def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> tuple[list[Trial], tuple[LogFinding, ...]]:
@@ -37,7 +37,8 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         first = by_name[name][0]
         trials[name] = unscored(first.entry, first.trial.epoch, detail, first.trial.judgements)
         findings.append(LogFinding(kind="sample-repeated", sample=name, detail=detail))
-    findings += _card_findings(traced, card)
+    models = [one.models for one in traced]
+    findings += [LogFinding(kind="card-differs", detail=detail) for detail in card_contradictions(models, card)]
     wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
     if header.status != "success" and len(by_name) < wanted:  # an unfinished evaluation, which reports name
         return list(trials.values()), tuple(findings)
@@ -57,18 +58,6 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         findings.insert(0, LogFinding(kind="tasks-changed", detail=detail))
         trials = {name: _without_score(trial, entries[trial.task.id], detail) for name, trial in trials.items()}
     return list(trials.values()), tuple(findings)
-
-
-def _card_findings(traced: Sequence[TracedTrial], card: RunCard) -> list[LogFinding]:
-    """Return a finding for each role in which the card names a model and traces name a built-in component, or the reverse."""
-    findings = []
-    for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
-        names = [one.models[index] for one in traced if one.models[index]]
-        others = [name for name in names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
-        if others:
-            detail = f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"
-            findings.append(LogFinding(kind="card-differs", detail=detail))
-    return findings
 
 
 def _without_score(trial: Trial, entry: Entry, reason: str) -> Trial:

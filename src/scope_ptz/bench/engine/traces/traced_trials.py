@@ -19,6 +19,7 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.judgement_scores import judgements_in
 from scope_ptz.bench.engine.sample_files import stored_run_in
 from scope_ptz.bench.engine.stored_run import StoredRun, sample_name
+from scope_ptz.bench.engine.traces.named_models import models_of
 from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, published_entry, published_run, scored_trial, unusable
 from scope_ptz.bench.scoring.trials import Judgement, LogFinding, Trial
 from scope_ptz.bench.tasks.published import published_digest
@@ -92,7 +93,7 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
         findings.append(fault)
     else:
         findings += _score_findings(trial, scores)
-    return TracedTrial(trial, tuple(findings), entry, digest, _models(stored_run))
+    return TracedTrial(trial, tuple(findings), entry, digest, models_of(stored_run))
 
 
 def _entry_of(sample: Mapping[str, Any]) -> tuple[Entry, bool]:
@@ -104,15 +105,6 @@ def _entry_of(sample: Mapping[str, Any]) -> tuple[Entry, bool]:
         if published is None:
             raise
         return published, True
-
-
-def _models(stored_run: StoredRun) -> tuple[str, str]:
-    """Return the names of planner and perception in the first line of a trace."""
-    try:
-        started = json.loads(stored_run.trace.partition("\n")[0])
-        return str(started["planner"]), str(started["perception"])
-    except (ValueError, KeyError, TypeError):
-        return "", ""
 
 
 def _cached_trial(
