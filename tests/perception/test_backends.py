@@ -80,15 +80,16 @@ async def test_ground_truth_reports_a_description_that_names_nothing_it_knows(te
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("text", ["a dog", "red elephants", "purple vans"])
+@pytest.mark.parametrize("text", ["a dog", "red dogs", "purple vans"])
 async def test_known_things_that_are_not_in_view_are_not_an_error(text: str) -> None:
     assert (await ground_truth().detect(yard.frame(), text)).boxes == ()
 
 
 @pytest.mark.anyio
 async def test_ground_truth_reports_a_question_that_it_does_not_understand() -> None:
-    with pytest.raises(NotUnderstoodError, match="what is the meaning of life"):
-        await ground_truth().query(yard.frame(), "what is the meaning of life and why")
+    for question in ("why did the van go where it went", "how many gizmotrons are there?", "is there a gizmotron?"):
+        with pytest.raises(NotUnderstoodError, match=re.escape(question)):
+            await ground_truth().query(yard.frame(), question)
 
 
 @pytest.mark.anyio
