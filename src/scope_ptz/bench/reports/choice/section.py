@@ -76,7 +76,7 @@ def choice_section(
 
 def _choice(candidate: Candidate, reasons: Mapping[str, Sequence[str]]) -> str:
     """Return what to choose a pair for."""
-    return "; ".join(reasons.get(candidate.run.label, ())) or ("trade-off on the Pareto front" if candidate.on_front else "–")
+    return "; ".join(reasons.get(candidate.run.label, ())) or ("Pareto front" if candidate.on_front else "–")
 
 
 def _row(
