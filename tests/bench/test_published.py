@@ -18,16 +18,9 @@ EVERYTHING = load_split("all")
 
 def test_every_file_is_unchanged() -> None:
     files = read_manifest(FOLDER)["files"]
-    assert {
-        "tasks.jsonl",
-        "paraphrase.jsonl",
-        "reaction.jsonl",
-        "unseen.jsonl",
-        "lite.txt",
-        "lite2.txt",
-        "gold.jsonl.gz",
-        "proof.json",
-    } <= set(files)
+    assert {"tasks.jsonl", "paraphrase.jsonl", "reaction.jsonl", "unseen.jsonl", "lite.txt", "gold.jsonl.gz", "proof.json"} <= set(
+        files
+    )
     assert {name: hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() for name in files} == files
 
 

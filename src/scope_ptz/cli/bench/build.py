@@ -143,7 +143,7 @@ def validate(
 
     report = validate_tasks(load_split(tasks), seed, dataset=load_split("core") if tasks in ("lite", "paraphrase") else ())
     if as_json:
-        put_json(report.as_dict())
+        put_json({**report.as_dict(), "adaptive": report.adaptive_as_dict()})
     else:
         for line in report_lines(report):
             put(line)

@@ -18,7 +18,6 @@ from scope_ptz.simulator.truth import ViewTruth, view_truth
 
 if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import AnswerText
-    from scope_ptz.perception.ground_truth.language.question_tree import Description
     from scope_ptz.perception.ground_truth.view import Thing, View
 
 GROUND_TRUTH_VERSION = 1
@@ -108,8 +107,6 @@ class GroundTruthPerception(Perception):
     def _answer(self, frame: Frame, question: str) -> AnswerText:
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.language import parse_question
-        from scope_ptz.perception.ground_truth.language.question_tree import Count, Exists
-        from scope_ptz.perception.ground_truth.thing_search import find
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
@@ -118,31 +115,21 @@ class GroundTruthPerception(Perception):
             raise NotUnderstoodError(
                 f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
             )
-        if isinstance(parsed, Exists | Count) and not find(view, parsed.what):
-            self._check_known(frame, view, parsed.what, question)
         return answer(view, parsed)
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
-        from scope_ptz.perception.ground_truth.language import parse_description
+        from scope_ptz.perception.ground_truth.language import is_description, parse_description
         from scope_ptz.perception.ground_truth.thing_search import find
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
         parsed, view = parse_description(description), self.view(frame, description)
         things = find(view, parsed)
-        if not things:
-            self._check_known(frame, view, parsed, description)
-        return things
-
-    def _check_known(self, frame: Frame, view: View, description: Description, text: str) -> None:
-        """Raise ``NotUnderstoodError`` if a description that matches nothing names no known kind of thing."""
-        from scope_ptz.perception.ground_truth.language.concepts import nouns_in
-
-        absent = self.open_scene(frame.origin.scene).file.absent if frame.origin is not None else ()
-        if not any(nouns_in(phrase.words, view.nouns | frozenset(absent)) for phrase in description.phrases):
+        if not things and not is_description(description):
             raise NotUnderstoodError(
-                f"'{text}' is not understood, because it names no known kind of thing. Describe the things by a noun."
+                f"The description '{description}' is not understood, because it is not a noun phrase. Name the things to find."
             )
+        return things
 
 
 def _ids(things: list[Thing]) -> str:

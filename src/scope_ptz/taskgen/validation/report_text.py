@@ -28,9 +28,9 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     for name, row in content["looked_and_guessed"].items():
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
-    if content["adaptive"]:
+    if report.adaptive:
         yield "core tasks that answers adapted to the form of the question pass (right-hand numbers: with pairs counted whole)"
-    for name, row in content["adaptive"].items():
+    for name, row in report.adaptive_as_dict().items():
         agent = name.removeprefix("adaptive: ")
         yield f"  {agent:<28}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     yield from _listed("correct attempts and checks that failed", report.faults)

@@ -72,6 +72,10 @@ class ValidationReport:
         """Whether all correct attempts and checks passed, and no adversarial attempt passed."""
         return bool(self.tasks) and not self.faults and not self.adversarial_passes
 
+    def adaptive_as_dict(self) -> dict[str, dict[str, float]]:
+        """Return what each adaptive agent passes as JSON data. Published datasets do not store it."""
+        return _shares(self.adaptive, self.adaptive_pairs, max(1, self.by_stratum["core"]))
+
     def as_dict(self) -> dict[str, Any]:
         """Return the report as JSON data, with the keys of the published dataset."""
         core = max(1, self.by_stratum["core"])
@@ -89,7 +93,6 @@ class ValidationReport:
                 for name, share in self.adversarial_shares.items()
             },
             "looked_and_guessed": _shares(self.guessed, self.pairs_passed, core),
-            "adaptive": _shares(self.adaptive, self.adaptive_pairs, core),
             "faults": [vars(fault) for fault in self.faults],
             "cheated": [vars(fault) for fault in self.adversarial_passes],
             "disagreements": [vars(fault) for fault in self.disagreements],

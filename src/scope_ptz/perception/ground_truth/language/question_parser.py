@@ -38,6 +38,11 @@ def parse_description(text: str) -> Description:
     return Description((Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),))
 
 
+def is_description(text: str) -> bool:
+    """Return whether a text is a noun phrase, so that ``parse_description`` understands it as a whole."""
+    return isinstance(_best(text, "description"), Description)
+
+
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
     """Return the best reading of a question; None if it fits no rule."""
