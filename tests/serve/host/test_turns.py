@@ -140,7 +140,10 @@ async def test_a_worker_that_crashes_is_started_again_and_loses_nothing(tmp_path
     crashes = ["anna-0/2"]
 
     def crash(place: str) -> bool:
-        return place in crashes and crashes.remove(place) is None
+        if place not in crashes:
+            return False
+        crashes.remove(place)
+        return True
 
     fake = ScriptedWorker(1, crash_in=crash)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
