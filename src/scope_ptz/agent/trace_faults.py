@@ -122,18 +122,21 @@ def _apart(one: float, other: float) -> float:
 
 def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
     faults = Counter(called.fault for called in trace.calls)
-    for name, fault in (("bad_calls", "bad_call"), ("perception_failures", "perception")):
-        if getattr(ended, name) != faults[fault]:
-            yield f"the end states {getattr(ended, name)} {name.replace('_', ' ')}, but the trace contains {faults[fault]}"
+    for what, stated, found in (
+        ("bad calls", ended.bad_calls, faults["bad_call"]),
+        ("perception failures", ended.perception_failures, faults["perception"]),
+    ):
+        if stated != found:
+            yield f"the end states {stated} {what}, but the trace contains {found}"
     used = Usage()
     for decided in trace.decisions:
         used += decided.decision.usage
         if decided.decision.served is not None:
             used += failed_usage(decided.decision.served.attempts)
-    stated = ended.usage
-    missing = used.input_tokens > stated.input_tokens or used.output_tokens > stated.output_tokens
+    total = ended.usage
+    missing = used.input_tokens > total.input_tokens or used.output_tokens > total.output_tokens
     if missing or (
-        ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (stated.input_tokens, stated.output_tokens)
+        ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (total.input_tokens, total.output_tokens)
     ):
         yield "the tokens at the end differ from those of the decisions"
 

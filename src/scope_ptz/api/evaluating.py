@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.scoring.trials import Evaluation
     from scope_ptz.factory.evaluate import EvaluationOptions
+
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +68,22 @@ def run_evaluation(request: EvaluationRequest) -> Evaluation:
 
 
 def read_results(path: Path) -> Evaluation:
-    """Read a log, or the newest log in a folder."""
+    """Read a log, or the newest log in a folder. Verdicts are recomputed from the traces; contradictions are logged as warnings."""
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
     from scope_ptz.bench.engine.logs import read_evaluation
+    from scope_ptz.bench.reports.log_findings import finding_lines
 
     if path.is_dir():
         logs = sorted(path.rglob("*.eval"), key=lambda log: log.stat().st_mtime)
         if not logs:
             raise TraceError(f"There is no log in {path}. Pass a folder to which evaluate(out=...) has written.")
         path = logs[-1]
-    return read_evaluation(path)
+    evaluation = read_evaluation(path)
+    for line in finding_lines(evaluation):
+        logger.warning("%s", line)
+    return evaluation
 
 
 def _options(request: EvaluationRequest) -> EvaluationOptions:

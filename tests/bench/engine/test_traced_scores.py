@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from scope_ptz import load_results
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.stored_run import STORE
 from scope_ptz.bench.reports.log_findings import finding_lines
 from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from tests.bench.engine.editing import Change, Json, edited, files_of, records_of, set_trace, trace_change, write_log
 from tests.cli.conftest import Scope
 
@@ -113,7 +116,14 @@ def no_task(sample: Json) -> None:
     sample["scores"]["judge"] = {"value": "C", "metadata": {"judgement": verdict}}
 
 
-@pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task])
+def imported_task(sample: Json) -> None:
+    """An imported task with the id of the published one, which only a judge can score."""
+    facts = {name: sample["metadata"][name] for name in TaskFacts.model_fields}
+    no_task(sample)
+    sample["metadata"]["imported"] = {"imported": 1, "facts": facts, "line": 1, "raw": {}}
+
+
+@pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task, imported_task])
 def test_the_published_task_decides(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
     found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
@@ -209,7 +219,7 @@ def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evalua
 def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     names = [trial.sample for trial in honest.trials]
     for number, text in enumerate(("", "nothing", '{"event": "start"}\n', "[]\n" * 5)):
-        path = edited(PUBLISHED, tmp_path / f"{number}.eval", lambda sample, text=text: set_trace(sample, text), names)
+        path = edited(PUBLISHED, tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
         found = read_evaluation(path)
         assert not correct(found)
         assert len(found.trials) == len(honest.trials)
@@ -248,12 +258,14 @@ def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path
     assert {finding.sample for finding in found.findings if finding.kind == "sample-missing"} == gone
 
 
-def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path) -> None:
+@pytest.mark.parametrize("status", ["success", "cancelled", "error"])
+def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path, status: str) -> None:
     gone = set(failures(honest))
     files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
     dataset = files["header.json"]["eval"]["dataset"]
     dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
     dataset["samples"] = len(dataset["sample_ids"])
+    files["header.json"]["status"] = status
     found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
     assert not correct(found)
     assert found.findings[0].kind == "tasks-changed"
@@ -277,6 +289,23 @@ def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) ->
     set_trace(stolen, records_of(success))
     found = read_evaluation(write_log({**files, failed_name: stolen}, tmp_path / "stolen.eval"))
     assert correct(found) <= correct(honest)
+
+
+def test_further_runs_of_a_task_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
+    """A success is run once more than the card states, which would give its task more weight."""
+    files = files_of(PUBLISHED)
+    name = sorted(correct(honest))[0]
+    again = next(
+        json.loads(json.dumps(c)) for n, c in files.items() if n.startswith("samples/") and f"{c['id']}#{c['epoch']}" == name
+    )
+    again["epoch"] = 2
+    records = records_of(again)
+    records[0]["started"] = "2026-11-23T00:00:00Z"
+    set_trace(again, records)
+    found = read_evaluation(write_log({**files, "samples/again.json": again}, tmp_path / "attacked.eval"))
+    assert correct(found) == correct(honest)
+    assert [finding.kind for finding in found.findings] == ["sample-repeated"]
+    assert "repeat 2, but the card states 1" in found.findings[0].detail
 
 
 def test_a_card_with_other_models_is_named(tmp_path: Path) -> None:
@@ -328,6 +357,15 @@ def test_the_report_and_the_terminal_name_an_edited_log(scope: Scope, evaluated:
     assert rescored.code == 0 and names[0] in rescored.err
     again = read_evaluation(log)
     assert again.findings == () and failures(again) == names
+
+
+def test_results_in_python_are_recomputed_and_an_edited_log_is_named(
+    evaluated: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    names = failures(read_evaluation(evaluated))
+    results = load_results(edited(evaluated, tmp_path / "attacked.eval", claim_everything, names))
+    assert [trial.sample for trial in results.trials if trial.headline == "incorrect"] == names
+    assert names[0] in caplog.text
 
 
 def test_an_unedited_log_has_no_findings(scope: Scope, evaluated: Path) -> None:

@@ -100,6 +100,11 @@ def claim_speed(rows: Rows) -> None:
     rows[1]["times"] = dict.fromkeys(rows[1]["times"], 0.0)
 
 
+def claim_another_model(rows: Rows) -> None:
+    """Ground truth under the name of a model, which would be ranked."""
+    rows[0]["card"]["perception"] |= {"name": "moondream3", "registry": "moondream3", "deterministic": False}
+
+
 def no_trace(rows: Rows) -> None:
     del rows[1]["run"]
 
@@ -119,6 +124,7 @@ def foreign_trace(rows: Rows) -> None:
         (claim_answer, "answer does not follow from its trace"),
         (claim_error_mode, "error_mode does not follow from its trace"),
         (claim_speed, "times does not follow from its trace"),
+        (claim_another_model, "the perception is moondream3 on the card, but ground-truth in 4 traces"),
         (no_trace, "it has no trace"),
         (damaged_trace, "its trace cannot be read"),
         (foreign_trace, "contradicts itself or its task"),
@@ -206,7 +212,7 @@ def test_traces_are_published_without_secrets_and_addresses(
     assert faults(out, tasks_file) == ""
 
 
-@given(st.text(st.characters(exclude_categories=("Cs",)), max_size=300))
+@given(st.text(st.characters(codec="utf-8"), max_size=300))
 def test_text_without_secrets_is_published_unchanged_by_packing(text: str) -> None:
     line = json.dumps({"event": "end", "text": text, "detail": "x"}, ensure_ascii=False)
     (record,) = map(json.loads, unpacked(packed(public_trace(line))).splitlines())

@@ -253,6 +253,91 @@ def test_findings_are_reported_for_every_affected_row(tmp_path: Path, kind: str,
     assert len(done.as_dict()["each"]) == len(rows), "no row is dropped"
 
 
+COUNT_FULL = '[{"tool": "count_pointing", "args": {"object_of_interest": "cones", "view_type": "full_panorama"}}]'
+GO_GATE = {"question": "Go to preset gate and count", "expected_tool_order_json": '["go_to_preset", "count_pointing"]'}
+DISAGREE: list[tuple[dict[str, str], str]] = [
+    ({"expected_tool_order_json": COUNT_FULL.replace("full_panorama", "full"),
+      "expected_tool_args_json": '[{"view_type": "current"}]'}, "the expected tools say view 'full', the arguments say 'current'"),
+    ({"expected_tool_order_json": '[{"tool": "track_object", "args": {"duration": 5}}]',
+      "expected_tool_args_json": '[{"duration_s": "6"}]'}, "duration"),
+    ({"expected_tool_order_json": '[{"tool": "ptz_adjust", "args": {"pan_deg": 20}}]',
+      "expected_tool_args_json": '{"ptz_adjust": {"pan_deg": -20}}'}, "pan_deg"),
+    ({"expected_tool_args_json": '[{"view_type": "full", "view": "current"}]'}, "the arguments give view as 'full' and 'current'"),
+    ({"answer_view": "full", "expected_tool_args_json": '[{"view_type": "current"}]'}, "answer_view says full"),
+    ({"answer_view": "current", "expected_tool_args_json": '[{"view_type": "full"}]'}, "answer_view says current"),
+    ({"question": "Take a full panorama and count the cones", "expected_tool_args_json": '[{"view_type": "current"}]'},
+     "the question asks for the full view"),
+    ({"question": "How many cones are in the whole scene?", "answer_view": "current"}, "answer_view says current"),
+    ({"question": "Count the cones in the current view", "expected_tool_args_json": '[{"view_type": "360"}]'},
+     "the question asks for the current view"),
+    ({"question_type": "ocr"}, "eval_category says counting; question_type says ocr"),
+    ({"multi_step_mode": "single", "expected_tool_order_json": '["get_presets", "count_pointing"]'}, "2 calls are expected"),
+    ({**GO_GATE, "expected_tool_args_json": '{"go_to_preset": {"name": "bridge"}}'}, "the question names the preset gate"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("row", "detail"), DISAGREE)
+def test_fields_that_contradict_each_other_are_reported(tmp_path: Path, row: dict[str, str], detail: str) -> None:
+    done = imported(tmp_path, row)
+    found = [finding.detail for finding in done.findings[done.rows[0].line] if finding.kind == "fields-disagree"]
+    assert any(detail in text for text in found), (found, done.findings)
+    assert done.tasks, "a contradiction is reported, and the row can still be run"
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        {"answer_view": "full_scene", "expected_tool_args_json": '[{"view_type": "panorama"}]'},
+        {"expected_tool_order_json": COUNT_FULL.replace("full_panorama", "360"),
+         "expected_tool_args_json": '[{"view_type": "Full Scene", "object_of_interest": "Cones"}]'},
+        {"question": "Compare the current view with the full panorama", "expected_tool_args_json": '[{"view_type": "current"}]'},
+        {**GO_GATE, "expected_tool_args_json": '{"go_to_preset": {"name": "Preset Gate"}}', "multi_step_mode": "ordered"},
+        {"question_type": "single"},
+        {"expected_tool_order_json": '[{"tool": "ptz_adjust", "args": {"pan_deg": "20"}}]',
+         "expected_tool_args_json": '{"ptz_adjust": {"pan_deg": 20.0}}'},
+    ],
+)  # fmt: skip
+def test_fields_that_say_the_same_in_other_words_are_no_contradiction(tmp_path: Path, row: dict[str, str]) -> None:
+    assert "fields-disagree" not in kinds(imported(tmp_path, row))
+
+
+MERGED = SceneNames(
+    NAMES.scenes, SceneNameMap(presets={"parking-lot": {"Preset 1": "gate", "Preset 2": "gate", "Entrance": "gate", "*": "bridge"}})
+)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [("Preset 1", "Preset 2"), ("Gate", "Preset 1"), ("Preset 8", "Preset 9"), ("Entrance", "gate")]
+)
+def test_presets_that_were_mapped_to_one_are_not_duplicates(tmp_path: Path, first: str, second: str) -> None:
+    same = imported(tmp_path, {"preset_start": first}, {"preset_start": second}, names=MERGED)
+    assert same.tasks[0].facts.preset == same.tasks[1].facts.preset
+    assert "duplicate" not in kinds(same, 0) | kinds(same, 1)
+    assert any("2 presets of the file are mapped to the preset" in note for note in same.notes), same.notes
+    other = imported(tmp_path, {"preset_start": first}, {"preset_start": second, "expected_answer": "six"}, names=MERGED)
+    assert "contradiction" not in kinds(other, 0) | kinds(other, 1)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [("Preset 1", "preset-1"), ("Gate", "preset gate"), ("", "home"), ("gate", ""), ("Preset 8", "PRESET_8")]
+)
+def test_other_spellings_of_one_preset_are_duplicates(tmp_path: Path, first: str, second: str) -> None:
+    spelled = MERGED.mapping.presets["parking-lot"] | {"preset-1": "gate"}
+    names = SceneNames(NAMES.scenes, SceneNameMap(presets={"parking-lot": spelled}))
+    done = imported(tmp_path, {"preset_start": first}, {"preset_start": second}, names=names)
+    assert "duplicate" in kinds(done, 0) & kinds(done, 1)
+    assert not any("are mapped to the preset" in note for note in done.notes)
+
+
+def test_scenes_that_were_mapped_to_one_are_not_duplicates(tmp_path: Path) -> None:
+    names = SceneNames(NAMES.scenes, SceneNameMap(scenes={"*": "parking-lot"}))
+    done = imported(
+        tmp_path, {"file_location": "a.blend"}, {"file_location": "b.blend"}, {"file_location": "x/a.blend"}, names=names
+    )
+    assert "duplicate" not in kinds(done, 1)
+    assert "duplicate" in kinds(imported(tmp_path, {"file_location": "a.blend"}, {"file_location": "a.blend"}, names=names), 0)
+
+
 def test_an_unknown_category_is_reported_when_another_column_replaces_it(tmp_path: Path) -> None:
     done = imported(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
     (task, usual) = done.tasks

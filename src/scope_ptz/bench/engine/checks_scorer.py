@@ -30,7 +30,8 @@ from inspect_ai.solver import TaskState
 from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
-from scope_ptz.bench.engine.traces.traced_trials import TRIAL, published_entry, published_run, scored_trial
+from scope_ptz.bench.engine.traces.scored_trials import published_entry, published_run, scored_trial
+from scope_ptz.bench.engine.traces.traced_trials import TRIAL
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline

@@ -27,7 +27,7 @@ from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.judgement_scores import JUDGE, score_of_judgement
 from scope_ptz.bench.engine.recording.scope_model import ScopeModel
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
-from scope_ptz.bench.engine.traces.traced_trials import published_entry
+from scope_ptz.bench.engine.traces.scored_trials import published_entry
 from scope_ptz.bench.engine.trial_records import failure_at_end
 from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoReplyError
 from scope_ptz.errors import TraceError

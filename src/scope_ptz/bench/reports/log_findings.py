@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from scope_ptz.bench.scoring.trials import Evaluation, LogFault
+from scope_ptz.bench.scoring.trials import Evaluation, LogFault, LogFinding
 from scope_ptz.version import __version__
 
 MAX_NAMED = 5
@@ -32,13 +32,23 @@ def finding_lines(evaluation: Evaluation) -> list[str]:
         found = [finding for finding in evaluation.findings if finding.kind == kind]
         if not found:
             continue
-        named = "; ".join(f"{one.sample}: {one.detail}" if one.sample else one.detail for one in found[:MAX_NAMED])
+        runs = [one for one in found if one.sample]
+        counted = f" ({len(runs)} of {max(len(evaluation.trials), len(runs))} runs)" if runs else ""
+        named = "; ".join(_named(found[:MAX_NAMED]))
         more = f"; and {len(found) - MAX_NAMED} more" if len(found) > MAX_NAMED else ""
         version = ""
         if kind == "score-differs" and evaluation.card.package_version != __version__:
             version = f" (the log is from version {evaluation.card.package_version}, the checks are those of {__version__})"
-        lines.append(f"{name}: {meaning}{version}: {len(found)} of {max(len(evaluation.trials), len(found))}: {named}{more}.")
+        lines.append(f"{name}: {meaning}{version}{counted}. {named[:1].upper()}{named[1:]}{more}.")
     return lines
+
+
+def _named(findings: Sequence[LogFinding]) -> list[str]:
+    """Return the details of findings, each with the samples that it concerns."""
+    samples: dict[str, list[str]] = {}
+    for finding in findings:
+        samples.setdefault(finding.detail, []).extend([finding.sample] if finding.sample else [])
+    return [f"{detail}: {', '.join(names)}" if names else detail for detail, names in samples.items()]
 
 
 def stored_verdict_lines(evaluations: Sequence[Evaluation]) -> list[str]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from scope_ptz.bench.engine.traces.named_models import card_contradictions, models_of
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
 from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults
@@ -125,6 +126,8 @@ def _trace_faults(
             for fault in trace_line_faults(header, line, runs.get((line.task, line.epoch))):
                 yield f"line {number} ({line.task}): {fault}"
     yield from copied_traces([line for _, line in lines])
+    models = [models_of(run.stored_run) for run in runs.values() if isinstance(run, RunToVerify)]
+    yield from (f"line 1: {fault}" for fault in card_contradictions(models, header.card))
 
 
 def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: Provenance) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import StoredRun, sample_name
 from scope_ptz.bench.engine.token_costs import cost_usd
-from scope_ptz.bench.engine.traces.traced_trials import entry_of_published, published_run, scored_trial
+from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, published_run, scored_trial
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.reports.submission import Header, Places, Run, TrialLine, public_settings, trial_line, without_secrets
 from scope_ptz.bench.scoring.trials import Evaluation, Trial

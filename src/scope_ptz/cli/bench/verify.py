@@ -14,7 +14,8 @@ from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.traces.verification import RunToVerify, VerificationResult
+    from scope_ptz.bench.engine.traces.verification import RunToVerify
+    from scope_ptz.bench.engine.traces.verification_results import VerificationResult
 
 MAX_RUNS_LISTED = 50
 

@@ -83,7 +83,7 @@ export function makeEvaluation({ changed, removed }) {
       fill.style.width = `${100 * (each.accuracy ?? 0)}%`;
       return h("tr", {}, h("th", { scope: "row" }, words(each.category)), h("td", { className: "share" }, h("span", { className: "track" }, fill)),
         h("td", {}, each.accuracy === null ? "–" : `${(100 * each.accuracy).toFixed(0)} %`), h("td", { className: "muted" }, `${each.correct} of ${each.runs}`));
-    }))));
+    }))), h("p", { className: "muted" }, "These verdicts were computed from the traces as the tasks ended. The report computes them again from the log."));
   }
 
   function drawActions(row) {

@@ -24,6 +24,8 @@ _FULL_VIEW = re.compile(
 )
 _CURRENT_VIEW = re.compile(r"\b(?:current|present) (?:view|frame|image)\b|\bwithout moving the camera\b", re.IGNORECASE)
 _PRESET = re.compile(r"\bpreset[\s:'\"“]+([\w-]+(?: \d+)?)", re.IGNORECASE)
+_STEP_CATEGORIES = frozenset({"single_call", "multi_step_command", "multi_step_reasoning"})
+"""Categories by the number of steps. The other categories are types of questions."""
 _SINGLE_STEP = frozenset({"single", "single_step", "single_call"})
 
 
@@ -65,7 +67,9 @@ def field_contradictions(cells: Mapping[str, str], calls: Sequence[RequiredCall]
         yield "the question asks for the full view, answer_view says current"
     columns = ("eval_category", "category", "question_type")
     categories = {column: found for column in columns if (found := category_of(cells.get(column, ""))) is not None}
-    if len(set(categories.values())) > 1:
+    # A question can be of a type, such as counting, and also take one step or several.
+    by_steps = {category in _STEP_CATEGORIES for category in categories.values()}
+    if len(set(categories.values())) > 1 and len(by_steps) == 1:
         yield "; ".join(f"{column} says {category}" for column, category in categories.items())
     if normalise(cells.get("multi_step_mode", "")) in _SINGLE_STEP and len(calls) > 1:
         yield f"multi_step_mode says {cells['multi_step_mode']}, but {len(calls)} calls are expected"

@@ -12,11 +12,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-MAX_MEAN_DIFFERENCE = 1.5
+MAX_MEAN_DIFFERENCE = 4.0
 """Largest accepted mean absolute difference of two frames, in levels of 256."""
-MIN_SSIM = 0.97
+MIN_SSIM = 0.96
 """Smallest accepted structural similarity (SSIM) of two frames in grey."""
-MAX_BLOCK_DIFFERENCE = 16.0
+MAX_BLOCK_DIFFERENCE = 18.0
 """Largest accepted mean absolute difference within a block, in levels of 256. It finds things that were painted over."""
 BLOCK_PX = 16
 """Width and height of a block in pixels."""

@@ -13,9 +13,10 @@ from inspect_ai.log import EvalLog
 
 from scope_ptz.bench.engine.entries import Entry, digest
 from scope_ptz.bench.engine.stored_run import sample_name
-from scope_ptz.bench.engine.traces.traced_trials import TracedTrial, entry_of_published, unscored
+from scope_ptz.bench.engine.traces.named_models import card_contradictions
+from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, unscored
+from scope_ptz.bench.engine.traces.traced_trials import TracedTrial
 from scope_ptz.bench.scoring.trials import LogFinding, RunCard, Trial
-from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
 
 def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> tuple[list[Trial], tuple[LogFinding, ...]]:
@@ -32,12 +33,14 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
         by_name[one.trial.sample].append(one)
     trials = {name: same[0].trial for name, same in by_name.items()}
     entries = {one.entry.facts.id: one.entry for one in traced}
-    for name, detail in _repeated(by_name):
+    for name, detail in _repeated(by_name, card.epochs):
         first = by_name[name][0]
         trials[name] = unscored(first.entry, first.trial.epoch, detail, first.trial.judgements)
         findings.append(LogFinding(kind="sample-repeated", sample=name, detail=detail))
-    findings += _card_findings(traced, card)
-    if header.status != "success":
+    models = [one.models for one in traced]
+    findings += [LogFinding(kind="card-differs", detail=detail) for detail in card_contradictions(models, card)]
+    wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
+    if header.status != "success" and len(by_name) < wanted:  # an unfinished evaluation, which reports name
         return list(trials.values()), tuple(findings)
     detail = "the log of a finished evaluation lacks this run"
     for task in map(str, header.eval.dataset.sample_ids or entries):
@@ -51,22 +54,10 @@ def completed(traced: Sequence[TracedTrial], header: EvalLog, card: RunCard) -> 
                 entries[task] = entry
                 trials[name] = unscored(entry, epoch, detail)
     if card.dataset_digest and digest(entries.values()) != card.dataset_digest:
-        detail = "the tasks of the log are not those of its run card, so none of its scores is used"
+        detail = "the digest of the tasks is not the one on the run card"
         findings.insert(0, LogFinding(kind="tasks-changed", detail=detail))
         trials = {name: _without_score(trial, entries[trial.task.id], detail) for name, trial in trials.items()}
     return list(trials.values()), tuple(findings)
-
-
-def _card_findings(traced: Sequence[TracedTrial], card: RunCard) -> list[LogFinding]:
-    """Return a finding for each role in which the card names a model and traces name a built-in component, or the reverse."""
-    findings = []
-    for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
-        names = [one.models[index] for one in traced if one.models[index]]
-        others = [name for name in names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
-        if others:
-            detail = f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"
-            findings.append(LogFinding(kind="card-differs", detail=detail))
-    return findings
 
 
 def _without_score(trial: Trial, entry: Entry, reason: str) -> Trial:
@@ -74,12 +65,14 @@ def _without_score(trial: Trial, entry: Entry, reason: str) -> Trial:
     return unscored(entry, trial.epoch, reason, trial.judgements)
 
 
-def _repeated(by_name: dict[str, list[TracedTrial]]) -> Iterator[tuple[str, str]]:
-    """Yield the names of samples that occur several times, and of samples whose trace is a copy of another sample's trace."""
+def _repeated(by_name: dict[str, list[TracedTrial]], epochs: int) -> Iterator[tuple[str, str]]:
+    """Yield the names of samples that occur several times or too often, and of those whose trace is a copy of another trace."""
     for name, same in by_name.items():
         if len(same) > 1:
             yield name, f"the log contains {len(same)} samples of this run"
+        elif same[0].trial.epoch > epochs:
+            yield name, f"this is repeat {same[0].trial.epoch}, but the card states {epochs}"
     uses = Counter(one.trace_digest for same in by_name.values() for one in same[:1] if one.trace_digest)
     for name, same in by_name.items():
-        if len(same) == 1 and uses[same[0].trace_digest] > 1:
+        if len(same) == 1 and same[0].trial.epoch <= epochs and uses[same[0].trace_digest] > 1:
             yield name, "its trace is also the trace of another run"

@@ -10,7 +10,7 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.recording.picture_store import jpeg_of
 from scope_ptz.bench.engine.sample_files import ATTACHMENT, reading, samples, stored_run_in
 from scope_ptz.bench.engine.stored_run import StoredRun
-from scope_ptz.bench.engine.traces.traced_trials import published_entry
+from scope_ptz.bench.engine.traces.scored_trials import published_entry
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 
 

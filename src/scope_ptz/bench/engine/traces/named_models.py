@@ -1,0 +1,36 @@
+"""Compare the models on a run card with those that the traces name.
+
+A result of the built-in planner or of ground truth must not appear under the name of a model.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.bench.engine.stored_run import StoredRun
+from scope_ptz.bench.scoring.trials import RunCard
+from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
+
+
+def models_of(stored_run: StoredRun) -> tuple[str, str]:
+    """Return the names of planner and perception in the first line of a trace; empty names if it cannot be read."""
+    try:
+        started = json.loads(stored_run.trace.partition("\n")[0])
+        return str(started["planner"]), str(started["perception"])
+    except (ValueError, KeyError, TypeError):
+        return "", ""
+
+
+def card_contradictions(models: Sequence[tuple[str, str]], card: RunCard) -> Iterator[str]:
+    """Yield a sentence for each role in which the card names a model and traces name a built-in component, or the reverse.
+
+    Args:
+        models: The names of planner and perception in each trace.
+        card: The run card.
+    """
+    for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
+        names = [one[index] for one in models if one[index]]
+        others = [name for name in names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
+        if others:
+            yield f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"
