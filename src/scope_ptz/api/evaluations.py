@@ -253,7 +253,8 @@ def evaluate(
     )  # fmt: skip
     request = EvaluationRequest(
         planner=planner, perception=perception, pair=pair, tasks=tasks if isinstance(tasks, str | PathLike) else tuple(tasks),
-        out=Path(out), agent=agent, agent_options=options, categories=_names("categories", categories), scenes=_names("scenes", scenes), limit=limit,
+        out=Path(out), agent=agent, agent_options=options,
+        categories=_names("categories", categories), scenes=_names("scenes", scenes), limit=limit,
         epochs=epochs, seed=seed, max_steps=max_steps, time_budget_s=time_budget_s, concurrency=concurrency, pictures=pictures,
         fresh=fresh, planner_url=planner_url, planner_model=planner_model, perception_url=perception_url,
         perception_model=perception_model, timeout_s=timeout_s,

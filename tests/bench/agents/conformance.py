@@ -21,7 +21,7 @@ import pytest
 
 from scope_ptz.bench.agents.channel import ISOLATIONS, AgentChannel
 from scope_ptz.bench.agents.faults import AGENT_FAULTS
-from scope_ptz.bench.agents.messages import MAX_MESSAGE_BYTES, Calls, CallResult, Hello, Reply, Results, ViewRequest
+from scope_ptz.bench.agents.messages import MAX_MESSAGE_BYTES, CallResult, Calls, Hello, Reply, Results, ViewRequest
 from scope_ptz.bench.agents.planner import ChannelPlanner
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
@@ -75,7 +75,10 @@ class ChannelConformance:
         with anyio.fail_after(TIMEOUT_S):
             await connected.says(HELLO)
             assert await connected.channel.receive() == Hello(protocol=1, name="peer", sees=True)
-            calls = {"type": "calls", "calls": [{"id": "ä\n", "name": "query_answer", "arguments": {"question": "🎈\n\u2028" * 9000}}]}
+            calls = {
+                "type": "calls",
+                "calls": [{"id": "ä\n", "name": "query_answer", "arguments": {"question": "🎈\n\u2028" * 9000}}],
+            }
             await connected.says(calls)
             received = await connected.channel.receive()
             assert isinstance(received, Calls) and received.model_dump(mode="json") == calls

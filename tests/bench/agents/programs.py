@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import textwrap
+import venv
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -43,9 +44,14 @@ def started_in(folder: Path, agent: str, options: AgentOptions | None = None, hi
         os.chdir(before)
 
 
+def make_environment(folder: Path) -> None:
+    """Make an empty virtual environment."""
+    venv.create(folder, symlinks=True)
+
+
 async def play(agent: LocalAgent, answer: Answer = lambda _: {}, state: State = STATE) -> tuple[Finish, list[list[ToolCall]]]:
     """Run an agent to its reply. Return the reply and the calls of each step. A failure of the agent is raised."""
-    planner, steps = await agent.open(), []
+    planner, steps = await agent.open(), list[list[ToolCall]]()
     try:
         while True:
             decision = await planner.step(state)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 
@@ -16,7 +15,8 @@ from scope_ptz.bench.agents.source import find_module
 from scope_ptz.bench.engine.external_agents import AgentReply
 from scope_ptz.errors import ConfigError
 from tests.bench.agents.conformance import FRAME
-from tests.bench.agents.programs import play, started_in, write_agent
+from tests.bench.agents.programs import make_environment, play, started_in, write_agent
+from tests.bench.agents.sandboxes import REASON
 
 
 async def test_calls_that_are_awaited_together_are_one_step(tmp_path: Path) -> None:
@@ -55,7 +55,9 @@ async def test_the_session(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize("module", ["scope_agent", "scope_ptz.bench.engine.external_agents"])
 async def test_replies(tmp_path: Path, result: str, module: str) -> None:
-    agent = started_in(tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply"))
+    agent = started_in(
+        tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply")
+    )
     reply, _ = await play(agent)
     assert (reply.kind, reply.text) == ("clarification", "Which?")
     assert AgentReply("Which?", "clarification") == AgentReply("Which?", "clarification")
@@ -89,7 +91,10 @@ async def test_the_environment_is_clean(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 async def test_open_files_are_not_inherited(tmp_path: Path) -> None:
-    body = "return ' '.join(os.readlink(f'/proc/self/fd/{fd}') for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}'))"
+    body = """
+    descriptors = [f"/proc/self/fd/{number}" for number in os.listdir("/proc/self/fd")]
+    return " ".join(os.readlink(path) for path in descriptors if os.path.exists(path))
+    """
     secret = tmp_path / "tasks.jsonl"
     with secret.open("w") as opened:
         os.set_inheritable(opened.fileno(), True)
@@ -98,7 +103,7 @@ async def test_open_files_are_not_inherited(tmp_path: Path) -> None:
 
 
 async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(tmp_path / "env")], check=True)
+    make_environment(tmp_path / "env")
     python = tmp_path / "env" / "bin" / "python"
     (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
     (packages / "only_there.py").write_text("ANSWER = 7\n")
@@ -113,8 +118,20 @@ async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
     assert reply.text == f"7 {tmp_path / 'env'}"
     with pytest.raises(ConfigError, match="does not exist"):
         started_in(tmp_path, name, AgentOptions(python=tmp_path / "nothing"))
-    with pytest.raises(ConfigError, match="not a working Python"):
-        started_in(tmp_path, name, AgentOptions(python=Path("/bin/false")))
+    with pytest.raises(ConfigError, match="exit code 1"):
+        await started_in(tmp_path, name, AgentOptions(python=Path("/bin/false"))).check()
+
+
+def test_an_environment_is_read_without_running_it(tmp_path: Path) -> None:
+    make_environment(tmp_path / "env")
+    (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
+    (packages / "loud.pth").write_text(f"import os; open({str(tmp_path / 'it-ran')!r}, 'w')\n{tmp_path / 'linked'}\n")
+    (tmp_path / "linked").mkdir()
+    (tmp_path / "agent").mkdir()
+    write_agent(tmp_path / "linked", "return 'x'")
+    options = AgentOptions(python=tmp_path / "env" / "bin" / "python", sandbox=not REASON)
+    assert started_in(tmp_path / "agent", "their_agent:Agent", options).source
+    assert not (tmp_path / "it-ran").exists()
 
 
 SHELL = r"""
@@ -130,7 +147,7 @@ echo "{\"type\": \"reply\", \"text\": \"There are $count $1.\"}"
 async def test_a_shell_script(tmp_path: Path) -> None:
     (tmp_path / "their agent.sh").write_text(SHELL)
     agent = started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'"))
-    assert (agent.name, agent.isolation) == ("command:sh", "isolated")
+    assert (agent.name, agent.isolation) == ("command:their agent.sh", "isolated")
     reply, steps = await play(agent, lambda _: {"count": 4})
     assert reply.text == "There are 4 $HOME; balls." and steps[0][0].arguments == {"description": "balls"}
     before = agent.source

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import shlex
 import signal
+import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from scope_ptz.bench.agents.launch import AgentOptions
 from scope_ptz.bench.agents.planner import AgentTimes
 from scope_ptz.bench.scoring.verdict import AGENT_FAILURES
 from scope_ptz.errors import PlannerError
+from tests.bench.agents.conformance import STATE
 from tests.bench.agents.programs import play, started_in, write_agent
 
 QUICK = AgentTimes(step_s=1.0, run_s=5.0)
@@ -31,14 +33,37 @@ def is_running(pid: int) -> bool:
         return False
 
 
+def open_files() -> int:
+    """Return the number of open file descriptors."""
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def pids_in(folder: Path) -> list[int]:
+    """Return the ids of the processes that left a file in a folder."""
+    return [int(path.name.removeprefix("pid-")) for path in folder.glob("pid-*")]
+
+
+def wait_for_pid(folder: Path) -> int:
+    """Wait until a process has left a file in a folder, and return its id."""
+    while not (found := pids_in(folder)):
+        time.sleep(0.05)
+    return found[0]
+
+
+def wait_for_end(pid: int) -> None:
+    """Wait until a process has ended."""
+    while is_running(pid):
+        time.sleep(0.05)
+
+
 @pytest.fixture(autouse=True)
 def nothing_is_left() -> Iterator[None]:
     """Check that no file descriptor and no child process is left."""
-    before = len(os.listdir("/proc/self/fd"))
+    before = open_files()
     yield
     children = [pid for task in Path("/proc/self/task").glob("*/children") for pid in task.read_text().split()]
     assert not [pid for pid in children if is_running(int(pid)) and b"keeper.py" in Path(f"/proc/{pid}/cmdline").read_bytes()]
-    assert len(os.listdir("/proc/self/fd")) <= before + 2  # an event loop keeps its own
+    assert open_files() <= before + 2  # an event loop keeps its own
 
 
 async def failure_of(folder: Path, body: str, options: AgentOptions | None = None, imports: str = "") -> PlannerError:
@@ -54,6 +79,7 @@ async def failure_of(folder: Path, body: str, options: AgentOptions | None = Non
     [
         ("raise ZeroDivisionError('oops')", "agent-error", "ZeroDivisionError: oops"),
         ("os.kill(os.getpid(), 11)", "agent-exited", "SIGSEGV"),
+        ("os.kill(os.getpid(), 40)", "agent-exited", "signal 40"),
         ("os._exit(3)", "agent-exited", "exit code 3"),
         ("os._exit(0)", "agent-exited", "exit code 0"),
         ("sys.exit('I give up')", "agent-exited", "I give up"),
@@ -121,7 +147,9 @@ async def test_the_time_of_a_whole_run(tmp_path: Path) -> None:
 
 
 async def test_frames_without_end(tmp_path: Path) -> None:
-    agent = started_in(tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True))
+    agent = started_in(
+        tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True)
+    )
     with pytest.raises(PlannerError, match="more than 100 frames") as failed:
         await play(agent)
     assert failed.value.kind == "agent-protocol"
@@ -153,8 +181,35 @@ async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, endin
     else:
         with pytest.raises(PlannerError):
             await play(agent)
-    pids = [int(path.name.removeprefix("pid-")) for path in tmp_path.glob("pid-*")]
+    pids = pids_in(tmp_path)
     assert len(pids) == 2 and not any(map(is_running, pids))
+
+
+GARBLE = """
+for name in os.listdir(f'/proc/{os.getppid()}/fd'):
+        if os.readlink(f'/proc/{os.getppid()}/fd/{name}').startswith('pipe'):
+            with contextlib.suppress(OSError):
+                descriptor = os.open(f'/proc/{os.getppid()}/fd/{name}', os.O_WRONLY | os.O_NONBLOCK)
+                os.write(descriptor, b'0\\n[1]\\n')
+"""
+
+
+@pytest.mark.parametrize(
+    "attack", ["os.kill(os.getppid(), signal.SIGKILL)", "os.kill(os.getppid(), signal.SIGSTOP)", GARBLE.strip()],
+    ids=["kills", "stops", "garbles"],
+)  # fmt: skip
+async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, attack: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pipe, "KEEPER_S", 3.0)
+    body = f"""
+    ctypes.CDLL(None).prctl(1, 0, 0, 0, 0)
+    open(f"pid-{{os.getpid()}}", "w").close()
+    {attack}
+    time.sleep(60)
+    """
+    error = await failure_of(tmp_path, body, imports="import contextlib, ctypes, os, signal, time")
+    assert error.kind in ("agent-timeout", "agent-exited")
+    (pid,) = pids_in(tmp_path)
+    wait_for_end(pid)
 
 
 async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
@@ -167,11 +222,9 @@ async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
     """
     agent = started_in(tmp_path, write_agent(tmp_path, body, imports="import os"))
     planner = await agent.open()
-    from tests.bench.agents.conformance import STATE
-
     await planner.step(STATE)
     await asyncio.wait_for(planner.close(), 30)
-    (pid,) = [int(path.name.removeprefix("pid-")) for path in tmp_path.glob("pid-*")]
+    (pid,) = pids_in(tmp_path)
     assert not is_running(pid) and (tmp_path / "ended").exists()
 
 
@@ -187,8 +240,8 @@ os.read(0, 1)
     [
         ("b'not json\\n'", "agent-protocol"),
         ("os.urandom(1000) + b'\\n'", "agent-protocol"),
-        ("b'{\"type\": \"reply\", \"text\": \"4\"}\\n'", "agent-protocol"),
-        ("b'{\"type\": \"hello\", \"protocol\": 9, \"name\": \"x\"}\\n'", "agent-protocol"),
+        ('b\'{"type": "reply", "text": "4"}\\n\'', "agent-protocol"),
+        ('b\'{"type": "hello", "protocol": 9, "name": "x"}\\n\'', "agent-protocol"),
         ("b'[' * 200_000 + b'\\n'", "agent-protocol"),
         ("b'x' * 3_000_000", "agent-output"),
         ("b'\\n' * 3_000_000", "agent-timeout"),
@@ -211,21 +264,18 @@ async def test_a_program_that_does_not_read(tmp_path: Path) -> None:
     assert failed.value.kind == "agent-timeout"
 
 
-async def test_the_agents_outlive_no_scorer_that_is_killed(tmp_path: Path) -> None:
+def test_agents_do_not_outlive_a_scorer_that_is_killed(tmp_path: Path) -> None:
     name = write_agent(tmp_path, "open(f'pid-{os.getpid()}', 'w').close(); time.sleep(60)", imports="import os, time")
     scorer = f"""
 import anyio
 from tests.bench.agents.programs import *
 anyio.run(play, started_in(Path({str(tmp_path)!r}), {name!r}))
 """
-    process = await asyncio.create_subprocess_exec(sys.executable, "-c", scorer)
-    while not (found := list(tmp_path.glob("pid-*"))):
-        await asyncio.sleep(0.05)
+    process = subprocess.Popen([sys.executable, "-c", scorer])
+    pid = wait_for_pid(tmp_path)
     process.send_signal(signal.SIGKILL)
-    await process.wait()
-    pid = int(found[0].name.removeprefix("pid-"))
-    while is_running(pid):
-        await asyncio.sleep(0.05)
+    process.wait()
+    wait_for_end(pid)
 
 
 pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")]

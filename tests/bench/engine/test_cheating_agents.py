@@ -11,6 +11,7 @@ import scope_ptz
 from scope_ptz.bench.engine import trial_records
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.scoring.trials import Trial
+from scope_ptz.bench.scoring.verdict import score_episode
 from tests.bench.agents.sandboxes import needs_sandbox
 from tests.cli.conftest import Scope
 
@@ -58,13 +59,15 @@ MODES = {"in-process": ["--agent-in-process"], "isolated": [], "sandboxed": ["--
 @pytest.fixture
 def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunCheat:
     """Run a cheat on the counting tasks, and return the trial of the task with the wrong answer."""
-    monkeypatch.setattr(trial_records, "score_episode", trial_records.score_episode)  # restored at the end of the test
+    monkeypatch.setattr(trial_records, "score_episode", score_episode)  # the end of the test restores it
 
     def run(source: str, mode: str) -> Trial:
         folder = tmp_path / "agent"
         folder.mkdir()
         module = f"cheat_{mode.replace('-', '_')}_{abs(hash(source))}"
-        places = f"PLACES = [pathlib.Path(p) for p in {[str(tasks_file), str(Path(scope_ptz.__file__).parent / 'data' / 'bench')]!r}]\n"
+        places = (
+            f"PLACES = [pathlib.Path(p) for p in {[str(tasks_file), str(Path(scope_ptz.__file__).parent / 'data' / 'bench')]!r}]\n"
+        )
         (folder / f"{module}.py").write_text(source + "\nimport pathlib\n" + places)
         monkeypatch.chdir(folder)
         monkeypatch.syspath_prepend(str(folder))
@@ -94,3 +97,4 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
 def test_what_a_cheat_wins(run_cheat: RunCheat, source: str, mode: str, wins: bool) -> None:
     trial = run_cheat(source, mode)
     assert trial.headline == ("correct" if wins else "incorrect")
+    assert trial.outcome == "answered" or (source, mode) == (REPLACES_THE_CHECKS, "sandboxed")  # it cannot import SCOPE there

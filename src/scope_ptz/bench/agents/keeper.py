@@ -7,14 +7,14 @@ and an agent, which inherits stdin and stdout. The keeper ends the agent, and ev
 - the host closes the control pipe or dies, after a grace period,
 - the agent uses more memory, processes or output than allowed.
 
-At the end it writes a JSON object to the status pipe: the exit code or the signal, the exceeded limit, and the last of stderr.
+It writes two lines to the status pipe: first the agent's process id, and at the end a JSON object with the exit code or the signal,
+the exceeded limit, and the last of stderr.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import resource
 import select
 import signal
 import sys
@@ -28,7 +28,7 @@ TERMINATE_S = 1.0  # seconds between SIGTERM and SIGKILL
 GIVE_UP_S = 10.0  # seconds after which processes that cannot be killed are left
 TAIL_BYTES = 4_000  # the end of stderr that is reported
 RESERVED_MB = 512  # headroom of the kernel's limit: it also counts memory that is reserved but not used, such as stacks
-PR_SET_CHILD_SUBREAPER = 36
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 
 @dataclass
@@ -76,11 +76,14 @@ class Keeper:
             os.dup2(nothing, descriptor)
 
     def _start(self, stderr: int) -> int:
+        import resource  # not on every system on which this module is imported
+
         pid = os.fork()
         if pid:
             return pid
         try:
             os.setsid()
+            control_process(PR_SET_PDEATHSIG, signal.SIGKILL)
             os.dup2(stderr, 2)
             for number in (signal.SIGCHLD, signal.SIGPIPE, signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
@@ -98,6 +101,7 @@ class Keeper:
         """Wait until the program has ended or must be ended, then end everything that is left."""
         readable: list[int] = [self.orders.control, self.wake, self.stderr]
         deadlines: list[tuple[float, int]] = []
+        next_check = 0.0
         while self.wait_status is None and self.exceeded is None:
             for descriptor in select.select(readable, [], [], CHECK_S)[0]:
                 if descriptor == self.stderr:
@@ -110,8 +114,10 @@ class Keeper:
                     deadlines = [(now + TERMINATE_S, signal.SIGKILL), (now, signal.SIGTERM)]
             self._reap()
             while deadlines and time.monotonic() >= deadlines[-1][0] and self.wait_status is None:
-                self._signal(self.pid, deadlines.pop()[1])
-            self._check_limits()
+                self._signal_group(deadlines.pop()[1])
+            if time.monotonic() >= next_check:
+                self._check_limits()
+                next_check = time.monotonic() + CHECK_S
         self._end_all()
         while self.stderr in readable and select.select([self.stderr], [], [], 0)[0]:
             self._read_stderr(readable)
@@ -147,11 +153,13 @@ class Keeper:
             self.exceeded = "processes"
         elif self.stderr_bytes > self.orders.stderr_bytes:
             self.exceeded = "stderr"
-        elif self.orders.memory_mb is not None and memory_bytes(pids) > self.orders.memory_mb * 1_000_000:
+        elif self.orders.memory_mb is not None and exceeds_memory(pids, self.orders.memory_mb * 1_000_000):
             self.exceeded = "memory"
 
     def _end_all(self) -> None:
         """Kill every process that is left. They are stopped first, so that none starts another while they are killed."""
+        if sys.platform != "linux":
+            self._signal_group(signal.SIGKILL)
         deadline = time.monotonic() + GIVE_UP_S
         stopped: set[int] = set()
         while (new := set(descendants(os.getpid())) - stopped) and time.monotonic() < deadline:
@@ -162,6 +170,10 @@ class Keeper:
             for pid in descendants(os.getpid()) or [self.pid]:
                 self._signal(pid, signal.SIGKILL)
             time.sleep(0.005)
+
+    def _signal_group(self, number: int) -> None:
+        with suppress(OSError):
+            os.killpg(self.pid, number)
 
     @staticmethod
     def _signal(pid: int, number: int) -> None:
@@ -184,24 +196,39 @@ def descendants(root: int) -> list[int]:
     return found
 
 
-def memory_bytes(pids: list[int]) -> int:
-    """Return the memory of processes in bytes, without swapped pages. Pages that several of them share are counted once."""
-    total = 0
+def exceeds_memory(pids: list[int], limit_bytes: int) -> bool:
+    """Return whether processes together use more memory than a limit. Pages that several of them share are counted once."""
+    # The exact sum takes long for large processes, and is never above the simple one.
+    return simple_memory_bytes(pids) > limit_bytes and exact_memory_bytes(pids) > limit_bytes
+
+
+def simple_memory_bytes(pids: list[int]) -> int:
+    """Return the memory of processes in bytes. Shared pages are counted once for each process."""
+    page_bytes = os.sysconf("SC_PAGE_SIZE")
+    return sum(int(text.split()[1]) * page_bytes for text in _readable(pids, "statm") if text)
+
+
+def exact_memory_bytes(pids: list[int]) -> int:
+    """Return the memory of processes in bytes. Shared pages are counted once."""
+    lines = [line for text in _readable(pids, "smaps_rollup") for line in text.splitlines()]
+    return sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
+
+
+def _readable(pids: list[int], name: str) -> list[str]:
+    """Return the texts of a file of each process. Processes that have ended are left out."""
+    texts = []
     for pid in pids:
-        try:
-            lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
-        except OSError:
-            continue  # the process has ended
-        total += sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
-    return total
+        with suppress(OSError):
+            texts.append(Path(f"/proc/{pid}/{name}").read_text())
+    return texts
 
 
-def adopt_orphans() -> None:
-    """Become the parent of all orphans below this process, so that a process that detaches itself is found. Linux only."""
+def control_process(option: int, value: int) -> None:
+    """Set an attribute of this process (Linux only)."""
     if sys.platform == "linux":
         import ctypes
 
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
 def main() -> None:
@@ -211,8 +238,10 @@ def main() -> None:
         os.set_inheritable(descriptor, False)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    adopt_orphans()
+    # Orphans below this process become its children, so that it finds processes that detached themselves.
+    control_process(PR_SET_CHILD_SUBREAPER, 1)
     keeper = Keeper(orders)
+    os.write(orders.status, f"{keeper.pid}\n".encode())
     keeper.watch()
     keeper.report()
 

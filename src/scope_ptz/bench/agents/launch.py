@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import shutil
 from collections.abc import Mapping
@@ -66,7 +67,9 @@ class AgentLaunch:
 
 
 def agent_name(agent: str, options: AgentOptions) -> str:
-    """Return the name of an agent: ``module:Class``, or ``command:PROGRAM`` without the arguments, which may be private.
+    """Return the name of an agent: ``module:Class``, or ``command:FILE``.
+
+    The file is the first that the command's arguments name, or else its program. Other arguments may be private.
 
     Raises:
         ConfigError: The name or the options contradict each other.
@@ -74,7 +77,8 @@ def agent_name(agent: str, options: AgentOptions) -> str:
     if options.command:
         if options.python is not None or options.in_process:
             raise ConfigError("--agent-python and --agent-in-process need --agent MODULE:CLASS; they do not fit --agent-command.")
-        return f"command:{Path(split_command(options.command)[0]).name}"
+        program, *arguments = split_command(options.command)
+        return f"command:{Path(next(filter(os.path.isfile, arguments), program)).name}"
     module, colon, attribute = agent.partition(":")
     if not colon or not module or not attribute:
         raise ConfigError(f"--agent must have the form module:Class; got '{agent}'.")

@@ -40,6 +40,8 @@ WRITE_S = 0.5
 KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
 """Seconds after which the keeper itself is killed."""
 CHUNK_BYTES = 65_536
+_NO_GROUP = 2**31 - 1
+"""Id of a process group that does not exist. The group 0 would be this process's own."""
 _PIPE_ERRORS = (anyio.EndOfStream, anyio.ClosedResourceError, anyio.BrokenResourceError)
 
 
@@ -148,6 +150,10 @@ class PipeChannel(AgentChannel):
         if self._report is not None:
             return self._report
         self._report = ExitReport()
+        # An agent that has opened the control pipe for itself would hide its end of file.
+        os.set_blocking(self._control, False)
+        with suppress(OSError):
+            os.write(self._control, b"end")
         os.close(self._control)
         with anyio.CancelScope(shield=True):
             with suppress(*_PIPE_ERRORS), anyio.move_on_after(WRITE_S):
@@ -179,7 +185,7 @@ class PipeChannel(AgentChannel):
         if code is None:
             return agent_failed("agent-exited", f"The agent's process was killed before the agent replied{said}")
         if code < 0:
-            name = signal.Signals(-code).name
+            name = signal.Signals(-code).name if -code in {*signal.Signals} else str(-code)
             return agent_failed(
                 "agent-exited", f"The agent's process was ended by the signal {name} before the agent replied{said}"
             )
@@ -189,9 +195,13 @@ class PipeChannel(AgentChannel):
 def _read_report(status: int) -> ExitReport:
     """Read the keeper's report, and close the pipe. The keeper has ended, so that reading does not block."""
     with os.fdopen(status, "rb") as pipe:
-        data = pipe.read()
-    if not data:
+        pid, _, data = pipe.read().partition(b"\n")
+    try:
+        fields = json.loads(data)
+        lines = [line for line in fields["stderr"].splitlines() if line.strip()]
+        return ExitReport(fields["code"], fields["exceeded"], printable(lines[-1].strip(), MAX_QUOTED_CHARS) if lines else "")
+    except (ValueError, KeyError, TypeError, AttributeError):
+        # The agent has attacked its keeper, which can end it no more.
+        with suppress(OSError, ValueError):
+            os.killpg(int(pid) or _NO_GROUP, signal.SIGKILL)
         return ExitReport()
-    fields = json.loads(data)
-    lines = [line for line in fields["stderr"].splitlines() if line.strip()]
-    return ExitReport(fields["code"], fields["exceeded"], printable(lines[-1].strip(), MAX_QUOTED_CHARS) if lines else "")

@@ -14,6 +14,7 @@ import anyio
 from scope_ptz.bench.agents.channel import AgentChannel
 from scope_ptz.bench.agents.faults import agent_failed
 from scope_ptz.bench.agents.messages import (
+    MAX_NAME_CHARS,
     PROTOCOL,
     AgentMessage,
     CallResult,
@@ -28,6 +29,7 @@ from scope_ptz.bench.agents.messages import (
     TaskMessage,
     View,
     ViewRequest,
+    printable,
 )
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
@@ -96,7 +98,7 @@ class ChannelPlanner(Planner):
                     "agent-protocol", f"The agent speaks version {hello.protocol} of the protocol; this host speaks {PROTOCOL}."
                 )
             self.sees, self._connected = hello.sees, True
-            self.name = self.name if self._named else hello.name
+            self.name = self.name if self._named else printable(hello.name, MAX_NAME_CHARS)
         except PlannerError as error:
             await self._report(error)
 

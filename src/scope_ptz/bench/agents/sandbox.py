@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import scope_ptz
 from scope_ptz.errors import ConfigError
 
 RUNNER = Path("/run/scope/runner.py")
@@ -26,8 +25,13 @@ _SYSTEM_FILES = (
 _PACKAGES = ("scope_ptz", "scope_studio", "scope_addon")
 _INSTALLATIONS = (
     "", "*/", "src/", "*/src/", "lib*/python*/*-packages/", "local/lib*/python*/*-packages/", "*/lib*/python*/*-packages/",
+    "envs/*/lib*/python*/*-packages/",
 )  # fmt: skip
 _ISOLATED = ("--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL")
+
+
+# If SCOPE runs as root, so does the agent, and /proc has files that root can write without any capability.
+_KERNEL = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +53,7 @@ class SandboxContents:
 
 def own_files() -> tuple[Path, ...]:
     """Return the folders of SCOPE itself: the package, and the checkout that it belongs to."""
-    package = Path(scope_ptz.__file__).resolve().parent
+    package = Path(__file__).resolve().parents[2]
     checkout = package.parent.parent
     return (package, checkout) if package.parent.name == "src" and (checkout / "pyproject.toml").is_file() else (package,)
 
@@ -90,18 +94,7 @@ def sandboxed(command: Sequence[str], contents: SandboxContents) -> tuple[str, .
     folder = contents.folder
     if folder is not None:
         _check_folder(folder.resolve(), contents.hidden)
-    options = [
-        "bwrap",
-        *_ISOLATED,
-        "--hostname",
-        "agent",
-        "--proc",
-        "/proc",
-        "--dev",
-        "/dev",
-        *_scratch(SHARED_MEMORY),
-        *_scratch(SCRATCH),
-    ]
+    options = ["bwrap", *_ISOLATED, "--hostname", "agent", *_KERNEL, *_scratch(SHARED_MEMORY), *_scratch(SCRATCH)]
     options += _system()
     mounts = [Path("/usr")]
     for path in (*contents.shown, *([folder] if folder is not None else [])):

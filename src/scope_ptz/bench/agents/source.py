@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib
-import json
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,9 +14,6 @@ from scope_ptz.errors import ConfigError
 
 DIGEST_CHARS = 16
 """Length of a digest in hexadecimal characters."""
-INTERPRETER_S = 60.0
-"""Seconds for an interpreter to describe itself."""
-_DESCRIBE = "import json, sys; print(json.dumps([sys.prefix, sys.base_prefix, [p for p in sys.path if p]]))"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,24 +36,30 @@ def own_interpreter() -> Interpreter:
     return Interpreter(Path(sys.executable), (Path(sys.prefix), Path(sys.base_prefix)), tuple(Path(p) for p in sys.path if p))
 
 
-def interpreter_at(program: Path, environment: Mapping[str, str]) -> Interpreter:
-    """Ask an interpreter where it finds modules.
+def interpreter_at(program: Path) -> Interpreter:
+    """Return what the files of an interpreter's environment say about it.
+
+    The interpreter is not run: its environment may contain code that runs whenever it starts, and belongs to the agent.
 
     Args:
         program: Path of the program.
-        environment: The environment variables of the agent.
-
-    Raises:
-        ConfigError: The program is missing or is not a Python interpreter.
     """
+    installation = program.resolve().parent.parent
+    environment = program.parent.parent
+    configuration = environment / "pyvenv.cfg"
+    prefixes = (environment, installation) if configuration.is_file() else (installation,)
+    libraries = [path for prefix in prefixes for path in sorted(prefix.glob("lib*/python3*")) if path.is_dir()]
+    packages = [path for library in libraries for path in library.glob("*-packages")]
+    linked = [Path(line) for folder in packages for file in sorted(folder.glob("*.pth")) for line in _lines(file)]
+    return Interpreter(program, prefixes, (*libraries, *packages, *(path for path in linked if path.is_absolute())))
+
+
+def _lines(file: Path) -> list[str]:
+    """Return the lines of a file that lists folders; none if it cannot be read."""
     try:
-        done = subprocess.run(
-            [str(program), "-c", _DESCRIBE], env=dict(environment), capture_output=True, timeout=INTERPRETER_S, check=True, cwd="/"
-        )
-        prefix, base_prefix, search_path = json.loads(done.stdout)
-    except (OSError, subprocess.SubprocessError, ValueError) as error:
-        raise ConfigError(f"--agent-python is {program}, which is not a working Python interpreter. Correct the path.") from error
-    return Interpreter(program, (Path(prefix), Path(base_prefix)), tuple(Path(p) for p in search_path))
+        return [line.strip() for line in file.read_text("utf-8", "replace").splitlines()]
+    except OSError:
+        return []
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +107,9 @@ def find_module(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentS
         if spec is None:
             continue
         packages = [Path(location) for location in spec.submodule_search_locations or ()]
-        files = {path.relative_to(package).as_posix(): path for package in packages for path in package.rglob("*.py")}
+        files = {
+            path.relative_to(package).as_posix(): path for package in packages for path in package.rglob("*.py") if path.is_file()
+        }
         if not packages and spec.has_location and spec.origin:
             files = {Path(spec.origin).name: Path(spec.origin)}
         return AgentSource(place, files)

@@ -75,6 +75,10 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
         ConfigError: The options contradict each other, or name something that does not exist.
     """
     name, folder = agent_name(agent, options), Path.cwd()
+    if sys.platform == "win32" and not options.in_process:
+        raise ConfigError(
+            "External agents need Linux or macOS. On Windows, use --agent-in-process or the Windows Subsystem for Linux."
+        )
     if options.command:
         return _program(name, options, folder, hidden)
     if options.in_process:
@@ -85,19 +89,20 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
 
 def _class(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
     environment = agent_environment(options.variables, python_path=options.python is None)
-    interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute(options.python), environment)
+    interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute(options.python))
     source = find_module(name, folder, interpreter.search_path)
     if options.python is None and source is not None and source.folder != folder:
         # Programs may have added folders to their own search path, which a new process does not have.
         environment["PYTHONPATH"] = os.pathsep.join(
             [str(source.folder), *environment.get("PYTHONPATH", "").split(os.pathsep)]
         ).rstrip(":")
+    program = RUNNER if options.sandbox else Path(runner.__file__)
     launch = AgentLaunch(
-        name, (str(interpreter.program), runner.__file__, name), folder, environment, options.isolation, options.memory_mb
+        name, (str(interpreter.program), str(program), name), folder, environment, options.isolation, options.memory_mb
     )
-    if options.sandbox:
-        launch = _in_sandbox(launch, (str(interpreter.program), str(RUNNER), name), source, interpreter, hidden)
     settings = _settings(options) | ({"python": str(options.python)} if options.python is not None else {})
+    if options.sandbox:
+        return _in_sandbox(launch, source, settings, options, interpreter, hidden)
     return _local(launch, source, settings, options)
 
 
@@ -109,31 +114,33 @@ def _program(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path,
     launch = AgentLaunch(
         name, command, folder, agent_environment(options.variables, python_path=False), options.isolation, options.memory_mb
     )
+    settings = _settings(options) | {"command": words}
     if options.sandbox:
-        launch = _in_sandbox(launch, command, source, None, hidden)
-    return _local(launch, source, _settings(options) | {"command": words}, options)
+        return _in_sandbox(launch, source, settings, options, None, hidden)
+    return _local(launch, source, settings, options)
 
 
 def _in_sandbox(
     launch: AgentLaunch,
-    command: tuple[str, ...],
     source: AgentSource | None,
+    settings: dict[str, Any],
+    options: AgentOptions,
     interpreter: Interpreter | None,
     hidden: tuple[Path, ...],
-) -> AgentLaunch:
-    """Return a launch in the sandbox. The working folder is the one in which the agent's module was found."""
+) -> LocalAgent:
+    """Return an agent in the sandbox. Its working folder is the one in which its module was found."""
     require_sandbox()
     shown: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_links_to(interpreter.program))
     installed = source is None or any(source.folder.is_relative_to(path) for path in shown)
-    folder = launch.folder if source is None else source.folder
     contents = SandboxContents(
-        folder=None if installed else folder,
+        folder=None if source is None or installed else source.folder,
         shown=shown,
         runner=Path(runner.__file__) if interpreter is not None else None,
         hidden=(*own_files(), *hidden, *(path / "scope_ptz" for path in (interpreter.search_path if interpreter else ()))),
     )
     kept = {name: value for name, value in launch.environment.items() if name not in ("PYTHONPATH", "TMPDIR")}
-    return replace(launch, command=sandboxed(command, contents), folder=Path("/"), environment=kept | {"HOME": SCRATCH})
+    outer = replace(launch, folder=Path("/"), environment=kept | {"HOME": SCRATCH})
+    return _local(outer, source, settings, options, contents)
 
 
 def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
@@ -148,9 +155,20 @@ def _links_to(program: Path) -> tuple[Path, ...]:
     return tuple(links)
 
 
-def _local(launch: AgentLaunch, source: AgentSource | None, settings: dict[str, Any], options: AgentOptions) -> LocalAgent:
+def _local(
+    launch: AgentLaunch,
+    source: AgentSource | None,
+    settings: dict[str, Any],
+    options: AgentOptions,
+    contents: SandboxContents | None = None,
+) -> LocalAgent:
+    if contents is not None:
+        sandboxed(launch.command, contents)  # raises ConfigError now, and not at the first run
+
     async def open_channel() -> AgentChannel:
-        return await PipeChannel.start(launch)
+        # Files that must be hidden may appear later, such as the folder of the logs.
+        inner = launch if contents is None else replace(launch, command=sandboxed(launch.command, contents))
+        return await PipeChannel.start(inner)
 
     return LocalAgent(launch.name, launch.isolation, source.digest() if source else "", settings, options, open_channel)
 

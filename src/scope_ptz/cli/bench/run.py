@@ -5,16 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.cli.bench.flags import (
-    AgentFlags,
-    JudgeRepeats,
-    SelectionFlags,
-    SingleRunFlags,
-    agent_options,
-    evaluation_options,
-    judge_settings,
-    price_of,
-)
+from scope_ptz.cli.bench.agent_flags import AgentFlags, agent_options
+from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, price_of
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
