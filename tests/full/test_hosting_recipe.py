@@ -118,7 +118,7 @@ def test_the_recipe(analytic_folder: Path, tmp_path: Path) -> None:
     assert "3 entries" in listed and "stolen.jsonl: not listed" in listed
     page = (tmp_path / "leaderboard.html").read_text("utf-8")
     assert all(word in page for word in ("anna", "ben", "baseline", "hosted", "self-reported"))
-    assert "1 entries" in recipe.scope(*board), "without the key, hosted submissions are not accepted"
+    assert "1 entry" in recipe.scope(*board), "without the key, hosted submissions are not accepted"
     with (tmp_path / "submissions" / "ben.jsonl").open("a", encoding="utf-8") as file:
         file.write("\n")
     assert "edited after it was signed" in recipe.scope(*board, "--host-key", "host.key.pub")

@@ -59,9 +59,20 @@ def test_a_signed_file_is_hosted_under_a_trusted_key(signed: Path, key: Path) ->
 def test_openssl_verifies_a_signature(signed: Path, key: Path, tmp_path: Path) -> None:
     raw = tmp_path / "raw.sig"
     raw.write_bytes(base64.b64decode(json.loads(signature_path(signed).read_text("utf-8"))["signature"]))
-    command = ["openssl", "pkeyutl", "-verify", "-pubin", "-rawin"]
-    files = ["-inkey", str(public_path(key)), "-in", str(signed), "-sigfile", str(raw)]
-    assert subprocess.run([*command, *files], capture_output=True, check=False).returncode == 0
+    command: list[str | Path] = [
+        "openssl",
+        "pkeyutl",
+        "-verify",
+        "-pubin",
+        "-inkey",
+        public_path(key),
+        "-rawin",
+        "-in",
+        signed,
+        "-sigfile",
+        raw,
+    ]
+    assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
 @pytest.mark.parametrize("at", [0, 10, len(HOSTED) - 1])

@@ -48,7 +48,8 @@ def leaderboard(
         return
     for one in refused:
         print_error(f"{one.file}: not listed: {one.reason}")
-    put(f"{out}: {len(entries)} entries in {len(tables)} {'table' if len(tables) == 1 else 'tables'}")
+    rows_text = "1 entry" if len(entries) == 1 else f"{len(entries)} entries"
+    put(f"{out}: {rows_text} in {len(tables)} {'table' if len(tables) == 1 else 'tables'}")
 
 
 def _task_set(name: str) -> TaskSet:

@@ -1,0 +1,26 @@
+"""The seed of tasks in scene variations: the default makes the published tasks, and another seed makes others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scope_ptz.taskgen.authoring.assembly import BuiltTasks
+from scope_ptz.taskgen.dataset import unseen
+
+
+def test_another_seed_draws_other_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[int] = []
+
+    def build(worlds: object, seed: int, *_: Any) -> BuiltTasks:
+        drawn.append(seed)
+        return BuiltTasks()
+
+    monkeypatch.setattr(unseen, "build", build)
+    for arguments in ({}, {"seed": 1}, {"seed": 2}, {"seed": 3}, {"seed": 2}):
+        unseen.build_unseen([], (7, 8, 9), **arguments)
+    published, default, second, third, again = drawn
+    assert published == default == 1_000_000 + 7 + 8 * 31 + 9 * 31**2
+    assert len({published, second, third}) == 3
+    assert second == again
