@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import sys
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -16,6 +18,8 @@ from gymnasium.utils.env_checker import check_env
 
 import scope_ptz.gym as scope_gym
 from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.gym.shared_scenes import shared_scene
+from scope_ptz.gym.world import MAX_SCENES, World
 from tests.gym.conftest import COUNTING, TURNING, YARD
 
 Make = Callable[..., Any]
@@ -178,3 +182,32 @@ except ImportError as error:
     loaded, message = json.loads(done.stdout)
     assert not loaded
     assert 'pip install "scope-ptz[gym]"' in message
+
+
+@pytest.mark.usefixtures("yard")
+def test_a_world_keeps_only_the_scenes_of_its_last_episodes_open() -> None:
+    """The variations of a scene share its layers, which take the memory."""
+    world = World("ground-truth", SMALL, SMALL)
+    names = [YARD, *(f"{YARD}-v{number}" for number in range(1, 7))]
+    opened = []
+    for name in names:
+        world.open(name, "mast", 1.0, 0)
+        opened.append(weakref.ref(world.scene))
+        gc.collect()
+        assert len(world._scenes) <= MAX_SCENES
+        assert sum(scene() is not None for scene in opened) <= MAX_SCENES
+    assert opened[-1]() is world.scene
+    varied = world.scene.viewpoint("mast")
+    assert shared_scene(YARD).viewpoint("mast") is varied
+    world.close()
+
+
+@pytest.mark.usefixtures("yard")
+def test_a_world_finds_a_closed_scene_again() -> None:
+    world = World("ground-truth", SMALL, SMALL)
+    frames = []
+    for name in (YARD, f"{YARD}-v1", f"{YARD}-v2", YARD):
+        world.open(name, "mast", 1.0, 0)
+        frames.append(world.picture(world.pose))
+    np.testing.assert_array_equal(frames[0], frames[-1])
+    world.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -23,10 +25,12 @@ from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.camera_control import CameraControl
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import NotInControlError
+from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.service import SiteOptions, site_cameras
-from scope_ptz.serve.site.station import IdleReturn
+from scope_ptz.serve.site.station import IdleReturn, Station
 from scope_ptz.settings import ScopeSettings
 from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.store.run_store import RunStore
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, serving
@@ -238,3 +242,30 @@ def test_a_server_on_the_network_does_not_start_without_tokens(scenes: None, tmp
     assert not (tmp_path / "runs").exists()
     with pytest.raises(ConfigError):
         Access("192.0.2.1")
+
+
+@pytest.mark.anyio
+async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scenes: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    started, proceed, prefetches = threading.Event(), threading.Event(), []
+    prefetch = SimulatedCamera.prefetch
+
+    def slow(camera: SimulatedCamera) -> Prefetch:
+        started.set()
+        assert proceed.wait(30)
+        prefetches.append(prefetch(camera))
+        return prefetches[-1]
+
+    monkeypatch.setattr(SimulatedCamera, "prefetch", slow)
+    station = Station("yard", SPEC, Pairs(), actor="test")
+    opening = asyncio.create_task(station.opened())
+    while not started.is_set():
+        await anyio.sleep(0.01)
+    opening.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await opening
+    await station.close()
+    proceed.set()
+    with anyio.fail_after(30):
+        while not (prefetches and prefetches[0].done):
+            await anyio.sleep(0.01)
+    assert prefetches[0].cancelled
