@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import anyio
@@ -30,7 +31,7 @@ from scope_ptz.serve.site.service import SiteOptions, site_cameras
 from scope_ptz.serve.site.station import IdleReturn, Station
 from scope_ptz.settings import ScopeSettings
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.prefetch import Prefetch
+from scope_ptz.simulator.prefetch import Prefetch, Prefetches
 from scope_ptz.store.run_store import RunStore
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, serving
@@ -246,7 +247,7 @@ def test_a_server_on_the_network_does_not_start_without_tokens(scenes: None, tmp
 
 @pytest.mark.anyio
 async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scenes: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    started, proceed, prefetches = threading.Event(), threading.Event(), []
+    started, proceed, ended, prefetches = threading.Event(), threading.Event(), threading.Event(), []
     prefetch = SimulatedCamera.prefetch
 
     def slow(camera: SimulatedCamera) -> Prefetch:
@@ -255,17 +256,21 @@ async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scen
         prefetches.append(prefetch(camera))
         return prefetches[-1]
 
+    def start(self: Prefetches, make: Callable[[], Prefetch]) -> None:
+        begin(self, make)
+        ended.set()
+
+    begin = Prefetches.start
+    monkeypatch.setattr(Prefetches, "start", start)
     monkeypatch.setattr(SimulatedCamera, "prefetch", slow)
     station = Station("yard", SPEC, Pairs(), actor="test")
     opening = asyncio.create_task(station.opened())
-    while not started.is_set():
-        await anyio.sleep(0.01)
+    assert await anyio.to_thread.run_sync(started.wait, 30)
     opening.cancel()
     with pytest.raises(asyncio.CancelledError):
         await opening
     await station.close()
     proceed.set()
-    with anyio.fail_after(30):
-        while not (prefetches and prefetches[0].done):
-            await anyio.sleep(0.01)
+    await anyio.to_thread.run_sync(ended.wait, 30)
+    assert prefetches[0].wait(30)
     assert prefetches[0].cancelled
