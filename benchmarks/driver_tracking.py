@@ -21,6 +21,7 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -231,11 +232,14 @@ async def _with_driver(scenes: Library, chase: Chase, device: VirtualDevice, dri
 
 async def _follow(camera: Camera, perception: Perception, chase: Chase) -> Followed:
     result = await Agent(GrammarPlanner(), camera, perception, NoImages(), snapshots=False).run(chase.instruction)
-    (outcome,) = [outcome for exchange in result.exchanges for outcome in exchange.outcomes]
-    assert outcome.call.name == "track_object" and outcome.result is not None, f"{outcome.call.name}: {outcome.error}"
+    outcomes = [outcome for exchange in result.exchanges for outcome in exchange.outcomes]
+    for outcome in outcomes:
+        if outcome.error is not None:
+            print(f"{camera.info.name}, {chase.instruction}, {outcome.call.name}: {outcome.error}", file=sys.stderr)
+    path: list[dict[str, Any]] = outcomes[-1].result["path"] if outcomes and outcomes[-1].result is not None else []
     looks = tuple(
         Look(point["time_s"], Pose(*(point["pose"][axis] for axis in ("pan_deg", "tilt_deg", "zoom"))), point["seen"])
-        for point in outcome.result["path"]
+        for point in path
     )
     return Followed(looks, without_source(result.ended.text), result.ended.pose.pose())
 

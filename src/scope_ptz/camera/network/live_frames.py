@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from scope_ptz.camera.clocks import Clock
-    from scope_ptz.camera.network.streams import LivePicture, LiveStream
+    from scope_ptz.camera.network.streams import LiveStream
 
 FROZEN_PATIENCE_S = 2.0
 """Seconds that the picture may lag behind the motors, for example because the encoder freezes it during a move."""
 
 SILENT_S = 1.5
-"""Seconds without a picture after which a stream counts as interrupted."""
+"""Seconds without a frame after which a stream counts as interrupted."""
 
 
 class LiveFrames:
@@ -48,15 +48,15 @@ class LiveFrames:
     ) -> None:
         self._stream, self._poses, self._info, self._latency_s = stream, PosePoller(read_pose), info, latency_s
         self._offset_s = clock.now_s() - monotonic()
-        self._asked_s: float | None = None
+        self._waits_since_s: float | None = None
 
     @property
     def problem(self) -> str:
         """Why no frames arrive at present; empty while they arrive."""
         if self._poses.problem:
             return self._poses.problem
-        if self._asked_s is not None and monotonic() - self._asked_s > SILENT_S:
-            return f"{self._info.name} sends no pictures. The stream is reopened; check the network and the camera."
+        if self._waits_since_s is not None and monotonic() - self._waits_since_s > SILENT_S:
+            return f"{self._info.name} sends no frames. The connection is opened again; check the network and the camera."
         return ""
 
     async def frames(self, rate_hz: float) -> AsyncGenerator[Frame]:
@@ -70,30 +70,25 @@ class LiveFrames:
             while True:
                 await anyio.sleep(max(0.0, due_s - monotonic()))
                 asked_s = monotonic()
-                picture = await self._next()
-                if monotonic() - asked_s > SILENT_S:  # the time of an outage does not count
-                    give_up_s = monotonic() + FROZEN_PATIENCE_S
+                self._waits_since_s = self._waits_since_s or asked_s
+                picture = await self._stream.next()
                 exposed_s = picture.arrived_s - self._latency_s
                 pose = await self._poses.at(exposed_s)
+                if monotonic() - asked_s > SILENT_S:  # the time of an outage does not count
+                    give_up_s = monotonic() + FROZEN_PATIENCE_S
                 if pose is None:
                     continue  # exposed before the first reading
                 check_not_black(picture.image)
                 if frozen.lags(picture.data, pose, give_up_s):
                     continue
                 due_s = max(due_s + 1.0 / rate_hz, monotonic())
+                self._waits_since_s = None
                 yield frame_of(picture.image, pose, self._info, exposed_s + self._offset_s)
                 give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from when the consumer asks for the next frame
         finally:
             with anyio.CancelScope(shield=True):
                 await self._poses.close()
                 await self._stream.close()
-
-    async def _next(self) -> LivePicture:
-        self._asked_s = monotonic()
-        try:
-            return await self._stream.next()
-        finally:
-            self._asked_s = None
 
 
 def frame_of(image: NDArray[np.uint8], pose: Pose, info: CameraInfo, time_s: float) -> Frame:
