@@ -199,13 +199,14 @@ async def test_an_interruption_is_reported_until_frames_arrive_again(
 
         async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
             yield await self.frame()
+            await seen.wait()
             self.frames_problem = "the network is down"
             await back.wait()
             self.frames_problem = ""
             yield await self.frame()
             await anyio.sleep_forever()
 
-    camera, back = Interrupted(analytic_scene, width=320, height=180), anyio.Event()
+    camera, seen, back = Interrupted(analytic_scene, width=320, height=180), anyio.Event(), anyio.Event()
 
     async def opened() -> Camera:
         return camera
@@ -217,6 +218,7 @@ async def test_an_interruption_is_reported_until_frames_arrive_again(
             async with live.watch() as frames:
                 first = await anext(frames)
                 assert first is not None
+                seen.set()
                 assert await anext(frames) is None
                 assert live.problem == "the network is down"
                 back.set()

@@ -68,6 +68,11 @@ def test_numbers_are_decoded_as_they_are_read() -> None:
     np.testing.assert_array_equal(atlas.at(rows, columns), numbers)
 
 
+def test_numbers_that_no_pixel_can_have_get_no_code() -> None:
+    codes = NumberCodes([70_000, -3, 0, 9])
+    np.testing.assert_array_equal(codes.encode(np.array([[0, 9, 8]], np.uint16)), [[0, 1, 255]])
+
+
 def test_no_positions_have_no_numbers() -> None:
     atlas = NumberAtlas(SIZES, lambda _, i: _pictures(3, 5)[i], NumberCodes([1]))
     nothing = np.zeros(0, np.int64)

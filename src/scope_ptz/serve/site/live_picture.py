@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
-from contextlib import aclosing, asynccontextmanager, suppress
+from contextlib import aclosing, asynccontextmanager
 from time import time
 from typing import Any
 
@@ -128,8 +128,6 @@ class LivePicture:
             yield
         finally:
             task.cancel()
-            with suppress(asyncio.CancelledError):
-                await task
 
     @asynccontextmanager
     async def watch(self) -> AsyncIterator[AsyncIterator[LiveFrame | None]]:

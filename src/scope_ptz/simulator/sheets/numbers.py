@@ -27,14 +27,15 @@ class NumberCodes:
     """One-byte codes for the most common numbers of a viewpoint.
 
     Args:
-        common: Distinct numbers from 1 to 65535, the most common first. The first 254 get codes from 1 to 254; 0 has the code 0.
+        common: Distinct numbers, the most common first. The first 254 from 1 to 65535 get codes from 1 to 254; 0 has the code 0.
     """
 
     def __init__(self, common: Iterable[int]) -> None:
         self._numbers = np.zeros(256, np.uint16)
         self._codes = np.full(65536, RARE, np.uint8)
         self._codes[0] = 0
-        for code, number in enumerate(islice(common, RARE - 1), start=1):
+        valid = (number for number in common if 0 < number < len(self._codes))
+        for code, number in enumerate(islice(valid, RARE - 1), start=1):
             self._numbers[code], self._codes[number] = number, code
 
     def encode(self, numbers: Numbers) -> NDArray[np.uint8]:
