@@ -112,3 +112,40 @@ def test_every_deviation_is_named(parity: ModuleType, change: dict[str, Any], ki
 def test_the_note_on_the_source_is_left_out_and_nothing_else(parity: ModuleType) -> None:
     assert parity.without_source("I see 4. (Source: the simulator's ground truth.)") == "I see 4."
     assert parity.without_source("I panned (10 degrees).") == "I panned (10 degrees)."
+
+
+@pytest.fixture(scope="module")
+def tracking(parity: ModuleType) -> ModuleType:
+    spec = importlib.util.spec_from_file_location("driver_tracking", PROGRAM.with_name("driver_tracking.py"))
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules["driver_tracking"] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.full
+@pytest.mark.anyio
+async def test_moving_objects_are_followed_alike_on_all_paths(tracking: ModuleType) -> None:
+    compared = await tracking.compare(["highway-works"], objects=1, seconds=2)
+    assert len(compared) == 3
+    for each in compared:
+        assert each.deviations() == []
+        looks = each.runs["in process"].looks
+        assert len(looks) >= 4 and all(look.seen for look in looks)
+        assert looks[0].pose != looks[-1].pose
+
+
+def test_every_deviation_in_tracking_is_named(tracking: ModuleType) -> None:
+    looks = (tracking.Look(0.0, Pose(10, -5, 2), True), tracking.Look(0.5, Pose(12, -5, 2), True))
+    own = tracking.Followed(looks, "Followed.", Pose(12, -5, 2))
+    chase = tracking.Chase("yard", "mast", Pose(10, -5, 2), 1.0, "track the van for 1 seconds")
+    compared = tracking.Compared(chase, {"in process": own, "axis": own, "onvif": own})
+    assert compared.deviations() == []
+    assert "No deviations." in tracking.report([compared])
+    late = replace(own, looks=(looks[0], replace(looks[1], seen=False)))
+    aside = replace(own, looks=(looks[0], replace(looks[1], pose=Pose(12.4, -5, 2))))
+    elsewhere, silent = replace(own, final=Pose(12, -4, 2)), replace(own, answer="Nothing.")
+    for wrong, words in ((late, "other times"), (aside, "look 1"), (elsewhere, "ends at"), (silent, "'Nothing.'")):
+        (found,) = tracking.Compared(chase, {"in process": own, "axis": own, "onvif": wrong}).deviations()
+        assert found.startswith("onvif: ") and words in found

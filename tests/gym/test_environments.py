@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import sys
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -16,6 +18,8 @@ from gymnasium.utils.env_checker import check_env
 
 import scope_ptz.gym as scope_gym
 from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.gym.world import MAX_SCENES, World
+from scope_ptz.simulator.pack import Scene, list_scenes
 from tests.gym.conftest import COUNTING, TURNING, YARD
 
 Make = Callable[..., Any]
@@ -178,3 +182,37 @@ except ImportError as error:
     loaded, message = json.loads(done.stdout)
     assert not loaded
     assert 'pip install "scope-ptz[gym]"' in message
+
+
+def test_a_world_keeps_only_its_last_scenes_open() -> None:
+    world = World("ground-truth", SMALL, SMALL)
+    opened: list[weakref.ref[Scene]] = []
+    for name in (*list_scenes(), *list_scenes()):
+        opened.append(weakref.ref(world.scene_named(name)))
+        gc.collect()
+        assert opened[-1]() is not None
+        assert len({id(scene()) for scene in opened if scene() is not None}) <= MAX_SCENES
+    world.close()
+
+
+@pytest.mark.usefixtures("yard")
+def test_the_variations_of_a_scene_share_its_layers() -> None:
+    world = World("ground-truth", SMALL, SMALL)
+    original, varied, other = (world.scene_named(name) for name in (YARD, f"{YARD}-v1", f"{YARD}-v2"))
+    assert len({scene.viewpoint("mast") for scene in (original, varied, other)}) == 1
+    again = weakref.ref(original)
+    del original
+    gc.collect()
+    assert again() is world.scene_named(YARD), "a variation keeps its scene open"
+    world.close()
+
+
+@pytest.mark.usefixtures("yard")
+def test_a_world_finds_a_closed_scene_again() -> None:
+    world = World("ground-truth", SMALL, SMALL)
+    frames = []
+    for name in (YARD, f"{YARD}-v1", f"{YARD}-v2", YARD):
+        world.open(name, world.scene_named(name).file.home_preset, 1.0, 0)
+        frames.append(world.picture(world.pose))
+    np.testing.assert_array_equal(frames[0], frames[-1])
+    world.close()

@@ -19,9 +19,10 @@ from anyio import to_thread
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from scope_ptz.camera.base import Frame
+from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.serve.site.live_picture import LivePicture
+from scope_ptz.simulator.pack import Scene
 from tests.serve.serving import CAMERA, Served
 
 
@@ -184,4 +185,45 @@ async def test_a_camera_failure_is_reported_and_retried(monkeypatch: pytest.Monk
             assert live.problem == "the cable is cut"
             with anyio.fail_after(20):
                 await often.wait()
+        group.cancel_scope.cancel()
+
+
+@pytest.mark.anyio
+async def test_an_interruption_is_reported_until_frames_arrive_again(
+    monkeypatch: pytest.MonkeyPatch, analytic_scene: Scene
+) -> None:
+    monkeypatch.setattr("scope_ptz.serve.site.live_picture.CHECK_S", 0.01)
+
+    class Interrupted(SimulatedCamera):
+        frames_problem = ""
+
+        async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
+            yield await self.frame()
+            await seen.wait()
+            self.frames_problem = "the network is down"
+            await back.wait()
+            self.frames_problem = ""
+            yield await self.frame()
+            await anyio.sleep_forever()
+
+    camera, seen, back = Interrupted(analytic_scene, width=320, height=180), anyio.Event(), anyio.Event()
+
+    async def opened() -> Camera:
+        return camera
+
+    live = LivePicture("yard", opened)
+    async with anyio.create_task_group() as group:
+        group.start_soon(live.run)
+        with anyio.fail_after(30):
+            async with live.watch() as frames:
+                first = await anext(frames)
+                assert first is not None
+                seen.set()
+                assert await anext(frames) is None
+                assert live.problem == "the network is down"
+                back.set()
+                second = await anext(frames)
+                assert second is not None
+                assert second.number == first.number + 1
+                assert live.problem == ""
         group.cancel_scope.cancel()

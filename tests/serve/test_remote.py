@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 import httpx2
 import pytest
@@ -15,8 +16,13 @@ import scope_ptz
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection
 from scope_ptz.camera.conformance import CameraConformance
+from scope_ptz.camera.guard.guarded import KeepOutError
 from scope_ptz.errors import CameraError, ConfigError, InputError, PerceptionError, PlannerError, ToolCallError, UnknownNameError
-from tests.serve.serving import CAMERA, Served
+from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.rate_limits import RateLimits
+from scope_ptz.serve.site.service import SiteOptions
+from tests.serve.conftest import SPEC
+from tests.serve.serving import CAMERA, Served, serving
 from tests.support.loopback import nobody_listens
 
 LONG = "track the ball for 300 seconds"
@@ -186,3 +192,30 @@ class TestRemoteCamera(CameraConformance):
                 yield camera
             finally:
                 await connection.request("DELETE", "~/control")
+
+
+def test_a_keep_out_region_refuses_a_call_by_name(scenes: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "scope.yaml").write_text(
+        f"""
+cameras:
+  quiet-yard:
+    camera: "{SPEC}"
+    rules: {{keep_out: [{{name: windows, pan_deg: [-180, 180], tilt_deg: [-90, 90]}}]}}
+"""
+    )
+    monkeypatch.setenv("SCOPE_CONFIG", str(tmp_path / "scope.yaml"))
+    access = Access("127.0.0.1", limits=RateLimits(None))
+    with serving(SiteOptions(tmp_path / "runs"), access, {"quiet-yard": "quiet-yard"}) as server:
+        with scope_ptz.open(f"{server.root}/quiet-yard") as scope:
+            output = scope.dispatch("adjust_ptz", {"pan_deg": 5.0})
+            assert not output.ok
+            assert "keep-out region 'windows'" in json.loads(output.text)["error"]
+            with pytest.raises(KeepOutError, match="windows"):
+                scope.adjust_ptz(pan_deg=5.0)
+            with pytest.raises(KeepOutError, match="windows"):
+                scope.move_to(pan_deg=5.0)
+        with server.client() as client:
+            reply = client.post("/cameras/quiet-yard/tools/adjust_ptz", json={"pan_deg": 5.0}).json()
+            assert (reply["fault"], reply["code"], reply["result"]) == ("camera", "kept_out", None)
+            done = client.post("/cameras/quiet-yard/tools/get_presets", json={}).json()
+            assert (done["error"], done["code"]) == (None, None)

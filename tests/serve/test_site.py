@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
@@ -9,7 +10,9 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import anyio
@@ -23,10 +26,12 @@ from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.camera_control import CameraControl
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import NotInControlError
+from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.site import SiteOptions, site_cameras
-from scope_ptz.serve.site.station import IdleReturn
+from scope_ptz.serve.site.station import IdleReturn, Station
 from scope_ptz.settings import ScopeSettings
 from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.prefetch import Prefetch, Prefetches
 from scope_ptz.store.run_store import RunStore
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, serving
@@ -238,3 +243,34 @@ def test_a_server_on_the_network_does_not_start_without_tokens(scenes: None, tmp
     assert not (tmp_path / "runs").exists()
     with pytest.raises(ConfigError):
         Access("192.0.2.1")
+
+
+@pytest.mark.anyio
+async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scenes: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    started, proceed, ended, prefetches = threading.Event(), threading.Event(), threading.Event(), []
+    prefetch = SimulatedCamera.prefetch
+
+    def slow(camera: SimulatedCamera) -> Prefetch:
+        started.set()
+        assert proceed.wait(30)
+        prefetches.append(prefetch(camera))
+        return prefetches[-1]
+
+    def start(self: Prefetches, make: Callable[[], Prefetch]) -> None:
+        begin(self, make)
+        ended.set()
+
+    begin = Prefetches.start
+    monkeypatch.setattr(Prefetches, "start", start)
+    monkeypatch.setattr(SimulatedCamera, "prefetch", slow)
+    station = Station("yard", SPEC, Pairs(), actor="test")
+    opening = asyncio.create_task(station.opened())
+    assert await anyio.to_thread.run_sync(started.wait, 30)
+    opening.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await opening
+    await station.close()
+    proceed.set()
+    await anyio.to_thread.run_sync(ended.wait, 30)
+    assert prefetches[0].wait(30)
+    assert prefetches[0].cancelled

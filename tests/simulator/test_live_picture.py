@@ -22,7 +22,7 @@ from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.occlusion import outlined_depth_part, outlined_depth_view
 from scope_ptz.simulator.pack import Scene, load_scene
 from scope_ptz.simulator.pictures import Pictures
-from scope_ptz.simulator.prefetch import Prefetch
+from scope_ptz.simulator.prefetch import Prefetch, Prefetches
 from scope_ptz.simulator.reproject import colour_view, id_view, view_map
 from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
 from scope_ptz.simulator.sprites.choice import Aspect, warp_matrix
@@ -48,6 +48,21 @@ def test_prefetching_a_damaged_viewpoint_says_so(analytic_scene: Scene, tmp_path
     viewpoint.pictures.folder = tmp_path
     with pytest.raises(PackError, match="missing"):
         Prefetch(viewpoint, width=WIDTH).wait(60)
+
+
+def test_a_prefetch_that_starts_after_the_end_of_its_owner_is_cancelled(analytic_scene: Scene) -> None:
+    prefetches, early = Prefetches(), []
+
+    def start() -> Prefetch:
+        early.append(Prefetch(Scene(analytic_scene.folder).viewpoint("mast"), width=WIDTH))
+        return early[-1]
+
+    prefetches.start(start)
+    prefetches.cancel()
+    prefetches.start(start)
+    assert all(prefetch.cancelled for prefetch in early)
+    prefetches.wait(60)
+    assert all(prefetch.done for prefetch in early)
 
 
 def test_a_bounded_cache_shows_the_same_pictures(analytic_scene: Scene) -> None:

@@ -153,6 +153,11 @@ class Camera(ABC):
             yield await self.frame()
             await self.clock.sleep(due_s - elapsed_s(self.clock))
 
+    @property
+    def frames_problem(self) -> str:
+        """Why ``frames`` is interrupted, for example by an outage of the network; empty while frames arrive."""
+        return ""
+
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - part of the contract
         """Save the current pose as a preset. An existing preset with the same name is replaced.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import RLock
-from weakref import WeakValueDictionary
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from scope_ptz.errors import InputError
 from scope_ptz.factory.scenes import open_scene, scene_search
@@ -14,7 +14,10 @@ from scope_ptz.simulator.pack import Scene, find_scenes, variation_of
 _LOCK = RLock()
 _OPEN: WeakValueDictionary[tuple[str, tuple[Path, ...]], Scene] = WeakValueDictionary()
 """The open scenes by name and search folders. Gymnasium creates each environment of a vector separately and passes it no common
-object, so only the process can share them. A scene is closed with the last environment that uses it."""
+object, so only the process can share them. A scene is closed when no environment uses it any more."""
+
+_BASES: WeakKeyDictionary[Scene, Scene] = WeakKeyDictionary()
+"""The scene of each open variation. It stays open with the variation, so that other variations share its layers."""
 
 
 def shared_scene(name: str) -> Scene:
@@ -31,7 +34,12 @@ def shared_scene(name: str) -> Scene:
         if scene is None:
             base, number = variation_of(name)
             varied = number is not None and name not in find_scenes(search)
-            scene = shared_scene(base).varied(number) if varied and number is not None else open_scene(name)
+            if varied and number is not None:
+                original = shared_scene(base)
+                scene = original.varied(number)
+                _BASES[scene] = original
+            else:
+                scene = open_scene(name, cache_pictures=True)
             if scene.file.captured is not None:
                 raise InputError(
                     f"The scene '{name}' was captured from a camera and has no ground truth, so nothing can be rewarded in it. "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Awaitable, Callable
 from typing import TypeVar
 
@@ -24,6 +25,9 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
 
 MIN_FRAME_PX, MAX_FRAME_PX = 16, 4096  # width and height of the frames that an agent receives
+MAX_SCENES = 2
+"""Number of scenes that a world keeps open. A scene takes up to 400 MB, and opening it again about a second."""
+
 _T = TypeVar("_T")
 
 
@@ -56,13 +60,16 @@ class World:
         self._options = perception
         self._resolved: ResolvedPerception | None = None
         self._owned: Perception | None = None
-        self._scenes: dict[str, Scene] = {}
+        self._scenes: OrderedDict[str, Scene] = OrderedDict()  # the least recently used first
         self._loop: EventLoopThread | None = None
 
     def scene_named(self, name: str) -> Scene:
-        """Return a scene. It stays open until the world is closed."""
+        """Return a scene. It stays open until ``MAX_SCENES`` others have been used, or until the world is closed."""
         if name not in self._scenes:
             self._scenes[name] = shared_scene(name)
+        self._scenes.move_to_end(name)
+        while len(self._scenes) > MAX_SCENES:
+            self._scenes.popitem(last=False)
         return self._scenes[name]
 
     def open(self, name: str, preset: str, time_s: float, seed: int) -> None:

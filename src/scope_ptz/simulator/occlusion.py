@@ -77,7 +77,7 @@ def _sharpened_depth(
         viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
     )
     viewpoint.owner_atlas.ensure(0)
-    owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
+    owners = viewpoint.owner_atlas.sample(where)
     same = owners == numbers
     wrong = ~same if needed is None else needed & ~same
     pixels = np.flatnonzero(wrong)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import threading
 import time
+from collections.abc import Callable
 
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective
 from scope_ptz.simulator.mapping.atlas_map import TILE_GAIN, panorama_density, suitable_scale
@@ -61,6 +62,11 @@ class Prefetch:
         if self._error is not None:
             raise self._error
         return self.done
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether ``cancel`` has been called."""
+        return self._cancelled.is_set()
 
     def cancel(self) -> None:
         """Stop as soon as the picture that is being read is finished."""
@@ -127,3 +133,39 @@ class Prefetch:
                 return
             atlas.ensure_scales(1 + index, sorted({suitable_scale(atlas, views[index].focal_px, d) for d in needed}))
             time.sleep(PAUSE_S)
+
+
+class Prefetches:
+    """The prefetches of one owner, who cancels them together. Safe to share between threads."""
+
+    def __init__(self) -> None:
+        self._started: list[Prefetch] = []
+        self._cancelled = False
+        self._lock = threading.Lock()
+
+    def start(self, start: Callable[[], Prefetch]) -> None:
+        """Start a prefetch. If ``cancel`` has been called, the prefetch is cancelled immediately.
+
+        This call blocks while it reads the table of tiles. It may thus run in a thread whose caller is cancelled in the meantime.
+        """
+        prefetch = start()
+        with self._lock:
+            self._started.append(prefetch)
+            if self._cancelled:
+                prefetch.cancel()
+
+    def cancel(self) -> None:
+        """Stop reading pictures in the background, now and for prefetches that start later."""
+        with self._lock:
+            self._cancelled = True
+            for prefetch in self._started:
+                prefetch.cancel()
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait until the threads have ended, each for at most ``timeout_s`` seconds.
+
+        Raises:
+            PackError: A file of a viewpoint is missing or damaged.
+        """
+        for prefetch in self._started:
+            prefetch.wait(timeout_s)

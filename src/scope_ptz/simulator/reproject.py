@@ -33,7 +33,7 @@ def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
 def id_view(viewpoint: Viewpoint, projection: Projection, part: Place | None = None) -> NDArray[np.uint16]:
     """Return the static world's (H, W) instance numbers in a view or a part of it; 0 where nothing is annotated."""
     atlas = viewpoint.id_atlas
-    return np.asarray(cv2.remap(atlas.sheet, view_map(viewpoint, atlas, projection, part), None, cv2.INTER_NEAREST))
+    return atlas.sample(view_map(viewpoint, atlas, projection, part))
 
 
 def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float32]:
@@ -67,4 +67,4 @@ def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[
     columns = slot.x + np.floor((pan_deg + 180.0) / 360.0 * slot.width).astype(int) % slot.width
     rows = slot.y + np.clip(np.floor(down * slot.height).astype(int), 0, slot.height - 1)
     metres = np.take(viewpoint.depth_metres, viewpoint.depth_atlas.sheet[rows, columns])
-    return metres, viewpoint.owner_atlas.sheet[rows, columns]
+    return metres, viewpoint.owner_atlas.at(rows, columns)

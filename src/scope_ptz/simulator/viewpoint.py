@@ -22,6 +22,7 @@ from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.atlas import Atlas, Scale, SheetCache
+from scope_ptz.simulator.sheets.numbers import NumberAtlas, NumberCodes
 from scope_ptz.simulator.sheets.picture_cache import PictureCache
 from scope_ptz.simulator.sprites.choice import SpriteChoice
 from scope_ptz.simulator.sprites.store import SpriteStore
@@ -111,11 +112,12 @@ class Viewpoint:
             disk_cache=sheet_cache("colour", colours),
         )
         decode = layers.decode_numbers
-        self.id_atlas = id_atlas = Atlas(
+        largest_first = sorted(manifest.extents, key=lambda extent: (-extent.solid_angle_sr, extent.number))
+        codes = NumberCodes(extent.number for extent in largest_first)
+        self.id_atlas = id_atlas = NumberAtlas(
             [_size(n) for n in ids],
             lambda _, i: read.coded_numbers(ids[i]),
-            np.uint16,
-            1,
+            codes,
             decode=decode,
             disk_cache=sheet_cache("ids", ids),
         )
@@ -123,7 +125,7 @@ class Viewpoint:
         self.depth_atlas = Atlas(
             size, lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode, disk_cache=sheet_cache("depth", depths)
         )
-        self.owner_atlas = Atlas(size, lambda *_: _owners(id_atlas, depth), np.uint16, 1, disk_cache=sheet_cache("owners", depths))
+        self.owner_atlas = NumberAtlas(size, lambda *_: _owners(id_atlas, depth), codes, disk_cache=sheet_cache("owners", depths))
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -201,12 +203,12 @@ def _detail_outlines(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.fl
     return outlines
 
 
-def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
+def _owners(ids: NumberAtlas, depth: Layer) -> NDArray[np.uint16]:
     """Return, for each texel of the depth layer, the instance on which its distance was measured."""
     slot = ids.ensure(0)
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
-    return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
+    return ids.at(rows[:, None], columns)
 
 
 def _source(folder: Path) -> str:

@@ -11,6 +11,7 @@ from urllib.parse import quote, urlsplit
 
 import httpx2
 
+from scope_ptz.camera.guard.guarded import KeepOutError
 from scope_ptz.endpoints.events import EventParser
 from scope_ptz.errors import (
     CameraError,
@@ -40,6 +41,7 @@ _ERRORS: Mapping[str, type[ScopeError]] = {
     "cannot_be_written": OutputError,
     "not_stored": TraceError,
     "perception_failed": PerceptionError,
+    "kept_out": KeepOutError,
 }
 """Exceptions by error code of the API. Except for ``unknown``, codes that are not listed raise ``CameraError``."""
 

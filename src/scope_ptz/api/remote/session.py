@@ -20,6 +20,7 @@ from scope_ptz.api.options import ServedModels, SessionOptions
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection, RemoteNameError
 from scope_ptz.api.run import Event, Run, event_of
+from scope_ptz.camera.guard.guarded import KeepOutError
 from scope_ptz.errors import CameraError, InputError, PerceptionError, PlannerError, ScopeError, ToolCallError
 from scope_ptz.perception.no_perception import NoPerception
 from scope_ptz.planner.base import Decision, Planner, State
@@ -146,7 +147,8 @@ class RemoteSession(AsyncScope):
             if reply["error"] is not None:
                 if reply["fault"] == "bad_call" and name == "go_to_preset":
                     raise RemoteNameError(reply["error"])
-                raise _FAULTS.get(str(reply["fault"]), CameraError)(reply["error"])
+                kept_out = reply.get("code") == "kept_out"  # servers before 0.2.0 send no code
+                raise (KeepOutError if kept_out else _FAULTS.get(str(reply["fault"]), CameraError))(reply["error"])
             result = TOOLS[name].result_type().model_validate(reply["result"])
             assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
             if (file := getattr(result, "file", None)) is not None:

@@ -50,6 +50,10 @@ class CameraWrapper(Camera):
             async for frame in stream:
                 yield frame
 
+    @property
+    def frames_problem(self) -> str:
+        return self.inner.frames_problem
+
     async def stop(self) -> None:
         await self.inner.stop()
 

@@ -151,6 +151,10 @@ class NetworkCamera(Camera):
             with anyio.CancelScope(shield=True):
                 await stream.aclose()
 
+    @property
+    def frames_problem(self) -> str:
+        return self._pictures.problem
+
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)
         if not self._info.capabilities.drives:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import AsyncGenerator, Awaitable, Callable
+from contextlib import aclosing
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -11,10 +12,11 @@ import anyio
 
 from scope_ptz.camera.base import CameraInfo, Frame
 from scope_ptz.camera.network.errors import PictureError
+from scope_ptz.camera.network.live_frames import FROZEN_PATIENCE_S, LiveFrames, frame_of
 from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, is_black
-from scope_ptz.camera.network.pose_track import PosePoller, PoseTrack
+from scope_ptz.camera.network.pose_track import PoseTrack
 from scope_ptz.camera.network.streams import LiveStream
-from scope_ptz.geometry import Perspective, Pose
+from scope_ptz.geometry import Pose
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,9 +26,6 @@ if TYPE_CHECKING:
 
 RETRIES = 3
 """Maximum number of times that a damaged snapshot is retaken."""
-
-FROZEN_PATIENCE_S = 2.0
-"""Seconds that the picture may lag behind the motors, for example because the encoder freezes it during a move."""
 
 
 class DevicePictures(ABC):
@@ -43,6 +42,7 @@ class DevicePictures(ABC):
         self.width, self.height = width, height
         self._small, self._latency_s = small, latency_s
         self._frozen, self._frozen_small = FrozenCheck(), FrozenCheck()
+        self._live: list[LiveFrames] = []
 
     @abstractmethod
     async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
@@ -76,7 +76,7 @@ class DevicePictures(ABC):
             pose = track.at(exposed_s)
             check_not_black(image)
             if not self._frozen.lags(data, pose, give_up_s):
-                return _frame(image, pose, info, asked_at + exposed_s - asked_s)
+                return frame_of(image, pose, info, asked_at + exposed_s - asked_s)
             await anyio.sleep(0.1)
 
     async def settling_picture(self, pose: Pose) -> NDArray[np.uint8]:
@@ -96,32 +96,24 @@ class DevicePictures(ABC):
     async def live(
         self, rate_hz: float, read_pose: Callable[[], Awaitable[Pose]], info: CameraInfo, clock: Clock
     ) -> AsyncGenerator[Frame]:
-        """Yield live frames with the pose at exposure.
+        """Yield live frames with the pose at exposure. A short outage of the device interrupts them, but does not end them.
 
         Raises:
             CameraError: The stream is lost, or its pictures are damaged, black or frozen.
         """
-        offset_s = clock.now_s() - monotonic()
-        stream, poses, frozen = self.open_stream(rate_hz), PosePoller(read_pose), FrozenCheck()
-        due_s, give_up_s = float("-inf"), monotonic() + FROZEN_PATIENCE_S
+        live = LiveFrames(self.open_stream(rate_hz), read_pose, info, clock, self._latency_s)
+        self._live.append(live)
         try:
-            while True:
-                await anyio.sleep(max(0.0, due_s - monotonic()))
-                picture = await stream.next()
-                exposed_s = picture.arrived_s - self._latency_s
-                pose = await poses.at(exposed_s)
-                if pose is None:
-                    continue  # exposed before the stream was opened
-                check_not_black(picture.image)
-                if frozen.lags(picture.data, pose, give_up_s):
-                    continue
-                due_s = max(due_s + 1.0 / rate_hz, monotonic())
-                yield _frame(picture.image, pose, info, exposed_s + offset_s)
-                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from when the consumer asks for the next frame
+            async with aclosing(live.frames(rate_hz)) as frames:
+                async for frame in frames:
+                    yield frame
         finally:
-            with anyio.CancelScope(shield=True):
-                await poses.close()
-                await stream.close()
+            self._live.remove(live)
+
+    @property
+    def problem(self) -> str:
+        """Why the live frames are interrupted; empty while they arrive."""
+        return next((live.problem for live in self._live if live.problem), "")
 
     async def _take(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
         """Take a snapshot. A damaged snapshot is retaken."""
@@ -133,10 +125,3 @@ class DevicePictures(ABC):
                     raise
                 await anyio.sleep(0.1)
         raise AssertionError("the last attempt returns or raises")
-
-
-def _frame(image: NDArray[np.uint8], pose: Pose, info: CameraInfo, time_s: float) -> Frame:
-    hfov_deg = info.optics.hfov_deg(pose.zoom)
-    height, width = image.shape[:2]
-    view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, width, height)
-    return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view)

@@ -9,6 +9,8 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from time import monotonic
 
+from scope_ptz.camera.network.errors import CameraTimeoutError, CameraUnreachableError
+from scope_ptz.camera.network.streams import GIVE_UP_S
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 MAX_SAMPLES = 128
@@ -16,6 +18,9 @@ MAX_SAMPLES = 128
 
 POLL_S = 0.05
 """Seconds between two readings. At 400 degrees/s², linear interpolation between them is off by at most 0.13 degrees."""
+
+RETRY_S = 0.25
+"""Seconds before the next reading while the device cannot be reached."""
 
 
 class PoseTrack:
@@ -38,6 +43,10 @@ class PoseTrack:
         """Add a reading. It is ignored unless it is newer than the newest one."""
         if time_s > self.newest_s:
             self._samples.append((time_s, pose))
+
+    def clear(self) -> None:
+        """Forget all readings. After an outage, nobody knows how the camera moved in the meantime."""
+        self._samples.clear()
 
     def at(self, time_s: float) -> Pose:
         """Return the pose at a time, interpolated between readings. Outside the readings, return the nearest.
@@ -68,18 +77,25 @@ class PoseTrack:
 class PosePoller:
     """Reads the pose repeatedly while a stream is open. Close it with the stream.
 
+    If the device cannot be reached, the readings continue after the outage.
+
+    Attributes:
+        problem: Why the pose cannot be read at present; empty if it can.
+
     Args:
         read_pose: Reads the pose.
+        give_up_s: Seconds without a reading after which the device is lost.
     """
 
-    def __init__(self, read_pose: Callable[[], Awaitable[Pose]]) -> None:
-        self._read_pose, self._track = read_pose, PoseTrack()
+    def __init__(self, read_pose: Callable[[], Awaitable[Pose]], *, give_up_s: float = GIVE_UP_S) -> None:
+        self._read_pose, self._give_up_s, self._track = read_pose, give_up_s, PoseTrack()
+        self.problem = ""
         self._changed = asyncio.Event()
         self._failure: Exception | None = None
         self._task = asyncio.get_running_loop().create_task(self._poll())
 
     async def at(self, time_s: float) -> Pose | None:
-        """Return the pose at a time on ``time.monotonic``; None if the time is before the first reading.
+        """Return the pose at a time on ``time.monotonic``; None if it is before the first reading, or the first after an outage.
 
         Raises:
             CameraError: The pose cannot be read.
@@ -98,12 +114,22 @@ class PosePoller:
             await self._task
 
     async def _poll(self) -> None:
+        read_s = monotonic()
         try:
             while True:
                 before_s = monotonic()
-                pose = await self._read_pose()
+                try:
+                    pose = await self._read_pose()
+                except (CameraUnreachableError, CameraTimeoutError) as error:
+                    if monotonic() - read_s > self._give_up_s:
+                        raise
+                    self.problem = str(error)
+                    self._track.clear()
+                    await asyncio.sleep(RETRY_S)
+                    continue
+                self.problem, read_s = "", monotonic()
                 # The device reads its encoders somewhere between the request and the reply.
-                self._track.add((before_s + monotonic()) / 2, pose)
+                self._track.add((before_s + read_s) / 2, pose)
                 self._changed.set()
                 await asyncio.sleep(POLL_S)
         except Exception as error:  # any failure must reach the consumer of the stream

@@ -6,12 +6,17 @@ from collections.abc import Awaitable, Callable
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from scope_ptz.camera.network.errors import PictureError
-from scope_ptz.camera.network.streams import LivePicture, LiveStream
+import anyio
+
+from scope_ptz.camera.network.errors import CameraTimeoutError, CameraUnreachableError, PictureError
+from scope_ptz.camera.network.streams import GIVE_UP_S, LivePicture, LiveStream
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+RETRY_S = 0.25
+"""Seconds before the next snapshot while the device cannot be reached."""
 
 
 class SnapshotStream(LiveStream):
@@ -19,14 +24,23 @@ class SnapshotStream(LiveStream):
 
     Args:
         take: Takes a snapshot, and returns bytes that are identical for identical pictures, and the pixels.
+        give_up_s: Seconds without a picture after which the stream is lost.
     """
 
-    def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]]) -> None:
-        self._take = take
+    def __init__(self, take: Callable[[], Awaitable[tuple[bytes, NDArray[np.uint8]]]], *, give_up_s: float = GIVE_UP_S) -> None:
+        self._take, self._give_up_s = take, give_up_s
 
     async def next(self) -> LivePicture:
-        data, image = await self._take()
-        return LivePicture(image, data, monotonic())
+        asked_s = monotonic()
+        while True:
+            try:
+                data, image = await self._take()
+            except (CameraUnreachableError, CameraTimeoutError):
+                if monotonic() - asked_s > self._give_up_s:
+                    raise
+                await anyio.sleep(RETRY_S)
+            else:
+                return LivePicture(image, data, monotonic())
 
     async def close(self) -> None:
         """Do nothing, because nothing is open between snapshots."""

@@ -131,6 +131,8 @@ async def serve_virtual_cameras(
     Raises:
         ConfigError: A package is missing, a port is in use, or a camera without accounts would be open to the network.
     """
+    from scope_ptz.simulator.prefetch import Prefetches
+
     try:
         from scope_ptz.virtual_camera.http.certificate import create_certificate
         from scope_ptz.virtual_camera.http.server import listen, serve
@@ -165,9 +167,8 @@ async def serve_virtual_cameras(
                 await stack.enter_async_context(serve_discovery(discoverable_cameras, host=options.host))
             except ConfigError as error:  # the cameras can be used without discovery
                 logger.warning("%s", error)
-        prefetches = [await to_thread.run_sync(device.prefetch) for device in devices] if options.prefetch else []
-        try:
-            yield cameras
-        finally:
-            for prefetch in prefetches:
-                prefetch.cancel()
+        prefetches = Prefetches()
+        stack.callback(prefetches.cancel)
+        for device in devices if options.prefetch else ():
+            await to_thread.run_sync(prefetches.start, device.prefetch)
+        yield cameras

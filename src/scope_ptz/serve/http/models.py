@@ -361,14 +361,15 @@ class PictureModel(BaseModel):
 class ToolReply(BaseModel):
     """The outcome of a tool call.
 
-    Either ``result`` or ``error`` is set. ``fault`` names the component that failed, if one did. ``run`` is the id under which the
-    call is stored, and ``pose`` the camera's pose after the call.
+    Either ``result`` or ``error`` is set. ``fault`` names the component that failed, if one did, and ``code`` is the code of the
+    error, for example ``kept_out``. ``run`` is the id under which the call is stored, and ``pose`` is the camera's pose after it.
     """
 
     run: str
     result: dict[str, Any] | None
     error: str | None
     fault: str | None
+    code: str | None
     pose: PoseModel
 
 

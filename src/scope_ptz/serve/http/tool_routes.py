@@ -11,6 +11,7 @@ from pydantic import Field, ValidationError
 from scope_ptz.serve.http.dependencies import Operator, SiteDep, StationDep, Viewer
 from scope_ptz.serve.http.errors import responses
 from scope_ptz.serve.http.models import PoseModel, ToolReply
+from scope_ptz.serve.site.error_codes import status_of
 from scope_ptz.serve.site.start_runs import finished_call, start_tool_call
 from scope_ptz.tools.registry import TOOLS, schemas
 from scope_ptz.tools.tool import Tool
@@ -40,9 +41,14 @@ def _add(tool: Tool) -> None:
         handle = await start_tool_call(site, client, station, tool.name, given, pair)
         await handle.done.wait()
         called = finished_call(handle)
-        outcome = called.outcome
+        outcome, error = called.outcome, handle.call_error
         return ToolReply(
-            run=handle.id, result=outcome.result, error=outcome.error, fault=called.fault, pose=PoseModel.of(called.pose.pose())
+            run=handle.id,
+            result=outcome.result,
+            error=outcome.error,
+            fault=called.fault,
+            code=None if error is None or outcome.error is None else status_of(error)[1],
+            pose=PoseModel.of(called.pose.pose()),
         )
 
     summary = (arguments.__doc__ or tool.name).strip().splitlines()[0]
@@ -52,7 +58,7 @@ def _add(tool: Tool) -> None:
         methods=["POST"],
         name=tool.name,
         operation_id=f"call_{tool.name}",
-        description=f"{summary}\n\nA failed call is reported in `error` and `fault`. Each call is stored as a run of one step.",
+        description=f"{summary}\n\nA failure is stated in `error`, `fault` and `code`. Each call is stored as a run of one step.",
         responses=responses(404, 409, 503),
         openapi_extra={"requestBody": body},
     )

@@ -21,6 +21,7 @@ RATE_HZ = 25.0
 JPEG_QUALITY = 80
 MAX_AGE_S = 5.0  # maximum age of a frame; limits the error if a clock is set forward between exposure and arrival
 RETRY_S = 1.0  # pause before the next attempt after a camera failure
+CHECK_S = 0.25  # seconds between two checks whether the camera's frames are interrupted
 
 logger = logging.getLogger(__name__)
 
@@ -96,7 +97,7 @@ class LivePicture:
             await self._watched.wait()
             try:
                 camera = await self._camera()
-                async with aclosing(camera.frames(rate_hz=self._rate_hz)) as frames:
+                async with self._reporting_interruptions(camera), aclosing(camera.frames(rate_hz=self._rate_hz)) as frames:
                     async for frame in frames:
                         number += 1
                         self.problem = ""
@@ -108,6 +109,25 @@ class LivePicture:
                 logger.warning("The live picture of %s failed; retrying: %s", self._name, error)
                 self._wake()
                 await anyio.sleep(RETRY_S)
+
+    @asynccontextmanager
+    async def _reporting_interruptions(self, camera: Camera) -> AsyncIterator[None]:
+        """Return a context in which clients are told why frames do not arrive, although the camera's stream continues."""
+
+        async def report() -> None:
+            while True:
+                await anyio.sleep(CHECK_S)
+                problem = camera.frames_problem
+                if problem and not self.problem:
+                    self.problem = problem
+                    logger.warning("The live picture of %s is interrupted: %s", self._name, problem)
+                    self._wake()
+
+        task = asyncio.create_task(report())
+        try:
+            yield
+        finally:
+            task.cancel()
 
     @asynccontextmanager
     async def watch(self) -> AsyncIterator[AsyncIterator[LiveFrame | None]]:

@@ -32,6 +32,7 @@ class RunHandle:
         records: The records so far.
         scope: The cancel scope in which the run is executed.
         failure: The error that kept the run from starting or finishing; None if there is none.
+        call_error: The error of the last tool call that failed; None if none failed.
         done: Set when the run has ended and no more records will come.
     """
 
@@ -41,6 +42,7 @@ class RunHandle:
         self.records: list[Record] = []
         self.scope = anyio.CancelScope()
         self.failure: Exception | None = None
+        self.call_error: Exception | None = None
         self._changed = anyio.Event()
         self.done = anyio.Event()
 

@@ -10,6 +10,7 @@ from typing import Any
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, RunLabels
 from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.tool_calls import RunTool
 from scope_ptz.agent.trace import TraceWriter
 from scope_ptz.camera.base import Camera
 from scope_ptz.camera.guard.dry_run import DryRunCamera
@@ -25,6 +26,9 @@ from scope_ptz.serve.site.station import Station
 from scope_ptz.serve.site.tool_call_planner import SingleCallPlanner, call_text
 from scope_ptz.store.request_file import RunRequest
 from scope_ptz.store.rows import RunKind
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.registry import TOOLS
+from scope_ptz.tools.results import Result
 
 MAX_FINISHED = 50
 """Maximum number of ended runs that are kept in memory. Older ones are read from their folders."""
@@ -156,6 +160,7 @@ class Runner:
             budgets=self._budgets,
             labels=labels,
             snapshots=task.snapshots,
+            run_tool=_recording_errors(handle),
         )
         with TraceWriter(folder.trace) as trace:
 
@@ -168,3 +173,16 @@ class Runner:
             result = await agent.run(task.instruction, conversation=conversation, listener=listen)
         if task.conversation is not None and task.kind == "instruction":
             await self._journal.add_turn(task.conversation, result.past_turn())
+
+
+def _recording_errors(handle: RunHandle) -> RunTool:
+    """Return a function that runs tool calls, and records the error of a call in a run's handle."""
+
+    async def run(context: ToolContext, name: str, arguments: Any) -> Result:
+        try:
+            return await TOOLS.run(context, name, arguments)
+        except Exception as error:
+            handle.call_error = error
+            raise
+
+    return run

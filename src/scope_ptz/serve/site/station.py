@@ -26,7 +26,7 @@ from scope_ptz.serve.site.errors import BusyError
 from scope_ptz.serve.site.live_picture import LivePicture
 from scope_ptz.serve.site.pairs import Models, Pairs
 from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.simulator.prefetch import Prefetch
+from scope_ptz.simulator.prefetch import Prefetches
 
 MAX_UNDO = 50
 """Maximum number of earlier positions to which ``undo`` can return, one after the other."""
@@ -74,7 +74,7 @@ class Station:
         self.name = name
         self.spec, self._pairs, self._actor, self._idle = spec, pairs, actor, idle
         self._opened: OpenCamera | None = None
-        self._prefetch: Prefetch | None = None
+        self._prefetches = Prefetches()
         self._opening = asyncio.Lock()
         self._models: dict[str, Models] = {}
         self._places: deque[Place] = deque(maxlen=MAX_UNDO)
@@ -108,7 +108,7 @@ class Station:
                     raise
                 self.problem = None
                 if isinstance(camera := innermost(self._opened.camera), SimulatedCamera):
-                    self._prefetch = await to_thread.run_sync(camera.prefetch)  # it reads the table of tiles
+                    await to_thread.run_sync(self._prefetches.start, camera.prefetch)
             return self._opened
 
     async def camera(self) -> Camera:
@@ -235,8 +235,7 @@ class Station:
 
     def cancel_prefetch(self) -> None:
         """Stop reading pictures in the background."""
-        if self._prefetch is not None:
-            self._prefetch.cancel()
+        self._prefetches.cancel()
 
     async def close(self) -> None:
         """Stop and close the camera, and close the connections to models."""
@@ -249,11 +248,10 @@ class Station:
             with suppress(CameraError):
                 await opened.camera.stop()
             await opened.aclose()
-        if self._prefetch is not None:
-            # A thread that is still running when the interpreter exits would crash the program.
-            self.cancel_prefetch()
-            with suppress(PackError, OSError):
-                await to_thread.run_sync(self._prefetch.wait, PREFETCH_TIMEOUT_S)
+        # A thread that is still running when the interpreter exits would crash the program.
+        self.cancel_prefetch()
+        with suppress(PackError, OSError):
+            await to_thread.run_sync(self._prefetches.wait, PREFETCH_TIMEOUT_S)
 
     async def viewpoint(self) -> str | None:
         """Return the viewpoint of a simulated camera; None for others."""

@@ -89,7 +89,9 @@ class Atlas:
         self._ready: set[tuple[int, int]] = set()
         self._lock = RLock()
         self._tile_bytes = tile_bytes if CAN_RELEASE else None
-        shape = (height, width, channels) if channels > 1 else (height, width)
+        self._size = width, height
+        rows = self._rows(width, height)
+        shape = (rows, width, channels) if channels > 1 else (rows, width)
         self._disk_cache = None if self._tile_bytes is not None else disk_cache
         self._cached = self._disk_cache.open(self.slots, shape, dtype) if self._disk_cache is not None else None
         self._memory: ReleasableArray | None = None
@@ -102,6 +104,10 @@ class Atlas:
         self._clock = 0
         self._last_used: dict[int, int] = {}  # keyed by shelf; contains only the shelves of tiles that are in use
         self._readers: list[int] = []
+
+    def _rows(self, width: int, height: int) -> int:  # noqa: ARG002 - for subclasses
+        """Return the number of rows for which memory is reserved. Subclasses may store more below the sheet."""
+        return height
 
     @property
     def unlimited(self) -> bool:

@@ -1,0 +1,155 @@
+"""Sheets of instance numbers that take one byte per pixel instead of two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import islice
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.simulator.sheets.atlas import STRIP_PX, Atlas, SheetCache
+from scope_ptz.simulator.sheets.layout import BORDER_PX, Size, Slot
+
+RARE = 255
+"""The code of every number that has no code of its own."""
+
+BLOCK_HEIGHT_PX, BLOCK_WIDTH_PX = 32, 64
+"""Size of a block of ``SparseNumbers``: 4096 bytes, at two bytes per pixel."""
+
+Numbers = NDArray[np.uint16]
+Indices = NDArray[np.integer]
+
+
+class NumberCodes:
+    """One-byte codes for the most common numbers of a viewpoint.
+
+    Args:
+        common: Distinct numbers, the most common first. The first 254 from 1 to 65535 get codes from 1 to 254; 0 has the code 0.
+    """
+
+    def __init__(self, common: Iterable[int]) -> None:
+        self._numbers = np.zeros(256, np.uint16)
+        self._codes = np.full(65536, RARE, np.uint8)
+        self._codes[0] = 0
+        valid = (number for number in common if 0 < number < len(self._codes))
+        for code, number in enumerate(islice(valid, RARE - 1), start=1):
+            self._numbers[code], self._codes[number] = number, code
+
+    def encode(self, numbers: Numbers) -> NDArray[np.uint8]:
+        """Return the codes of numbers, ``RARE`` where a number has none."""
+        return np.asarray(np.take(self._codes, numbers))
+
+    def decode(self, codes: NDArray[np.uint8]) -> Numbers:
+        """Return the numbers of codes, in an array of the same shape; any number where the code is ``RARE``."""
+        if not codes.size:
+            return np.zeros(codes.shape, np.uint16)
+        return np.asarray(cv2.LUT(codes, self._numbers), np.uint16).reshape(codes.shape)
+
+
+class SparseNumbers:
+    """Numbers of a few pixels of a sheet. Memory is taken only around these pixels.
+
+    The pixels are stored in blocks of the size of a memory page. In rows, almost every page would contain one of them.
+
+    Args:
+        memory: An empty array of bytes, at least ``bytes_for(shape)`` long.
+        shape: Height and width of the sheet.
+    """
+
+    def __init__(self, memory: NDArray[np.uint8], shape: tuple[int, int]) -> None:
+        size = self.bytes_for(shape)
+        self._blocks_per_row = -(-shape[1] // BLOCK_WIDTH_PX)
+        self._numbers: Numbers = memory.reshape(-1)[:size].view(np.uint16)
+
+    @staticmethod
+    def bytes_for(shape: tuple[int, int]) -> int:
+        """Return the number of bytes that the numbers of all pixels of a sheet would take."""
+        return 2 * -(-shape[0] // BLOCK_HEIGHT_PX) * -(-shape[1] // BLOCK_WIDTH_PX) * BLOCK_HEIGHT_PX * BLOCK_WIDTH_PX
+
+    def write(self, rows: Indices, columns: Indices, numbers: Numbers) -> None:
+        """Store the numbers of pixels."""
+        self._numbers[self._places(rows, columns)] = numbers
+
+    def read(self, rows: Indices, columns: Indices) -> Numbers:
+        """Return the numbers of pixels that were written."""
+        return self._numbers[self._places(rows, columns)]
+
+    def _places(self, rows: Indices, columns: Indices) -> Indices:
+        row, y = np.divmod(rows, BLOCK_HEIGHT_PX)
+        column, x = np.divmod(columns, BLOCK_WIDTH_PX)
+        return ((row * self._blocks_per_row + column) * BLOCK_HEIGHT_PX + y) * BLOCK_WIDTH_PX + x
+
+
+class NumberAtlas(Atlas):
+    """An atlas of numbers. Its sheet contains their codes; the numbers without a code are stored separately.
+
+    Args:
+        sizes: As in ``Atlas``.
+        load: As in ``Atlas``.
+        codes: The codes of the viewpoint's numbers.
+        decode: Converts rows of a loaded picture to numbers; by default, they are used unchanged.
+        disk_cache: As in ``Atlas``.
+    """
+
+    def __init__(
+        self,
+        sizes: Sequence[Size],
+        load: Callable[[Atlas, int], NDArray[Any]],
+        codes: NumberCodes,
+        *,
+        decode: Callable[[NDArray[Any]], Numbers] | None = None,
+        disk_cache: SheetCache | None = None,
+    ) -> None:
+        super().__init__(sizes, load, np.uint8, 1, decode=decode, disk_cache=disk_cache)
+        self._codes = codes
+        memory, height = self.sheet, self._size[1]
+        self.sheet = memory[:height]
+        self._rare = SparseNumbers(memory[height:], (height, memory.shape[1]))
+
+    def _rows(self, width: int, height: int) -> int:
+        # The numbers without a code begin below the sheet, in rows of their own.
+        return height - (-SparseNumbers.bytes_for((height, width)) // width)
+
+    def sample(self, positions: NDArray[Any]) -> Numbers:
+        """Return the (h, w) numbers of the pixels nearest to (h, w, 2) positions on the sheet."""
+        codes = np.asarray(cv2.remap(self.sheet, positions, None, cv2.INTER_NEAREST), np.uint8)
+        numbers = self._codes.decode(codes)
+        rare = codes == RARE
+        if rare.any():
+            x, y = np.rint(positions[rare]).astype(np.int64).T  # rounded as in ``cv2.remap``
+            numbers[rare] = self._rare.read(y, x)
+        return numbers
+
+    def at(self, rows: Indices, columns: Indices) -> Numbers:
+        """Return the numbers of the pixels in rows and columns of the sheet, which are broadcast."""
+        codes = self.sheet[rows, columns]
+        numbers = self._codes.decode(codes)
+        rare = codes == RARE
+        if rare.any():
+            y, x = (np.broadcast_to(indices, codes.shape)[rare] for indices in (rows, columns))
+            numbers[rare] = self._rare.read(y, x)
+        return numbers
+
+    def _fill(self, slot: Slot, picture: NDArray[Any], sharpening: float, index: int) -> None:  # noqa: ARG002 - numbers stay exact
+        border = BORDER_PX
+        for top in range(0, slot.height, STRIP_PX):
+            strip = picture[top : top + STRIP_PX]
+            numbers = strip if self._decode is None else self._decode(strip)
+            beside = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
+            numbers = cv2.copyMakeBorder(numbers, 0, 0, border, border, beside)
+            y = slot.y + top
+            self._write(y, slot.x - border, numbers)
+            if top == 0:
+                self._write(y - border, slot.x - border, np.repeat(numbers[:1], border, axis=0))
+            if top + len(numbers) == slot.height:
+                self._write(y + len(numbers), slot.x - border, np.repeat(numbers[-1:], border, axis=0))
+
+    def _write(self, y: int, x: int, numbers: Numbers) -> None:
+        """Write numbers to the part of the sheet that starts at row ``y`` and column ``x``."""
+        codes = self._codes.encode(numbers)
+        self.sheet[y : y + codes.shape[0], x : x + codes.shape[1]] = codes
+        rows, columns = np.nonzero(codes == RARE)
+        self._rare.write(rows + y, columns + x, numbers[rows, columns])
