@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from anyio import to_thread
 
+from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PackError, PerceptionError, UnknownNameError
@@ -111,10 +112,16 @@ class GroundTruthPerception(Perception):
     def _find(self, frame: Frame, description: str) -> list[Thing]:
         from scope_ptz.perception.ground_truth.language import parse_description
         from scope_ptz.perception.ground_truth.thing_search import find
+        from scope_ptz.perception.ground_truth.unknown_words import unknown_nouns
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
-        return find(self.view(frame, description), parse_description(description))
+        view, parsed = self.view(frame, description), parse_description(description)
+        things = find(view, parsed)
+        if not things and (unknown := unknown_nouns(view, parsed)):
+            quoted = english.listing([f"'{words}'" for words in unknown])
+            raise PerceptionError(f"I did not understand {quoted} in the description. Name a kind of thing.")
+        return things
 
 
 def _ids(things: list[Thing]) -> str:

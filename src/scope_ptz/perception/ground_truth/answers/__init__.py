@@ -63,4 +63,4 @@ def answer(view: View, question: tree.Question | None) -> AnswerText:
         case tree.Happening():
             return happening(view)
         case None:
-            return unknown("I cannot tell: I can only answer about what is visible in the picture")
+            return unknown("I cannot tell: I did not understand the question")

@@ -51,6 +51,10 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
+_LOOKS = (ast.Count, ast.Ask, ast.Read, ast.ZoomTo, ast.If, ast.Loop, ast.AtPlaces, ast.WhichPreset, ast.FirstWith, ast.Compare, ast.Track, ast.Snap)
+"""Steps that can find something, to which "if so" can refer."""
+
+
 class UnresolvedError(Exception):
     """A name cannot be resolved. The message is the question to ask the user."""
 
@@ -117,6 +121,7 @@ class Resolver:
         compared: Whether an earlier step compares presets.
         counted: Whether an earlier step counts something.
         whole_scene: Whether questions are about the whole scene instead of the current view.
+        looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
     """
 
     presets: tuple[str, ...] | None
@@ -126,6 +131,7 @@ class Resolver:
     compared: bool = False
     counted: bool = False
     whole_scene: bool = False
+    looked: bool = False
 
     def __post_init__(self) -> None:
         for turn in self.conversation:
@@ -145,6 +151,7 @@ class Resolver:
         out: list[ast.Step] = []
         for step in steps:
             bound = self._bind(self._completed(step, out))
+            self.looked = self.looked or isinstance(step, _LOOKS)
             again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
             out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
@@ -224,14 +231,14 @@ class Resolver:
         if isinstance(step, ast.Sweep):
             self.whole_scene = True
             return [step]
-        if isinstance(step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
+        if isinstance(step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset | ast.FirstWith):
             self.whole_scene = False
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]
 
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
-        preset = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
+        preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
         if step.how == "look" and not ref.explicit:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.explicit and preset is None:
@@ -358,6 +365,7 @@ class Resolver:
                 self.antecedent = inner.thing.text
                 break
         condition = self.condition(step.condition)
+        self.looked = True
         return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
 
     def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
@@ -373,6 +381,10 @@ class Resolver:
         return out
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
+        self.compared = True
+        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+
+    def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
         self.compared = True
         return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
 
@@ -399,6 +411,8 @@ class Resolver:
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
         if isinstance(condition, ast.Answered):
+            if not self.looked:
+                raise UnresolvedError("What does 'if so' refer to? Please name what I shall look for first.")
             return condition
         if isinstance(condition, ast.PresetOutnumbers):
             places = self.place(condition.first), self.place(condition.second)
