@@ -355,7 +355,13 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Forbid:
-    """An instruction not to do something ("do not move")."""
+    """An instruction not to do something.
+
+    Attributes:
+        any_move: Whether the camera must not move at all ("without moving").
+    """
+
+    any_move: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 
 _SPECIFIC: tuple[type[Any], ...] = (
     tree.CompareCount, tree.Compare, tree.Which, tree.HowFar, tree.MostCommon, tree.TextExists, tree.Read, tree.IsA, tree.Where,
-    tree.Count, tree.CountKinds, tree.Happening,
+    tree.Count, tree.CountKinds, tree.Happening, tree.Quarter, tree.InOrder,
 )  # fmt: skip
 """Specific question types, which are preferred to the general ones."""
 

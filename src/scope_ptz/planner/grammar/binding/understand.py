@@ -13,6 +13,7 @@ from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.binding.unparsed import unparsed_phrases
 from scope_ptz.planner.grammar.consistency.check import not_understood, objection
 from scope_ptz.planner.grammar.lexing.corrections import corrected
+from scope_ptz.planner.grammar.lexing.settings_first import with_settings_first
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, parse
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
     preset_names = None if presets is None else tuple(presets)
-    instruction = corrected(instruction, preset_names or ())
+    instruction = with_settings_first(corrected(instruction, preset_names or ()))
     resolver = Resolver(preset_names, tuple(conversation))
     steps = parse(instruction, preset_names or ()).steps
     try:

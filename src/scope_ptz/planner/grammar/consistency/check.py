@@ -19,6 +19,7 @@ from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_commands
 from scope_ptz.planner.grammar.consistency.words import Word, words_of
 from scope_ptz.planner.grammar.lexing.lexer import preset_key
+_MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
 
 
 def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str] = ()) -> str | None:
@@ -33,6 +34,8 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     found = (swallowed_commands(text, is_thing=is_thing) for text, is_thing in evidence.texts.items())
     if swallowed := next(filter(None, found), None):
         return not_understood([swallowed])
+    if evidence.is_still and evidence.has(*_MOVES):
+        return "You ask me not to move, and to do something for which the camera must move. Which of the two shall I do?"
     words = words_of(instruction)
     _mark_described(words, evidence)
     _mark_presets(words, evidence)

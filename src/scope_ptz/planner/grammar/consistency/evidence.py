@@ -25,6 +25,7 @@ class Evidence:
         steps: The types of all steps and conditions.
         axes: The axes that move: "pan", "tilt" and "zoom".
         texts: Descriptions and questions, each with whether it is a description.
+        is_still: Whether the instruction says not to move.
     """
 
     numbers: list[float] = field(default_factory=list)
@@ -35,6 +36,7 @@ class Evidence:
     steps: set[type[Any]] = field(default_factory=set)
     axes: set[str] = field(default_factory=set)
     texts: dict[str, bool] = field(default_factory=dict)
+    is_still: bool = False
 
     def has(self, *kinds: type[Any]) -> bool:
         """Return whether the plan has a step of one of the types."""
@@ -81,6 +83,8 @@ def _add(found: Evidence, node: Any) -> None:
             found.directions |= {word for (turned, _), word in _DIRECTIONS.items() if turned == axis}
         case ast.Zoom():
             _add_zoom(found, node)
+        case ast.Forbid(any_move=True):
+            found.is_still = True
         case ast.PresetRef(name=name):
             found.presets.add(name)
         case ast.Snap(times=times) | ast.Repeat(times=times):

@@ -10,7 +10,7 @@ import re
 _DIRECTION = r"(?:left|right|up|down|in|out|home|back|closer|wider|clockwise|anticlockwise)"
 _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
-_NO_NOUN_PHRASE = re.compile(r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where)\b.*", re.IGNORECASE)
+_NO_NOUN_PHRASE = re.compile(r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into)\b.*", re.IGNORECASE)
 _SWALLOWED = (
     re.compile(rf"(?:^|\b(?:and|then|but|or|to)\b|[,;.])\W*(?:then |please |also )*{_ANY_VERB} (?:the camera |it |back )*{_DIRECTION}\b.*", re.I),
     re.compile(rf"(?:^|\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*{_VERB}\b.*", re.I),

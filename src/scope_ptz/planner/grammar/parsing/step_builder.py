@@ -275,6 +275,9 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
     def forbidden(self, node: Node) -> Step:
         return Forbid()
 
+    def stay(self, node: Node) -> Step:
+        return Forbid(any_move=True)
+
     def done_again(self, node: Node) -> Step:
         return DoAgain(self.visit(node.branches()[0]), more=node.has("MORE"))
 
