@@ -2,8 +2,9 @@
 
     python -m benchmarks.plan_correctness [--show VERDICT] [--lot NAME]
 
-A wrong move is a plan that moves the camera otherwise than expected, with the first part of the moves among them. A wrong look is a plan
-with other counts or questions, and with the expected moves or none. Rows of the split ``held-out`` are counted apart and never shown.
+A wrong move is a plan that moves the camera otherwise than expected, or makes only the first part of the moves. A wrong look is a
+plan with other counts or questions, and with the expected moves or none. Rows of the split ``held-out`` are counted apart and never
+shown.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The lots of instructions with expected calls, and how a plan compares with them.
 
-A row of a lot states the instruction, the camera's presets, whether a plan is expected, and the calls of the plan. An expected text
-may be ``{"contains": [...]}``, which any text with these words fits. The expected call ``look`` fits a count or a question whose text
-fits ``about``. Rows of the split ``held-out`` are never used to develop the grammar, and are reported apart.
+A row of a lot states the instruction, the camera's presets, whether a plan is expected, and the calls of the plan. An expected
+text may be ``{"contains": [...]}``, which any text with these words fits. The expected call ``look`` fits a count or a question
+whose text fits ``about``. Rows of the split ``held-out`` are never used to develop the grammar, and are reported apart.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def verdict(row: Row, made: Plan) -> Verdict:
             return "wrong look"
     moves = [call for call in made.calls if call.name in _MOVES]
     expected_moves = [call for call in row.calls if call["name"] in _MOVES]
-    alike = not moves or len(moves) == len(expected_moves) and all(map(_moves_alike, expected_moves, moves))
+    alike = not moves or (len(moves) == len(expected_moves) and all(map(_moves_alike, expected_moves, moves)))
     return "wrong look" if alike else "wrong move"
 
 

@@ -102,7 +102,10 @@ def test_a_stated_turn_is_made_exactly_or_not_at_all(template: str, direction: s
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.sampled_from(["go to {}", "show me the {}", "take the camera to {}", "at {}, count the cars", "from {} take a photo"]), st.sampled_from(PRESETS))
+@given(
+    st.sampled_from(["go to {}", "show me the {}", "take the camera to {}", "at {}, count the cars", "from {} take a photo"]),
+    st.sampled_from(PRESETS),
+)
 def test_a_stated_preset_is_used_or_nothing_is(template: str, preset: str) -> None:
     made = plan(template.format(preset), PRESETS)
     assert moves(made) == [("go_to_preset", {"name": preset})] or not made.understood

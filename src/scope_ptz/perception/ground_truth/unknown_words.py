@@ -8,8 +8,8 @@ from typing import Any
 
 from scope_ptz import english
 from scope_ptz.english.grammar.common_nouns import is_common_noun
-from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.english.grammar.lexicon import nouns_in
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import FILLERS, IGNORABLE
 from scope_ptz.perception.ground_truth.view import View
 

@@ -9,9 +9,8 @@ from scope_ptz.planner.grammar.binding.understand import Understanding, understa
 from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.execution.program import Program
 
-
 GRAMMAR_VERSION = "2"
-"""Version of the plans, for traces and run cards. It is raised when the same instruction can get another plan. Version 1 had none."""
+"""Version of the plans, in traces and run cards. It is raised when an instruction can get another plan. Version 1 had no number."""
 
 
 class GrammarPlanner(Planner):

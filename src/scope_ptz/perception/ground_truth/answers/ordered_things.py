@@ -12,7 +12,8 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 
 _ENDS = {
     "left": ("left", "right"), "right": ("right", "left"), "top": ("top", "bottom"), "bottom": ("bottom", "top"),
-    "nearest": ("nearest", "furthest"), "furthest": ("furthest", "nearest"), "most": ("most", "fewest"), "fewest": ("fewest", "most"),
+    "nearest": ("nearest", "furthest"), "furthest": ("furthest", "nearest"),
+    "most": ("most", "fewest"), "fewest": ("fewest", "most"),
 }  # fmt: skip
 """The first and the last place of each order, in words."""
 

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 from lark import Token
 
-from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.english.grammar.lexicon import nouns_in
+from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.language.phrase_builder import (
     Children,
     Core,

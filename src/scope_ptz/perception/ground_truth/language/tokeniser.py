@@ -8,8 +8,8 @@ from importlib.resources import files
 from lark import Token
 
 from scope_ptz import english
-from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.perception.ground_truth.language.word_splitting import split
 
 _FRAME_WORDS = frozenset(

@@ -12,17 +12,20 @@ _LEAD = re.compile(
     re.IGNORECASE,
 )
 _IF_ANY = re.compile(
-    r",? (?:if|assuming|provided) (?:there (?:is|are) (?:one|any|some)|(?:you|i|we) (?:can )?see (?:one|any|it|them)|(?:it|one|any) is (?:there|visible|in view)|any|visible)"
+    r",? (?:if|assuming|provided) (?:there (?:is|are) (?:one|any|some)|(?:you|i|we) (?:can )?see (?:one|any|it|them)"
+    r"|(?:it|one|any) is (?:there|visible|in view)|any|visible)"
     r"(?=\W*$)",
     re.IGNORECASE,
 )
 _CLOSE_UP = re.compile(
-    r",? (?:(?:when|if|once|after|as) (?:you )?zoom(?:ed|ing)? in (?:on|onto) (?:it|them)(?: to read(?: it)?)?|seen from close up|from close up|up close)(?=\W*$)",
+    r",? (?:(?:when|if|once|after|as) (?:you )?zoom(?:ed|ing)? in (?:on|onto) (?:it|them)(?: to read(?: it)?)?"
+    r"|seen from close up|from close up|up close)(?=\W*$)",
     re.IGNORECASE,
 )
 _TRUE_THAT = re.compile(r"is it (?:true|the case|correct|right) that (.+)", re.IGNORECASE)
 _BEARER = re.compile(
-    r"(?:what|which|tell me what)\b.*?\b(?:does|do|on|of) (?:the|a|an) (?P<thing>.+?)(?: (?:say|says|read|reads|show|shows))?\W*", re.IGNORECASE
+    r"(?:what|which|tell me what)\b.*?\b(?:does|do|on|of) (?:the|a|an) (?P<thing>.+?)(?: (?:say|says|read|reads|show|shows))?\W*",
+    re.IGNORECASE,
 )
 
 

@@ -29,7 +29,8 @@ _EXISTENCE = re.compile(
     re.IGNORECASE,
 )
 _TWO_QUESTIONS = re.compile(
-    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?),? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
+    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?)"
+    r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
     re.IGNORECASE,
 )
 _WINNER = re.compile(
@@ -56,7 +57,20 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
-_LOOKS = (ast.Count, ast.Ask, ast.Read, ast.ZoomTo, ast.If, ast.Loop, ast.AtPlaces, ast.WhichPreset, ast.FirstWith, ast.Compare, ast.Track, ast.Snap)
+_LOOKS = (
+    ast.Count,
+    ast.Ask,
+    ast.Read,
+    ast.ZoomTo,
+    ast.If,
+    ast.Loop,
+    ast.AtPlaces,
+    ast.WhichPreset,
+    ast.FirstWith,
+    ast.Compare,
+    ast.Track,
+    ast.Snap,
+)
 """Steps that can find something, to which "if so" can refer."""
 
 
@@ -238,7 +252,9 @@ class Resolver:
         if isinstance(step, ast.Sweep):
             self.whole_scene = True
             return [step]
-        if isinstance(step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset | ast.FirstWith):
+        if isinstance(
+            step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset | ast.FirstWith
+        ):
             self.whole_scene = False
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
 
 _ASKS = re.compile(
-    r"(?:(?:and|so|ok|okay|please|hey|tell me|say|excuse me|sorry|now),? )*(?:what|which|who|whom|whose|where|when|why|how|is|are|was|were"
-    r"|isn't|aren't|do|does|did|doesn't|has|have|can you (?:see|tell|read|spot|make out)|could you (?:see|tell)|any|anyone|anybody"
-    r"|anything|at what|in what|in which|on which|at which|from which|does)\b",
+    r"(?:(?:and|so|ok|okay|please|hey|tell me|say|excuse me|sorry|now),? )*"
+    r"(?:what|which|who|whom|whose|where|when|why|how|is|are|was|were|isn't|aren't|do|does|did|doesn't|has|have|any|anyone|anybody"
+    r"|anything|can you (?:see|tell|read|spot|make out)|could you (?:see|tell)|(?:at|in|on) what|(?:in|on|at|from) which)\b",
     re.IGNORECASE,
 )
 """The pattern for the beginning of a question."""
@@ -52,7 +52,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
     preset_names = None if presets is None else tuple(presets)
-    instruction = with_settings_first(corrected(instruction, preset_names or ()))
+    if len(instruction) <= MAX_CHARS:
+        instruction = with_settings_first(corrected(instruction, preset_names or ()))
     resolver = Resolver(preset_names, tuple(conversation))
     steps = parse(instruction, preset_names or ()).steps
     try:

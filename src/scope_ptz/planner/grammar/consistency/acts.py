@@ -8,7 +8,9 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.evidence import Evidence
 from scope_ptz.planner.grammar.consistency.words import Word
 
-_PICTURES = frozenset({"photo", "photos", "photograph", "photographs", "picture", "pictures", "snapshot", "snapshots", "screenshot"})
+_PICTURES = frozenset(
+    {"photo", "photos", "photograph", "photographs", "picture", "pictures", "snapshot", "snapshots", "screenshot"}
+)
 _TAKING = frozenset({"take", "taking", "snap", "grab", "save", "capture", "shoot", "record", "store"})
 _TAKE_REACH = 4  # words between "take" and "picture"
 _TURNS = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt"}

@@ -38,9 +38,9 @@ _MOTION = frozenset({
 })  # fmt: skip
 _TOWARDS = frozenset({"at", "to", "towards", "toward", "on", "onto", "face"})
 _LOOSE = frozenset({
-    "increase", "raise", "boost", "back", "again", "same", "opposite", "reverse", "undo", "another", "further", "more", "minus", "negative", "repeat", "return",
-    "centre", "center", "level", "decrease", "reduce", "lessen", "other", "around", "round", "behind", "u", "i", "ahead", "straight",
-    "horizon", "twice", "retrace",
+    "increase", "raise", "boost", "back", "again", "same", "opposite", "reverse", "undo", "another", "further", "more", "minus",
+    "negative", "repeat", "return", "centre", "center", "level", "decrease", "reduce", "lessen", "other", "around", "round",
+    "behind", "u", "i", "ahead", "straight", "horizon", "twice", "retrace",
 })  # fmt: skip
 """Words with which a plan may move in a direction that is not named."""
 

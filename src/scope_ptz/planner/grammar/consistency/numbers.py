@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, pairwise
 
+from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.evidence import Evidence
 from scope_ptz.planner.grammar.consistency.words import Word
-from scope_ptz.english.grammar.numbers import read_number
 
 _TOLERANCE = 0.02
 _VAGUE = frozenset({"one", "couple", "zero"})  # "the one on the left", "a couple of degrees", "zero in on"

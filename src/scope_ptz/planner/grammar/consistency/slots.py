@@ -10,16 +10,26 @@ import re
 _DIRECTION = r"(?:left|right|up|down|in|out|home|back|closer|wider|clockwise|anticlockwise)"
 _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
-_NO_NOUN_PHRASE = re.compile(r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into)\b.*", re.IGNORECASE)
-_SWALLOWED = (
-    re.compile(rf"(?:^|\b(?:and|then|but|or|to)\b|[,;.])\W*(?:then |please |also )*{_ANY_VERB} (?:the camera |it |back )*{_DIRECTION}\b.*", re.I),
-    re.compile(rf"(?:^|\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*{_VERB}\b.*", re.I),
-    re.compile(r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*(?:take|snap|grab|save|capture) (?:a|an|the|one|two|another|\d+)? ?(?:\w+ )?(?:photo|picture|snapshot|screenshot|image|shot)s?\b.*", re.I),
-    re.compile(r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*(?:go|return|move|come|switch) (?:back )?(?:to )?(?:the )?(?:home|preset)\b.*", re.I),
-    re.compile(r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*", re.I),
-    re.compile(r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*", re.I),
-    re.compile(r"\b(?:otherwise|unless|if so|if not|if any)\b.*", re.I),
-)  # fmt: skip
+_NO_NOUN_PHRASE = re.compile(
+    r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into)\b.*", re.IGNORECASE
+)
+_JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
+"""The words that can begin another clause."""
+
+_PICTURE = r"(?:photo|picture|snapshot|screenshot|image|shot)s?\b"
+_SWALLOWED = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"(?:^|\bor |{_JOINED}){_ANY_VERB} (?:the camera |it |back )*{_DIRECTION}\b.*",
+        rf"(?:^|{_JOINED}){_VERB}\b.*",
+        rf"{_JOINED}(?:take|snap|grab|save|capture) (?:a|an|the|one|two|another|\d+)? ?(?:\w+ )?{_PICTURE}.*",
+        rf"{_JOINED}(?:go|return|move|come|switch) (?:back )?(?:to )?(?:the )?(?:home|preset)\b.*",
+        r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*",
+        r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*",
+        r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
+    )
+)
+"""Patterns of commands, angles and conditions, each up to the end of the text."""
 
 
 def swallowed_commands(text: str, *, is_thing: bool) -> str | None:

@@ -328,7 +328,6 @@ class Program(ConditionEvaluation):
         if step.go:
             yield from self._gothere(ast.GoThere())
 
-
     def _firstwith(self, step: ast.FirstWith) -> CallGenerator:
         for place in step.places:
             yield from self._camera_call("go_to_preset", name=place.name)

@@ -1,6 +1,6 @@
 """Put the settings of the camera before the question that they serve.
 
-"What is the number of planters? To find out, move to the forecourt." becomes "Move to the forecourt. What is the number of planters?".
+"How many planters are there? To find out, move to the forecourt." becomes "Move to the forecourt. How many planters are there?".
 """
 
 from __future__ import annotations
@@ -8,11 +8,15 @@ from __future__ import annotations
 import re
 
 _ASKS = re.compile(
-    r"(?:please |could you |can you |would you |i'd like you to )*(?:let me know|tell me|i (?:need|want|would like|'d like) to know|i'd like to know"
-    r"|report|say|note|check|what|what's|which|who|where|how|is|are|does|do|can you see|from|out of|count|in which|at which|add up|put)\b",
+    r"(?:please |could you |can you |would you |i'd like you to )*"
+    r"(?:let me know|tell me|i (?:need|want|would like) to know|i'd like to know|report|say|note|check|what|what's|which|who|where"
+    r"|how|is|are|does|do|can you see|from|out of|count|in which|at which|add up|put)\b",
     re.IGNORECASE,
 )
-_PURPOSE = r"(?:(?:in order )?to (?:find (?:it |that |this )?out|see(?: that| it)?|check(?: that| it)?|answer(?: that| this| it)?)|for (?:that|this))"
+_PURPOSE = (
+    r"(?:(?:in order )?to (?:find (?:it |that |this )?out|see(?: that| it)?|check(?: that| it)?|answer(?: that| this| it)?)"
+    r"|for (?:that|this))"
+)
 _PATTERNS = tuple(
     re.compile(pattern, re.IGNORECASE | re.DOTALL)
     for pattern in (
@@ -23,7 +27,8 @@ _PATTERNS = tuple(
     )
 )
 _IF_ANY = re.compile(
-    r"(\b(?:what|which|where|who)\b[^.?!;]*?),? if (?:there (?:is|are)|(?:you|i|we) (?:can )?see) (?:one|any|some)(?=\s*(?:[.?!:]|$))",
+    r"(\b(?:what|which|where|who)\b[^.?!;]*?),? if (?:there (?:is|are)|(?:you|i|we) (?:can )?see) (?:one|any|some)"
+    r"(?=\s*(?:[.?!:]|$))",
     re.IGNORECASE,
 )
 """The pattern for a question that ends with "if there is one", which says nothing that an answer does not say."""
