@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from scope_ptz.planner.grammar.lexing.lexer import SEPARATORS, Lexeme, Lexer
-from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, MAX_LEXEMES, covers
+from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, covers, is_too_complex
 
 _MAX_QUOTED_WORDS = 8  # longer clauses are quoted by their first words
 _MAX_QUOTED = 3  # number of quotations in one question
@@ -23,7 +23,7 @@ def unparsed_phrases(text: str, presets: tuple[str, ...]) -> list[str]:
         At most three quotations of the instruction; none if it is too long to be parsed.
     """
     lexemes = Lexer(presets).lexemes(text) if len(text) <= MAX_CHARS else []
-    if not lexemes or len(lexemes) > MAX_LEXEMES:
+    if not lexemes or is_too_complex(lexemes):
         return []
     clauses = [clause for clause in _clauses(lexemes) if not covers(clause, presets)]
     phrases = [phrase for clause in clauses or [lexemes] for phrase in _unknown_words(text, clause) or [_quoted(text, clause)]]

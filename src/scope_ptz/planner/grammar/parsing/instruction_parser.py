@@ -29,6 +29,8 @@ _COMMON_IN_DESCRIPTIONS = frozenset(
 
 MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
 MAX_LEXEMES = 120  # the same for lexemes
+MAX_CONDITIONS = 12  # the same for conditions, each of which multiplies the readings
+_CONDITIONS = frozenset({"IF", "IFSO", "UNLESS", "OTHERWISE", "UNTIL", "WHILE"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +71,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
     lexemes = Lexer(presets).lexemes(text) if len(text) <= MAX_CHARS else []
-    if not lexemes or len(lexemes) > MAX_LEXEMES:
+    if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
     steps: list[Step] = []
     for first, last in _sentences(lexemes):
@@ -86,6 +88,12 @@ def _with_setting_first(steps: list[Step]) -> list[Step]:
     if isinstance(last, GoToPreset) and last.how == "use" and before and all(isinstance(s, Count | Ask | Read) for s in before):
         return [last, *before]
     return steps
+
+
+def is_too_complex(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are too many to be parsed in a fraction of a second, or have too many conditions."""
+    conditions = sum(bool(lexeme.kinds & _CONDITIONS) for lexeme in lexemes)
+    return len(lexemes) > MAX_LEXEMES or conditions > MAX_CONDITIONS
 
 
 def covers(clause: Sequence[Lexeme], presets: tuple[str, ...]) -> bool:
