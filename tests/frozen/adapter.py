@@ -37,7 +37,7 @@ DATASET = "data/bench"
 SCENES = "data/scenes"
 SCHEMAS = ("data/tasks.schema.json", "data/submission.schema.json")
 DATASET_FILES = ("tasks", "unseen", "paraphrase", "reaction")
-LANGUAGE_FILES = ("planner/grammar/lexing", "planner/grammar/parsing", "perception/ground_truth/language")
+LANGUAGE_FILES = ("planner/grammar/lexing", "planner/grammar/parsing", "perception/ground_truth/language", "english/grammar")
 """Folders with the grammars and word lists for instructions and for perception questions."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.grammar.lexing.number_phrases import read_number
+from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.planner.grammar.lexing.vocabulary import expand, vocabulary
 from scope_ptz.planner.plan import plan
 from scope_ptz.tools.registry import TOOLS

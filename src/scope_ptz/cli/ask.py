@@ -6,6 +6,7 @@ import shlex
 import shutil
 import signal
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, R
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.cli.display import LiveView, show_end, show_planned
-from scope_ptz.cli.exit import CANCELLED, exit_code, handle_interrupts, put, put_json, run_until_interrupted
+from scope_ptz.cli.exit import CANCELLED, FAILED, exit_code, handle_interrupts, put, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.cli.startup import pause_garbage_collection
 from scope_ptz.errors import InputError
@@ -160,7 +161,17 @@ def _report(folder: RunFolder, planned: list[str] | None, *, as_json: bool) -> i
             show_planned(console, planned)
         note = trace.started.labels.perception_note if filmstrip or planned is not None else ""
         show_end(console, trace.ended, note, folder.path, filmstrip)
-    return exit_code(trace.ended.outcome)
+    code = exit_code(trace.ended.outcome)
+    return FAILED if code == 0 and planned is None and has_failed_look(trace.calls) else code
+
+
+def has_failed_look(calls: Sequence[Called]) -> bool:
+    """Return whether a run never got a result of a perception tool that it called, so that its answer lacks what was asked."""
+    from scope_ptz.tools.registry import TOOLS
+
+    failed = {c.outcome.call.name for c in calls if c.outcome.error is not None}
+    worked = {c.outcome.call.name for c in calls if c.outcome.error is None}
+    return bool((failed - worked) & set(TOOLS.perceiving))
 
 
 def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, Any]:

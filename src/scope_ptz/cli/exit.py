@@ -3,7 +3,7 @@
 A command that fails prints one line on stderr. Bad input never shows a traceback. The exit codes are:
 
 0    done
-1    failed: step limit, budget, planner, camera, Blender, full disk, or a replay with differences
+1    failed: step limit, budget, planner, camera, perception, Blender, full disk, or a replay with differences
 2    wrong input or configuration, or a missing or damaged pack or trace
 3    the planner needs clarification
 4    the planner refused the instruction

@@ -9,11 +9,11 @@ from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.program_runner import MakeToolContext
 from scope_ptz.camera.base import Frame
 from scope_ptz.english import COLOURS
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.ground_truth.answers import answer
 from scope_ptz.perception.ground_truth.language import parse_description, parse_question
-from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.view import View, read_view
 from scope_ptz.simulator.actors import appearances, may_be_visible
 from scope_ptz.simulator.pack import Scene

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from anyio import to_thread
 
+from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import NotUnderstoodError, PackError, PerceptionError, UnknownNameError
@@ -120,6 +121,7 @@ class GroundTruthPerception(Perception):
     def _find(self, frame: Frame, description: str) -> list[Thing]:
         from scope_ptz.perception.ground_truth.language import is_description, parse_description
         from scope_ptz.perception.ground_truth.thing_search import find
+        from scope_ptz.perception.ground_truth.unknown_words import unknown_nouns
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
@@ -129,6 +131,9 @@ class GroundTruthPerception(Perception):
             raise NotUnderstoodError(
                 f"The description '{description}' is not understood, because it is not a noun phrase. Name the things to find."
             )
+        if not things and (unknown := unknown_nouns(view, parsed)):
+            quoted = english.listing([f"'{words}'" for words in unknown])
+            raise NotUnderstoodError(f"I did not understand {quoted} in the description. Name a kind of thing.")
         return things
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in, singular_phrase
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.ground_truth.view import Thing, View, head_of
 from scope_ptz.simulator.models import Attribute
 

@@ -13,9 +13,9 @@ from dataclasses import replace
 from typing import cast
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.full_names import named_in_full
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import (
     BACKDROP,
     NEAR_M,

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon, singular_phrase
 from scope_ptz.perception.base import Box
-from scope_ptz.perception.ground_truth.language.concepts import lexicon, singular_phrase
 from scope_ptz.simulator.actors import path_position
 from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
 from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth

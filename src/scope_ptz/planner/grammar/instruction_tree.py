@@ -62,10 +62,15 @@ class Zoom:
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """An absolute target: degrees for pan and tilt, magnification for zoom."""
+    """An absolute target: degrees for pan and tilt, magnification for zoom.
+
+    Attributes:
+        sense: +1 if the instruction says to zoom in to the target, -1 if it says to zoom out to it, 0 if it says neither.
+    """
 
     axis: Literal["pan", "tilt", "zoom"]
     value: float
+    sense: int = 0
 
 
 Part = Turn | Zoom | Aim
@@ -108,12 +113,12 @@ class GoToPreset:
     """Go to a preset.
 
     Attributes:
-        how: The verb of the instruction, "bare" for none. After "go", the words must name a preset; after other verbs, they may
-            name an object.
+        how: The verb of the instruction, "bare" for none. After "go" and "use", the words must name a preset; after other verbs,
+            they may name an object. "Use" after a question states where to ask it.
     """
 
     ref: PresetRef
-    how: Literal["go", "show", "look", "bare"] = "go"
+    how: Literal["go", "show", "look", "bare", "use"] = "go"
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,6 +316,14 @@ class WhichPreset:
 
 
 @dataclass(frozen=True, slots=True)
+class FirstWith:
+    """Go to one preset after the other, and stay at the first that shows an object. If ``places`` is empty, try every preset."""
+
+    thing: Thing
+    places: tuple[PresetRef, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Compare:
     """Compare the counts of two descriptions in one view."""
 
@@ -342,7 +355,13 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Forbid:
-    """An instruction not to do something ("do not move")."""
+    """An instruction not to do something.
+
+    Attributes:
+        any_move: Whether the camera must not move at all ("without moving").
+    """
+
+    any_move: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -376,7 +395,7 @@ class Unclear:
 
 Step = (
     Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
-    | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report
+    | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | FirstWith | Compare | BeforeAfter | Sweep | Forbid | Report
     | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | Mention | Rescope | Unclear
 )  # fmt: skip
 

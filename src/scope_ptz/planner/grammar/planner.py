@@ -9,11 +9,18 @@ from scope_ptz.planner.grammar.binding.understand import Understanding, understa
 from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.execution.program import Program
 
+GRAMMAR_VERSION = "2"
+"""Version of the plans, in traces and run cards. It is raised when an instruction can get another plan. Version 1 had no number."""
+
 
 class GrammarPlanner(Planner):
     """A rule-based planner. Each step replays the program against the recorded outcomes, so no state is kept between steps."""
 
     name = GRAMMAR
+
+    @property
+    def details(self) -> dict[str, str]:
+        return {"version": GRAMMAR_VERSION}
 
     async def step(self, state: State) -> Decision:
         return decide(state)

@@ -13,6 +13,7 @@ from scope_ptz.perception.ground_truth.answers.compared_things import (
 from scope_ptz.perception.ground_truth.answers.counted_things import count, exists
 from scope_ptz.perception.ground_truth.answers.legible_text import read, text_exists
 from scope_ptz.perception.ground_truth.answers.locations import identify, what, where
+from scope_ptz.perception.ground_truth.answers.ordered_things import in_order, quarter
 from scope_ptz.perception.ground_truth.answers.scene import describe, happening
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, unknown
 from scope_ptz.perception.ground_truth.answers.values import ask
@@ -44,6 +45,10 @@ def answer(view: View, question: tree.Question | None) -> AnswerText:
             return text_exists(view, question)
         case tree.Where():
             return where(view, question)
+        case tree.Quarter():
+            return quarter(view, question)
+        case tree.InOrder():
+            return in_order(view, question)
         case tree.What():
             return what(view, question)
         case tree.Identify():
@@ -63,4 +68,4 @@ def answer(view: View, question: tree.Question | None) -> AnswerText:
         case tree.Happening():
             return happening(view)
         case None:
-            return unknown("I cannot tell: I can only answer about what is visible in the picture")
+            return unknown("I cannot tell: I did not understand the question")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_search import noun_of
 from scope_ptz.perception.ground_truth.view import View

@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import singular_phrase
 from scope_ptz.perception.ground_truth.answers.legible_text import fact_on_signs
 from scope_ptz.perception.ground_truth.answers.restating import as_asked, definite, none_of, noun, plural
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, place, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import singular_phrase
 from scope_ptz.perception.ground_truth.thing_facts import (
     ABSENT_VALUES,
     COLOUR_KEYS,

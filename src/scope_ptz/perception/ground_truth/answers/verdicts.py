@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.perception.ground_truth.answers.counted_things import exists
 from scope_ptz.perception.ground_truth.answers.restating import (
     after_noun,
@@ -19,7 +20,6 @@ from scope_ptz.perception.ground_truth.answers.restating import (
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import absent, part_values
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.thing_facts import canonical, colour_of, fact_words, fits_noun, opposite
 from scope_ptz.perception.ground_truth.thing_search import find, holds, noun_of
 from scope_ptz.perception.ground_truth.view import Thing, View

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 
 _SPECIFIC: tuple[type[Any], ...] = (
     tree.CompareCount, tree.Compare, tree.Which, tree.HowFar, tree.MostCommon, tree.TextExists, tree.Read, tree.IsA, tree.Where,
-    tree.Count, tree.CountKinds, tree.Happening,
+    tree.Count, tree.CountKinds, tree.Happening, tree.Quarter, tree.InOrder,
 )  # fmt: skip
 """Specific question types, which are preferred to the general ones."""
 

@@ -8,8 +8,8 @@ from typing import Any, cast
 from lark import Token, Tree
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 
 Children = list[Any]
 """The children of a node of the parse tree, already transformed."""

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 from lark import Token
 
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.language.phrase_builder import (
     Children,
     Core,
@@ -179,6 +179,12 @@ class QuestionBuilder(NounPhrases):
     def where(self, children: Children) -> tree.Where:
         return tree.Where(descriptions(children)[0])
 
+    def quarter(self, children: Children) -> tree.Quarter:
+        return tree.Quarter(descriptions(children)[0])
+
+    def in_order(self, children: Children) -> tree.InOrder:
+        return tree.InOrder(cast("tree.OrderKey", value_of(children, "RANKBY") or "left"), descriptions(children)[0])
+
     def what_at(self, children: Children) -> tree.What:
         who = bool(tokens_of(children, "WHO"))
         return tree.What(tree.Description((tree.Phrase(("person",)),)) if who else EVERYTHING, tests_of(children))
@@ -205,7 +211,7 @@ class QuestionBuilder(NounPhrases):
         return tree.What(tree.Description((tree.Phrase(("person",)),)))
 
     def which(self, children: Children) -> tree.Which:
-        key = value_of(children, "CMP") or value_of(children, "SUP")
+        key = value_of(children, "CMP") or value_of(children, "SUP") or value_of(children, "TAKES")
         return tree.Which(cast(tree.OrderKey, key), descriptions(children)[-1])
 
     def far(self, children: Children) -> tree.HowFar:
@@ -221,6 +227,11 @@ class QuestionBuilder(NounPhrases):
     def compare_count(self, children: Children) -> tree.CompareCount:
         first, second = descriptions(children)
         return tree.CompareCount(self._sense(children), first, second)
+
+    def more_or_less(self, children: Children) -> tree.CompareCount:
+        """Build "are there more vans than cars, fewer, or just as many?"."""
+        first, second = descriptions(children)
+        return tree.CompareCount(self._sense(children[:3]), first, second, which=True)
 
     def more_of(self, children: Children) -> tree.CompareCount:
         options = descriptions(children)[0].phrases

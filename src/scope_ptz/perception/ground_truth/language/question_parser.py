@@ -7,8 +7,8 @@ from importlib.resources import files
 
 from lark.exceptions import LarkError
 
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.perception.ground_truth.language.ambiguity import cheapest
-from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.language.earley import EarleyGrammar, readings
 from scope_ptz.perception.ground_truth.language.question_builder import QuestionBuilder
 from scope_ptz.perception.ground_truth.language.question_tree import Description, Exists, Phrase, Question

@@ -213,6 +213,21 @@ class Where:
 
 
 @dataclass(frozen=True, slots=True)
+class Quarter:
+    """Ask in which quarter of the frame something is."""
+
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
+class InOrder:
+    """Ask for the order of several things by place or distance, or of several kinds by their numbers."""
+
+    key: OrderKey | Literal["most", "fewest"]
+    options: Description
+
+
+@dataclass(frozen=True, slots=True)
 class What:
     """Ask for the names of all things that match ("what is behind the barrier?", "which cars are parked?")."""
 
@@ -286,5 +301,5 @@ class Happening:
 
 Question = (
     Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare
-    | CompareCount | MostCommon | Describe | Happening
+    | CompareCount | MostCommon | Describe | Happening | Quarter | InOrder
 )  # fmt: skip

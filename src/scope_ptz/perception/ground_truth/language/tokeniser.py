@@ -8,7 +8,8 @@ from importlib.resources import files
 from lark import Token
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language.concepts import lexicon
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.perception.ground_truth.language.word_splitting import split
 
 _FRAME_WORDS = frozenset(
@@ -82,6 +83,9 @@ def tokenise(text: str) -> list[Token]:
         if size := _noun_length(words, i, table):
             tokens += [Token("W", word) for word in words[i : i + size]]
             i += size
+        elif size := _numeral_length(words, i):
+            tokens.append(Token("NUM", str(round(read_number(words[i : i + size]).value))))
+            i += size
         elif size := _closed_class_length(words, i, is_first=not tokens):
             i = _add_closed_class(tokens, words, i, size)
         else:
@@ -91,6 +95,14 @@ def tokenise(text: str) -> list[Token]:
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
     return tokens
+
+
+def _numeral_length(words: list[str], start: int) -> int:
+    """Return the number of words in a whole number of several words at ``start`` ("twenty five", "a dozen"), or 0."""
+    phrase = words[start : start + _LONGEST_NUMERAL]
+    number = read_number(phrase)
+    is_numeral = number.kind == "NUM" and number.used > 1 and number.value == round(number.value) > 0
+    return number.used if is_numeral and phrase[0].isalpha() and "couple" not in phrase[: number.used] else 0
 
 
 def _closed_class_length(words: list[str], start: int, *, is_first: bool) -> int:
@@ -132,6 +144,7 @@ def _noun_length(words: list[str], start: int, table: dict[tuple[str, ...], tupl
 
 
 _LONGEST_NOUN = 4
+_LONGEST_NUMERAL = 6
 
 
 def _open_class(word: str) -> Token:

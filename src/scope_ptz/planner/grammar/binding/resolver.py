@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
+from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.lexing.lexer import preset_key, within_one_edit
 from scope_ptz.planner.grammar.lexing.phrases import phrase_table
@@ -25,6 +26,11 @@ _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
     r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
+    re.IGNORECASE,
+)
+_TWO_QUESTIONS = re.compile(
+    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?)"
+    r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
     re.IGNORECASE,
 )
 _WINNER = re.compile(
@@ -49,6 +55,23 @@ _RELATIVE_POSITION = re.compile(
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
     from scope_ptz.tools.arguments import View
+
+
+_LOOKS = (
+    ast.Count,
+    ast.Ask,
+    ast.Read,
+    ast.ZoomTo,
+    ast.If,
+    ast.Loop,
+    ast.AtPlaces,
+    ast.WhichPreset,
+    ast.FirstWith,
+    ast.Compare,
+    ast.Track,
+    ast.Snap,
+)
+"""Steps that can find something, to which "if so" can refer."""
 
 
 class UnresolvedError(Exception):
@@ -117,6 +140,8 @@ class Resolver:
         compared: Whether an earlier step compares presets.
         counted: Whether an earlier step counts something.
         whole_scene: Whether questions are about the whole scene instead of the current view.
+        still: Whether the camera must not move.
+        looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
     """
 
     presets: tuple[str, ...] | None
@@ -126,6 +151,8 @@ class Resolver:
     compared: bool = False
     counted: bool = False
     whole_scene: bool = False
+    looked: bool = False
+    still: bool = False
 
     def __post_init__(self) -> None:
         for turn in self.conversation:
@@ -145,6 +172,7 @@ class Resolver:
         out: list[ast.Step] = []
         for step in steps:
             bound = self._bind(self._completed(step, out))
+            self.looked = self.looked or isinstance(step, _LOOKS)
             again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
             out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
@@ -224,14 +252,16 @@ class Resolver:
         if isinstance(step, ast.Sweep):
             self.whole_scene = True
             return [step]
-        if isinstance(step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
+        if isinstance(
+            step, ast.Move | ast.Home | ast.GoToPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset | ast.FirstWith
+        ):
             self.whole_scene = False
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]
 
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
-        preset = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.explicit else None
+        preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
         if step.how == "look" and not ref.explicit:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.explicit and preset is None:
@@ -267,9 +297,13 @@ class Resolver:
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(step.question):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
+        if two := _TWO_QUESTIONS.fullmatch(step.question.strip()):
+            first = self._ask(replace(step, question=f"{two['seen']}?"))
+            return [*first, *self._ask(ast.Ask(two["more"], step.view))]
         if _WAITING.match(step.question):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
-        question, place = self._asked_at(direct_question(step.question) if step.embedded else step.question)
+        asked, close_up = plain_question(step.question)
+        question, place = self._asked_at(direct_question(asked) if step.embedded else asked)
         if _BARE_WHO_OR_WHAT.fullmatch(question.strip()):
             question = f"{question.strip(' ?')} there?"
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
@@ -278,16 +312,22 @@ class Resolver:
             )
         if named := _EXISTENCE.match(question):
             self.antecedent = named[1]
-        return [*place, ast.Ask(question, self._view(step.view))]
+        zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.still else []
+        return [*place, *zoom, ast.Ask(question, self._view(step.view))]
 
     def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
         """Split a question that ends with a preset ("... at gate?") into the question and a step to the preset."""
-        match = re.fullmatch(r"(.+?) (?:at|from) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
-        name = match_exactly(match[3], self.presets or ()) if match and (match[4] or not match[2]) else None
+        match = re.fullmatch(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
+        is_place = match and (match[5] or (not match[3] and match[2].lower() != "in"))
+        name = match_exactly(match[4], self.presets or ()) if match and is_place else None
         if not match or not name:
             return question, []
         self.preset, self.whole_scene = name, False
         return f"{match[1]}?", [ast.GoToPreset(ast.PresetRef(name, explicit=True))]
+
+    def _forbid(self, step: ast.Forbid) -> Sequence[ast.Step]:
+        self.still = self.still or step.any_move
+        return [step]
 
     def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
         self.thing(step.thing)
@@ -358,6 +398,7 @@ class Resolver:
                 self.antecedent = inner.thing.text
                 break
         condition = self.condition(step.condition)
+        self.looked = True
         return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
 
     def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
@@ -373,6 +414,10 @@ class Resolver:
         return out
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
+        self.compared = True
+        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+
+    def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
         self.compared = True
         return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
 
@@ -399,6 +444,8 @@ class Resolver:
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
         if isinstance(condition, ast.Answered):
+            if not self.looked:
+                raise UnresolvedError("What does 'if so' refer to? Please name what I shall look for first.")
             return condition
         if isinstance(condition, ast.PresetOutnumbers):
             places = self.place(condition.first), self.place(condition.second)

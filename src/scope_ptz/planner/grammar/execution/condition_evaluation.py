@@ -16,16 +16,19 @@ class ConditionEvaluation(RunState):
     """The part of a run that evaluates conditions."""
 
     def _test(self, condition: ast.Condition) -> CallGenerator:
-        """Return whether a condition is met or assumed to be met, and a sentence that states what was observed."""
+        """Return whether a condition is met or assumed to be met, and a sentence that states what was observed.
+
+        The first value is None if the observation does not tell. Then neither branch of a condition may run.
+        """
         met, reason = yield from self._evaluate(condition)
-        return (met or self.assume_met), reason
+        return (True if self.assume_met else met), reason
 
     def _evaluate(self, condition: ast.Condition) -> CallGenerator:
         if isinstance(condition, ast.Answered):
-            return self._last_was_yes, ""
+            return self._last_was_yes, "" if self._last_was_yes is not None else "I cannot tell whether that is so"
         if isinstance(condition, ast.Negated):
             met, reason = yield from self._evaluate(condition.part)
-            return not met, reason
+            return None if met is None else not met, reason
         if isinstance(condition, ast.Joined):
             return (yield from self._joined(condition))
         if isinstance(condition, ast.Seen):
@@ -57,17 +60,20 @@ class ConditionEvaluation(RunState):
         )
         answer = result["answer"].strip().lower()
         if not result.get("known", True) or not answer.startswith(("yes", "no")):
-            return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
+            return None, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
         return answer.startswith("yes") == condition.expected, result["answer"]
 
     def _joined(self, condition: ast.Joined) -> CallGenerator:
         reasons = []
+        is_known = True
         for part in condition.parts:
             met, reason = yield from self._test(part)
             reasons.append(reason)
-            if met != (condition.mode == "all"):
+            if met is None:
+                is_known = False
+            elif met != (condition.mode == "all"):
                 return met, ", ".join(reasons)
-        return condition.mode == "all", ", ".join(reasons)
+        return (condition.mode == "all") if is_known else None, ", ".join(reasons)
 
     def _visible_count(self, description: str, view: View | None) -> CallGenerator:
         result = yield from self._required_perception_call("count_objects", description=description, view=view or "current")

@@ -9,6 +9,7 @@ history, so a program must depend only on its inputs.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -47,6 +48,11 @@ class Program(ConditionEvaluation):
 
     # Motion ------------------------------------------------------------------------------------------------------------
     def _move(self, step: ast.Move) -> CallGenerator:
+        if opposed := next((p for p in step.parts if isinstance(p, ast.Aim) and _is_opposed(p, self.pose)), None):
+            raise HaltedError(
+                f"The zoom is {phrases.number(round(self.pose.zoom, 2))}x, so zooming {'in' if opposed.sense > 0 else 'out'} does "
+                f"not lead to {phrases.number(opposed.value)}x; I left the zoom as it is"
+            )
         arguments = arguments_of(step, self.pose, self.limits)
         if not arguments:
             self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
@@ -132,6 +138,7 @@ class Program(ConditionEvaluation):
         if text in self._missing:
             return
         result = yield from self._perception_call("zoom_to_object", description=text)
+        self._last_was_yes = bool(result.get("found")) if result is not None else None
         if result is None or not result.get("found"):
             self._missing.add(text)
             if result is not None:
@@ -149,6 +156,7 @@ class Program(ConditionEvaluation):
         result = yield from self._perception_call("track_object", description=text, duration_s=_whole_as_int(step.seconds))
         if result is None:
             return
+        self._last_was_yes = bool(result.get("found"))
         if not result.get("found"):
             self._missing.add(text)
             self._note(f"I could not find {_the(step.thing)} to follow")
@@ -162,15 +170,15 @@ class Program(ConditionEvaluation):
         view = step.view or "current"
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
+            self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None:
-                self._last_was_yes = result["count"] > 0
                 counts_text = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
                 self._note(f"I can see {counts_text} {phrases.where(view)}")
 
     def _ask(self, step: ast.Ask) -> CallGenerator:
         result = yield from self._perception_call("query_answer", question=step.question, view=step.view or "current")
+        self._last_was_yes = _said_yes(result)
         if result is not None:
-            self._last_was_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
             is_stated = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
             self._note(result["answer"] if is_stated else f"I cannot tell: {result['answer']}")
 
@@ -201,7 +209,10 @@ class Program(ConditionEvaluation):
     def _if(self, step: ast.If) -> CallGenerator:
         met, reason = yield from self._test(step.condition)
         self._note(reason)
-        if met:
+        self._last_was_yes = met
+        if met is None:
+            self._note("So I did neither" if step.otherwise else "So I did nothing further for that")
+        elif met:
             yield from self._run_steps(step.then)
         elif step.otherwise:
             yield from self._run_steps(step.otherwise)
@@ -214,6 +225,8 @@ class Program(ConditionEvaluation):
         while True:
             met, reason = yield from self._test(step.until)
             best = max(best, self._last_count)
+            if met is None and isinstance(step.until, ast.Negated):
+                raise HaltedError(f"{reason}, so I stopped")  # "while" goes on only as long as its condition is known to hold
             if met:
                 self._note(f"{reason}, after {phrases.moves_text(last, moves)}" if moves else f"{reason}, without having to move")
                 return
@@ -261,6 +274,7 @@ class Program(ConditionEvaluation):
         view = step.view or "current"
         first = yield from self._visible_count(step.first.text, view)
         second = yield from self._visible_count(step.second.text, view)
+        self._last_was_yes = first > second if step.comparison == "more" else first < second
         counts_text = f"{phrases.counted(step.first.text, first)} and {phrases.counted(step.second.text, second)}"
         self._note(f"I can see {counts_text} {phrases.where(view)}")
         more, less = (step.first.text, step.second.text) if first > second else (step.second.text, step.first.text)
@@ -291,6 +305,7 @@ class Program(ConditionEvaluation):
         self._note(f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}")
         if step.any_of:
             matching_presets = [name for name, count in counts.items() if count]
+            self._last_was_yes = bool(matching_presets)
             self._note(
                 f"{_capitalised_plural(text)} can be seen at {english.listing(matching_presets)}"
                 if matching_presets
@@ -313,10 +328,36 @@ class Program(ConditionEvaluation):
         if step.go:
             yield from self._gothere(ast.GoThere())
 
+    def _firstwith(self, step: ast.FirstWith) -> CallGenerator:
+        for place in step.places:
+            yield from self._camera_call("go_to_preset", name=place.name)
+            self._record_position(place.name)
+            count = yield from self._visible_count(step.thing.text, "current")
+            if count or self.assume_met:
+                self._best_preset, self._last_was_yes = place.name, True
+                self._note(f"The first is {place.name}, where I can see {phrases.counted(step.thing.text, count)}")
+                return
+        self._best_preset, self._last_was_yes = None, False
+        names = english.listing([place.name for place in step.places])
+        self._note(f"I can see {phrases.counted(step.thing.text, 0)} at {names}")
+
 
 def _capitalised_plural(text: str) -> str:
     """Return a description in the plural, with a capital first letter."""
     return phrases.sentence(phrases.noun(text, 2))[:-1]
+
+
+def _is_opposed(aim: ast.Aim, pose: Pose) -> bool:
+    """Return whether a magnification lies in the other direction than the instruction says: "zoom in to 2x" at 4x."""
+    return aim.axis == "zoom" and aim.sense * (aim.value - pose.zoom) < 0
+
+
+def _said_yes(result: dict[str, Any] | None) -> bool | None:
+    """Return whether an answer is yes or no; None if it is neither or not known."""
+    if result is None or not result.get("known", True):
+        return None
+    match = re.match(r"\W*(yes|no)\b", result["answer"], re.IGNORECASE)
+    return match[1].lower() == "yes" if match else None
 
 
 def _the(thing: ast.Thing) -> str:

@@ -63,7 +63,7 @@ class RunState:
     _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home
     _went_home: bool = False  # whether the run has made a move to home
     _last_count: int = -1  # the last count in a condition; -1 if there was none
-    _last_was_yes: bool = False  # whether the last answer was yes, or the last count was above zero
+    _last_was_yes: bool | None = None  # whether the last look was a yes or found something; None if that is not known
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""

@@ -12,9 +12,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.planner.grammar.lexing.number_phrases import NumberPhrase, read_number
+from scope_ptz.english import COLOURS
+from scope_ptz.english.grammar.numbers import NUMBER_WORDS, NumberPhrase, read_number
 from scope_ptz.planner.grammar.lexing.phrases import phrase_table
-from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, spelling, word_list
+from scope_ptz.planner.grammar.lexing.vocabulary import spelling, word_list
 
 _TOKEN = re.compile(
     r"""(?P<quote>"[^"\n]+"|“[^”\n]+”|(?<!\w)'[^'\n]+'(?!\w))
@@ -37,6 +38,7 @@ _NEVER_GERUND = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "S
 """Terminals for which a word that ends in "ing" is not the gerund of a command."""
 
 _HEDGES = frozenset({"FILLER", "BY"})  # terminals of words such as "about", which are dropped at the start of a clause
+_COLOURS = COLOURS | {"dark", "light"}  # colours join with "and" into one description: "red and white barriers"
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
@@ -273,7 +275,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             left = text[out[-2].start : out[-2].end].lower().split()[-1]
             right = text[lexeme.start : lexeme.end].lower().split()[0].split("-")[0]
             follows = " " in text[lexeme.start : lexeme.end] or (i + 1 < len(lexemes) and "TEXT" in lexemes[i + 1].kinds)
-            if left in word_list("colours") and right in word_list("colours") and follows:
+            if left in _COLOURS and right in _COLOURS and follows:
                 out.pop()
                 out[-1] = Lexeme(out[-1].kinds, out[-1].start, lexeme.end)
                 continue

@@ -1,16 +1,10 @@
-"""Read the vocabulary for camera instructions: the phrases of each terminal of ``language.lark``, number words and misspellings."""
+"""Read the vocabulary for camera instructions: the phrases of each terminal of ``language.lark``, and misspellings."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-
-from scope_ptz.english.numerals import CARDINALS, ORDINALS, SCALES
-
-NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen": 12, "couple": 2}
-ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
 
 _BRACKETS = re.compile(r"([()\[\]|])")
 _NOT_DOUBLED = frozenset({"open", "visit", "orient", "monitor", "widen", "tighten", "broaden", "enter"})

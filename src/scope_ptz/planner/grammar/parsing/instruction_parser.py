@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
-from scope_ptz.planner.grammar.instruction_tree import Step
+from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step
 from scope_ptz.planner.grammar.lexing.lexer import SEPARATORS, Lexeme, Lexer
 from scope_ptz.planner.grammar.parsing.chart import ChartParser
 from scope_ptz.planner.grammar.parsing.rules import load_rules
@@ -26,8 +27,10 @@ _COMMON_IN_DESCRIPTIONS = frozenset(
 )  # fmt: skip
 """Terminals that often occur in descriptions, and therefore have a lower cost there than other terminals."""
 
-MAX_CHARS = 2000  # the rest of a longer text is ignored
-MAX_LEXEMES = 120  # longer texts are not parsed
+MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
+MAX_LEXEMES = 120  # the same for lexemes
+MAX_CONDITIONS = 12  # the same for conditions, each of which multiplies the readings
+_CONDITIONS = frozenset({"IF", "IFSO", "UNLESS", "OTHERWISE", "UNTIL", "WHILE"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +70,8 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Return the steps of an instruction. Never raises, whatever the text."""
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
-    lexemes = Lexer(presets).lexemes(text[:MAX_CHARS])
-    if not lexemes or len(lexemes) > MAX_LEXEMES:
+    lexemes = Lexer(presets).lexemes(text) if len(text) <= MAX_CHARS else []
+    if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
     steps: list[Step] = []
     for first, last in _sentences(lexemes):
@@ -76,7 +79,26 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
         if tree is None:
             return Parsed(text, None)
         steps = StepBuilder(text, lexemes[first:last]).extend(tree, steps)
-    return Parsed(text, tuple(steps))
+    return Parsed(text, tuple(_with_setting_first(steps)))
+
+
+def _with_setting_first(steps: list[Step]) -> list[Step]:
+    """Move a preset that is named after its question to the front: "how many are there? Use the yard preset."."""
+    *before, last = steps
+    if isinstance(last, GoToPreset) and last.how == "use" and before and all(isinstance(s, Count | Ask | Read) for s in before):
+        return [last, *before]
+    return steps
+
+
+def is_too_complex(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are too many to be parsed in a fraction of a second, or have too many conditions."""
+    conditions = sum(bool(lexeme.kinds & _CONDITIONS) for lexeme in lexemes)
+    return len(lexemes) > MAX_LEXEMES or conditions > MAX_CONDITIONS
+
+
+def covers(clause: Sequence[Lexeme], presets: tuple[str, ...]) -> bool:
+    """Return whether the lexemes of a clause parse by themselves."""
+    return parser(bool(presets)).parse([roles(lexeme.kinds) for lexeme in clause], "sentence") is not None
 
 
 def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:

@@ -183,11 +183,17 @@ class MoveBuilder(TreeVisitor):
     def raise_it(self, node: Node) -> tuple[Part, ...]:
         return self._turns(node, [("tilt", 1 if node.has("UP") else -1)])
 
-    def pan_only(self, node: Node) -> tuple[Part, ...]:
-        return self._turns(node, [("pan", 1)])
+    def pan_only(self, node: Node) -> tuple[Part, ...] | Unclear:
+        """Build "pan 25" and "pan -30": as in the tools, positive angles are to the right."""
+        return self._signed(node, "pan") or Unclear("Shall I turn left or right?")
 
-    def tilt_only(self, node: Node) -> tuple[Part, ...]:
-        return self._turns(node, [("tilt", 1)])
+    def tilt_only(self, node: Node) -> tuple[Part, ...] | Unclear:
+        return self._signed(node, "tilt") or Unclear("Shall I tilt up or down?")
+
+    def _signed(self, node: Node, axis: str) -> tuple[Part, ...]:
+        """Return a turn whose sign states the direction; nothing without an angle ("turn a bit")."""
+        turns = self._turns(node, [(axis, 1)])
+        return turns if any(leaf.kind in {"NUM", "FRACTION", "CIRCLE", "FULLTURN", "STEPS"} for leaf in node.all_leaves()) else ()
 
     def pan_less(self, node: Node) -> tuple[Part, ...]:
         return self._turns(node, [("pan", -1)])
@@ -195,8 +201,11 @@ class MoveBuilder(TreeVisitor):
     def tilt_less(self, node: Node) -> tuple[Part, ...]:
         return self._turns(node, [("tilt", -1)])
 
-    pan_more = pan_only
-    tilt_more = tilt_only
+    def pan_more(self, node: Node) -> tuple[Part, ...]:
+        return self._turns(node, [("pan", 1)])
+
+    def tilt_more(self, node: Node) -> tuple[Part, ...]:
+        return self._turns(node, [("tilt", 1)])
 
     def turn_round(self, node: Node) -> tuple[Part, ...] | Unclear:
         if node.has("AROUND") and self.words_of(node.leaves()[0]).startswith("pan"):
@@ -222,6 +231,9 @@ class MoveBuilder(TreeVisitor):
     def pan_to(self, node: Node) -> tuple[Part, ...] | Unclear:
         if any(not self.words_of(leaf).startswith(_AIMING) for leaf in node.leaves("LOOKAT")):
             return Unclear("On what shall I zoom in?")
+        is_place = node.has("BACKTO", "MOVE", "SWITCH") and not any(leaf.kind == "DEG" for leaf in node.all_leaves())
+        if is_place and not node.has("PANNOUN"):
+            return Unclear("Is that number the pan angle in degrees, or the number of a preset?")
         vertical = any(b.name in {"up", "down"} for b in node.branches())
         return self._aimed(node, "tilt" if vertical else "pan")
 
@@ -280,7 +292,11 @@ class MoveBuilder(TreeVisitor):
         if kind == "limit":
             return (Zoom("in" if sign > 0 else "out"),)
         if kind == "percent":
+            if sign < 0 and value >= 100:
+                return Unclear("I can zoom out by less than 100 per cent. By how many times shall I zoom out?")
             return (Zoom("percent", sign * value),)
+        if kind == "factor" and sign > 0 and value < 1 and not bare:
+            return Unclear("A factor below 1 zooms out. Shall I zoom in or out, and how many times?")
         if kind == "fraction":
             return (Zoom("factor", 1 + value if sign > 0 else 1 - value),)
         return (Zoom("factor", value if sign > 0 or value < 1 else 1 / value),)
@@ -288,6 +304,10 @@ class MoveBuilder(TreeVisitor):
     def zoom_rel(self, node: Node) -> tuple[Part, ...] | Unclear:
         sign = next(self.visit(b) for b in node.branches() if b.name in {"zin", "zout"})
         return self._zoomed(node, sign)
+
+    def zoom_rel_late(self, node: Node) -> tuple[Part, ...] | Unclear:
+        """Build "zoom in, but only a little"."""
+        return self.zoom_rel(node.branches()[0])
 
     def zoom_limit(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("in" if self.visit(node.branches()[0]) > 0 else "out"),)
@@ -320,10 +340,16 @@ class MoveBuilder(TreeVisitor):
     def zoom_to_value(self, node: Node) -> tuple[Part, ...] | Unclear:
         if self.number(node) <= 0:
             return Unclear("To how many times shall I zoom?")
-        return (Aim("zoom", self.number(node)),)
+        return (Aim("zoom", self.number(node), self._sense(node)),)
 
     def zoom_to_percent(self, node: Node) -> tuple[Part, ...]:
-        return (Aim("zoom", self.number(node) / 100),)
+        return (Aim("zoom", self.number(node) / 100, self._sense(node)),)
+
+    def _sense(self, node: Node) -> int:
+        """Return the direction of "zoom in to 2x": +1 for in, -1 for out, 0 if there is none."""
+        inwards = node.has("INCREASE") or any(b.name == "zin" for b in node.branches())
+        outwards = node.has("DECREASE") or any(b.name == "zout" for b in node.branches())
+        return inwards - outwards
 
     def zoom_max(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("in"),)

@@ -156,6 +156,9 @@ class SceneBuilder(TreeVisitor):
     def bare_preset(self, node: Node) -> Step:
         return self._preset(node, "bare")
 
+    def use_preset(self, node: Node) -> Step:
+        return self._preset(node, "use")
+
     def go_there(self, node: Node) -> Step:
         return GoThere()
 

@@ -22,6 +22,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Count,
     DoAgain,
     EachTime,
+    FirstWith,
     Forbid,
     Further,
     GoToPreset,
@@ -62,6 +63,8 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         link = "." if node.name == "sentence" else ""
         for part in node.branch.children:
             child = Node(part) if isinstance(part, Branch) else None
+            if child is not None and child.name == "reason_words":
+                continue
             if child is None or child.name == "sep":
                 kind = part.kind if isinstance(part, Leaf) else Node(part).leaf_kinds()[0]
                 link = _LINK_OF_TERMINAL.get(kind, "")
@@ -159,6 +162,19 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
         """Build "if there are no cars at gate, ...": the condition is tested at that place."""
         condition, places, *blocks = (self.visit(b) for b in node.branches())
         return AtPlaces(places, (If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ()),))
+
+    def unless_at(self, node: Node) -> Step:
+        """Build "unless there are cars at gate, ...": the condition is tested at that place."""
+        condition, places, block = (self.visit(b) for b in node.branches())
+        return AtPlaces(places, (If(Negated(condition), block),))
+
+    def first_with(self, node: Node) -> Step:
+        """Build "go through the presets and stop at the first with a crane"."""
+        places = next(self.visit(b) for b in node.branches("every_place", "place_list"))
+        return FirstWith(self._thing(node), places)
+
+    def snap_each(self, node: Node) -> Step:
+        return EachTime((Snap(),))
 
     def if_so(self, node: Node) -> Step:
         blocks = [self.visit(b) for b in node.branches()]
@@ -258,6 +274,9 @@ class StepBuilder(MoveBuilder, ConditionBuilder):
 
     def forbidden(self, node: Node) -> Step:
         return Forbid()
+
+    def stay(self, node: Node) -> Step:
+        return Forbid(any_move=True)
 
     def done_again(self, node: Node) -> Step:
         return DoAgain(self.visit(node.branches()[0]), more=node.has("MORE"))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.english.numerals import FRACTIONS
-from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, ORDINAL_WORDS
+from scope_ptz.english.numerals import CARDINALS, FRACTIONS, ORDINALS, SCALES
+
+NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen": 12, "couple": 2}
+ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
 
 _DIGITS = re.compile(r"[-+−]?\d*\.?\d+")
 

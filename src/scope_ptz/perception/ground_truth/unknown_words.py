@@ -1,0 +1,47 @@
+"""Tell nouns that nobody can know from the names of things that are absent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from scope_ptz import english
+from scope_ptz.english.grammar.common_nouns import is_common_noun
+from scope_ptz.english.grammar.lexicon import nouns_in
+from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.perception.ground_truth.thing_facts import FILLERS, IGNORABLE
+from scope_ptz.perception.ground_truth.view import View
+
+
+def unknown_nouns(view: View, description: tree.Description) -> list[str]:
+    """Return the noun phrases of a description that have no noun that the lexicon, the scene or common English knows.
+
+    Args:
+        view: The view, whose scene adds its own nouns and the words of its facts.
+        description: The parsed description.
+
+    Returns:
+        The words of each phrase, in order.
+    """
+    stated = frozenset[str]().union(*view.values.values())
+    known = english.COLOURS | FILLERS | IGNORABLE | stated
+    return [
+        " ".join(phrase.words)
+        for phrase in _phrases(description)
+        if not nouns_in(phrase.words, view.nouns)
+        and not is_common_noun(" ".join(phrase.words))
+        and not any(word in known or english.cardinal(word) is not None for word in phrase.words)
+    ]
+
+
+def _phrases(node: Any) -> Iterator[tree.Phrase]:
+    """Return the noun phrases of a description, with those of its tests. Texts of signs are not noun phrases."""
+    if isinstance(node, tuple):
+        for item in node:
+            yield from _phrases(item)
+    elif is_dataclass(node) and not isinstance(node, tree.Says | tree.Is):
+        if isinstance(node, tree.Phrase):
+            yield node
+        for field in fields(node):
+            yield from _phrases(getattr(node, field.name))

@@ -1,0 +1,119 @@
+"""Check that a plan accounts for its instruction.
+
+The check reads the instruction again, with simple rules of its own. What the parser or the builders lose, swallow or turn round is
+therefore noticed here, and the user is asked instead of a move being made.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from difflib import SequenceMatcher
+
+from scope_ptz.english import listing
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.consistency.acts import omitted_acts
+from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
+from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
+from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
+from scope_ptz.planner.grammar.consistency.slots import swallowed_commands
+from scope_ptz.planner.grammar.consistency.words import Word, words_of
+from scope_ptz.planner.grammar.lexing.lexer import preset_key
+
+_MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
+
+
+def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str] = ()) -> str | None:
+    """Return the question to ask if the steps do not account for the instruction; None if they do.
+
+    Args:
+        instruction: The text of the user.
+        steps: The steps with all names resolved.
+        presets: The camera's presets.
+    """
+    evidence = evidence_of(steps)
+    found = (swallowed_commands(text, is_thing=is_thing) for text, is_thing in evidence.texts.items())
+    if swallowed := next(filter(None, found), None):
+        return not_understood([swallowed])
+    if evidence.is_still and evidence.has(*_MOVES):
+        return "You ask me not to move, and to do something for which the camera must move. Which of the two shall I do?"
+    words = words_of(instruction)
+    _mark_described(words, evidence)
+    _mark_presets(words, evidence)
+    unexplained = sorted(
+        {
+            word.start: word
+            for word in (
+                *unused_numbers(words, evidence),
+                *ignored_directions(words, evidence),
+                *contradicted_zoom(words, evidence),
+                *omitted_acts(words, evidence),
+                *unvisited_presets(words, evidence, presets),
+            )
+        }.values(),
+        key=lambda word: word.start,
+    )
+    if unexplained:
+        return not_understood(_phrases(instruction, words, unexplained))
+    if unnamed := unnamed_directions(words, evidence):
+        return f"I am not sure that you mean {listing(unnamed, 'or')}. Which way shall I turn, and how far?"
+    return None
+
+
+def not_understood(phrases: Sequence[str]) -> str:
+    """Return the question that names the words that were not understood."""
+    quoted = listing([f'"{phrase}"' for phrase in phrases])
+    return f"I did not understand {quoted}, so I did nothing. Please say it another way."
+
+
+def unvisited_presets(words: Sequence[Word], evidence: Evidence, presets: Sequence[str]) -> list[Word]:
+    """Return the words of preset names that the instruction mentions but the plan does not use."""
+    found: list[Word] = []
+    for preset in presets:
+        name = re.findall(r"[^\W\d_]+|\d+", preset.lower())
+        if not name or preset in evidence.presets or evidence.has(ast.ListPresets):
+            continue
+        for i in range(len(words) - len(name) + 1):
+            span = words[i : i + len(name)]
+            if [word.text for word in span] == name and not any(
+                word.is_described or word.is_negated or _in_other_name(word, evidence) for word in span
+            ):
+                found += span
+    return found
+
+
+def _in_other_name(word: Word, evidence: Evidence) -> bool:
+    return any(word.text in re.findall(r"[^\W\d_]+|\d+", name.lower()) for name in evidence.presets)
+
+
+def _mark_described(words: Sequence[Word], evidence: Evidence) -> None:
+    """Mark the words that the plan passes on to perception in a description or question."""
+    texts = [word.text for word in words]
+    for description in evidence.texts:
+        passed_on = [word.text for word in words_of(description)]
+        for block in SequenceMatcher(None, texts, passed_on, autojunk=False).get_matching_blocks():
+            for word in words[block.a : block.a + block.size]:
+                word.is_described = True
+
+
+def _mark_presets(words: Sequence[Word], evidence: Evidence) -> None:
+    """Mark the names of the presets that the plan uses, so that their numbers and directions are not read as amounts."""
+    for preset in evidence.presets:
+        name = re.findall(r"[^\W\d_]+|\d+", preset.lower())
+        for i in range(len(words) - len(name) + 1):
+            span = words[i : i + len(name)]
+            if tuple(word.text for word in span) == tuple(name) or preset_key(" ".join(w.text for w in span)) == preset_key(preset):
+                for word in span:
+                    word.is_described = True
+
+
+def _phrases(instruction: str, words: Sequence[Word], chosen: Sequence[Word]) -> list[str]:
+    """Return the chosen words as quotations of the instruction; neighbouring words form one phrase."""
+    indices = [words.index(word) for word in chosen]
+    runs: list[list[int]] = []
+    for index in indices:
+        if runs and index == runs[-1][-1] + 1:
+            runs[-1].append(index)
+        else:
+            runs.append([index])
+    return list(dict.fromkeys(instruction[words[run[0]].start : words[run[-1]].end] for run in runs))

@@ -1,0 +1,119 @@
+"""Find the directions of an instruction that its plan does not follow, and those of a plan that the instruction does not name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.consistency.evidence import Evidence
+from scope_ptz.planner.grammar.consistency.words import Word
+from scope_ptz.planner.grammar.lexing.lexer import within_one_edit
+
+_WORDS = {
+    "left": ("left", "lefts", "leftward", "leftwards", "anticlockwise", "counterclockwise", "ccw"),
+    "right": ("right", "rigth", "rights", "rightward", "rightwards", "clockwise", "cw"),
+    "up": ("up", "upward", "upwards", "higher", "skyward", "skywards"),
+    "down": ("down", "downward", "downwards", "dn", "lower"),
+}
+_DIRECTION_OF = {word: direction for direction, words in _WORDS.items() for word in words}
+_ALSO = {
+    "left": frozenset({"l", "anti", "counter", "port"}),
+    "right": frozenset({"r", "starboard"}),
+    "up": frozenset({"u", "raise", "raising", "raised", "lift", "lifting", "elevate", "elevating", "above", "sky", "upper", "top"}),
+    "down": frozenset({"d", "drop", "dropping", "lowering", "dip", "dipping", "below", "under", "ground", "floor", "bottom"}),
+}
+"""Other words that can name a direction. A plan may go there, but need not."""
+
+_AFTER_RIGHT = frozenset({
+    "now", "away", "then", "out", "in", "round", "around", "over", "at", "on", "through", "across", "angle", "angles", "hand",
+    "back", "to", "up", "down", "behind", "the", "time", "here", "there",
+})  # fmt: skip
+"""Words before which "right" may mean "exactly"."""
+
+_BEFORE_LEFT = frozenset({"are", "is", "were", "was", "people", "cars", "none", "nothing", "anything", "any", "have", "has"})
+_MOTION = frozenset({
+    "pan", "tilt", "look", "move", "go", "point", "aim", "angle", "pitch", "nudge", "tip", "swing", "camera", "it", "lens", "view",
+    "turn", "bit", "little", "touch", "tad", "further", "more", "degrees", "degree", "deg", "panning", "tilting", "looking",
+    "moving", "diagonally",
+})  # fmt: skip
+_TOWARDS = frozenset({"at", "to", "towards", "toward", "on", "onto", "face"})
+_LOOSE = frozenset({
+    "increase", "raise", "boost", "back", "again", "same", "opposite", "reverse", "undo", "another", "further", "more", "minus",
+    "negative", "repeat", "return", "centre", "center", "level", "decrease", "reduce", "lessen", "other", "around", "round",
+    "behind", "u", "i", "ahead", "straight", "horizon", "twice", "retrace",
+})  # fmt: skip
+"""Words with which a plan may move in a direction that is not named."""
+
+_ZOOM_IN = frozenset({"in", "closer", "nearer", "tighter", "tighten", "tightening", "inwards"})
+_ZOOM_OUT = frozenset({"out", "wider", "widen", "widening", "outwards", "broaden"})
+_FACTORS_OUT = frozenset({"back", "off", "away", "halve", "half", "wide", "reduce", "decrease", "lower", "less", "down", "undo"})
+
+
+def ignored_directions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words for directions that the plan does not follow."""
+    return [
+        word
+        for i, word in enumerate(words)
+        if (direction := _DIRECTION_OF.get(word.text))
+        and not (word.is_described or word.is_negated)
+        and _is_direction(words, i, direction)
+        and direction not in evidence.directions | evidence.still
+        and not _leads_to_target(words, i, evidence)
+    ]
+
+
+def _leads_to_target(words: Sequence[Word], i: int, evidence: Evidence) -> bool:
+    """Return whether a direction only says where a thing or preset is: "look up at the gantry"."""
+    after = {word.text for word in words[i + 1 : i + 3]}
+    return bool(after & _TOWARDS) and evidence.has(ast.ZoomTo, ast.GoToPreset, ast.Track)
+
+
+def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
+    """Return whether a word can only be a direction: not "right now", "none left" or "bring up"."""
+    before = words[i - 1].text if i else ""
+    after = words[i + 1].text if i + 1 < len(words) else ""
+    if words[i].text == "right":
+        return after not in _AFTER_RIGHT and before not in {"all", "straight"}
+    if words[i].text == "left":
+        return before not in _BEFORE_LEFT
+    if direction in {"up", "down"}:
+        return before in _MOTION and after not in {"to", "close"}
+    return True
+
+
+def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:
+    """Return the directions in which the plan turns, but which the instruction does not name."""
+    texts = {_direction_like(word.text) for word in words if not word.is_described}
+    if texts & _LOOSE or any(text.startswith("-") for text in texts):
+        return []
+    named = {_DIRECTION_OF[text] for text in texts if text in _DIRECTION_OF}
+    named |= {direction for direction, also in _ALSO.items() if texts & also}
+    aimed = evidence.has(ast.Aim)
+    unnamed = sorted(evidence.directions - named)
+    return [] if aimed else [d for d in unnamed if d != "right" or evidence.directions & named & {"left"}]
+
+
+def _direction_like(text: str) -> str:
+    """Return the direction for a word that differs from it by one slip of the keys ("leeft"); other words as they are."""
+    return next((word for word in ("left", "right", "down") if len(text) > 3 and within_one_edit(text, word)), text)
+
+
+def contradicted_zoom(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words that name a change of the magnification in the direction opposite to that of the plan."""
+    senses = {"in": _zoom_words(words, _ZOOM_IN), "out": _zoom_words(words, _ZOOM_OUT)}
+    texts = {word.text for word in words}
+    if evidence.has(ast.ZoomTo, ast.Track):
+        return []
+    if senses["in"] and evidence.zooms == {"out"} and not senses["out"] and not texts & _FACTORS_OUT:
+        return senses["in"]
+    return senses["out"] if senses["out"] and evidence.zooms == {"in"} and not senses["in"] else []
+
+
+def _zoom_words(words: Sequence[Word], sense: frozenset[str]) -> list[Word]:
+    return [
+        word
+        for i, word in enumerate(words)
+        if word.text in sense
+        and not (word.is_described or word.is_negated)
+        and (word.text not in {"in", "out"} or any(w.text.startswith(("zoom", "zom")) for w in words[max(0, i - 3) : i]))
+    ]

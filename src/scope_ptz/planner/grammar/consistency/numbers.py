@@ -1,0 +1,102 @@
+"""Find the numbers of an instruction that its plan does not use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement, pairwise
+
+from scope_ptz.english.grammar.numbers import read_number
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.consistency.evidence import Evidence
+from scope_ptz.planner.grammar.consistency.words import Word
+
+_TOLERANCE = 0.02
+_VAGUE = frozenset({"one", "couple", "zero"})  # "the one on the left", "a couple of degrees", "zero in on"
+_UNITS_OF = (1.0, 60.0, 3600.0, 360.0, 0.01)  # minutes and hours in seconds, full turns in degrees, per cent
+_NAMED = frozenset({"preset", "position", "view", "bookmark", "camera", "cam", "unit", "station", "number", "step", "task"})
+"""Words before a number that is part of a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberClaim:
+    """A number in an instruction, with its words."""
+
+    value: float
+    words: tuple[Word, ...]
+    is_fraction: bool = False
+
+
+def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words of the numbers that the plan does not use. Numbers in descriptions and negated clauses are used."""
+    claims = _claims(words)
+    left = list(evidence.numbers)
+    unmatched = [claim for claim in claims if not _take(claim, left, evidence)]
+    unmatched = [claim for claim in unmatched if not _is_product(claim, evidence)]
+    for first, second in pairwise(claims):
+        together = (
+            first.value * second.value,  # "three quarters of 20 degrees"
+            360 * first.value * second.value,  # "three quarters of the way round"
+            60 * first.value + second.value,  # "1 minute 30 seconds"
+        )
+        if first in unmatched and second in unmatched and any(_found(value, left) for value in together):
+            unmatched = [claim for claim in unmatched if claim not in (first, second)]
+    return [word for claim in unmatched for word in claim.words]
+
+
+def _claims(words: Sequence[Word]) -> list[NumberClaim]:
+    claims: list[NumberClaim] = []
+    i, listed = 0, 1  # the next number of a numbered list
+    while i < len(words):
+        read = read_number([word.text for word in words[i : i + 8]])
+        used = words[i : i + max(read.used, 1)]
+        after = words[i + read.used].text if i + read.used < len(words) else ""
+        if read.used == 1 and after in {".", ")"} and read.value == listed and i + 2 < len(words):
+            listed += 1
+        elif read.used and read.kind != "ORDINAL" and not _is_ignored(words, i, read.used):
+            claims.append(NumberClaim(abs(read.value), tuple(used), read.kind == "FRACTION"))
+        i += len(used)
+    return claims
+
+
+def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
+    before = words[start - 1].text if start else ""
+    used_words = words[start : start + used]
+    return before in _NAMED or any(word.is_described or word.is_negated or word.text in _VAGUE for word in used_words)
+
+
+def _take(claim: NumberClaim, left: list[float], evidence: Evidence) -> bool:
+    """Remove a number that the claim explains from the numbers that are left. Return whether there is one."""
+    for value in _candidates(claim, evidence):
+        for number in left:
+            if abs(number - value) <= _TOLERANCE:
+                left.remove(number)
+                return True
+    return False
+
+
+def _candidates(claim: NumberClaim, evidence: Evidence) -> list[float]:
+    """Return the numbers that a plan may use for a number of an instruction."""
+    value = claim.value
+    candidates = [value * unit for unit in _UNITS_OF]
+    if value:
+        candidates.append(1 / value)
+    if claim.is_fraction:
+        candidates += [1 + value, 1 - value, 60 + 60 * value]
+    if evidence.has(ast.Repeat):
+        candidates += [value - 1, value + 1]
+    if value == len(evidence.presets):
+        candidates.append(0.0)
+    return candidates
+
+
+def _is_product(claim: NumberClaim, evidence: Evidence) -> bool:
+    """Return whether the plan reaches a number in steps: 90 degrees as three turns of 30."""
+    if claim.value == len(evidence.presets) or (claim.value in {180, 360} and evidence.has(ast.Sweep)):
+        return True
+    pairs = combinations_with_replacement(evidence.numbers, 2)
+    return any(abs(a * b - claim.value) <= _TOLERANCE for a, b in pairs)
+
+
+def _found(value: float, numbers: Sequence[float]) -> bool:
+    return any(abs(number - value) <= _TOLERANCE for number in numbers)

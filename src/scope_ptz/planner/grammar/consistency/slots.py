@@ -1,0 +1,45 @@
+"""Find commands that a description or question has swallowed.
+
+A description is a noun phrase and a question is a question. Units of angle, conditions and commands are parts of neither.
+"""
+
+from __future__ import annotations
+
+import re
+
+_DIRECTION = r"(?:left|right|up|down|in|out|home|back|closer|wider|clockwise|anticlockwise)"
+_VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
+_ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
+_NO_NOUN_PHRASE = re.compile(
+    r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into)\b.*", re.IGNORECASE
+)
+_JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
+"""The words that can begin another clause."""
+
+_PICTURE = r"(?:photo|picture|snapshot|screenshot|image|shot)s?\b"
+_SWALLOWED = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"(?:^|\bor |{_JOINED}){_ANY_VERB} (?:the camera |it |back )*{_DIRECTION}\b.*",
+        rf"(?:^|{_JOINED}){_VERB}\b.*",
+        rf"{_JOINED}(?:take|snap|grab|save|capture) (?:a|an|the|one|two|another|\d+)? ?(?:\w+ )?{_PICTURE}.*",
+        rf"{_JOINED}(?:go|return|move|come|switch) (?:back )?(?:to )?(?:the )?(?:home|preset)\b.*",
+        r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*",
+        r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*",
+        r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
+    )
+)
+"""Patterns of commands, angles and conditions, each up to the end of the text."""
+
+
+def swallowed_commands(text: str, *, is_thing: bool) -> str | None:
+    """Return the part of a description or question that is a command; None if there is none.
+
+    Args:
+        text: The description or question.
+        is_thing: Whether it is a description, which must not be a question either.
+    """
+    for pattern in (_NO_NOUN_PHRASE, *_SWALLOWED) if is_thing else _SWALLOWED:
+        if match := pattern.search(text):
+            return match[0].strip(" ,;.?!")
+    return None
