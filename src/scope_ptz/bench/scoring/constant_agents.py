@@ -9,7 +9,7 @@ therefore an upper bound of what such an agent can win.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from scope_ptz.bench.scoring.checks import check_answer, run_checks
@@ -144,7 +144,7 @@ def _final_position(task: Task, view: EvidenceView | None) -> CameraPosition:
     return CameraPosition(None, Pose())
 
 
-def _call(task: Task, tool: str, arguments: dict[str, object], at: CameraPosition, view: EvidenceView | None) -> EpisodeCall:
+def _call(task: Task, tool: str, arguments: Mapping[str, object], at: CameraPosition, view: EvidenceView | None) -> EpisodeCall:
     observations: tuple[Observation, ...] = ()
     if tool in _LOOKS and view is not None:
         aim = view.aim
