@@ -29,14 +29,14 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).parent))
 
 from driver_parity import (
+    DEFAULT_TIME_SCALE,
     DRIVERS,
-    FAST,
     IN_PROCESS,
     OPERATOR,
-    OneViewpoint,
+    SingleViewpointCamera,
     drivers,
+    make_settling,
     same_pose,
-    settling_of,
     without_source,
 )
 from scope_ptz.agent.loop import Agent
@@ -155,7 +155,7 @@ def _visible_numbers(scene: Scene, viewpoint: str, view: Perspective, time_s: fl
 
 
 # Runs -----------------------------------------------------------------------------------------------------------------------
-class SteppedSimulation(OneViewpoint):
+class SteppedSimulation(SingleViewpointCamera):
     """A simulated camera whose moves take no scene time."""
 
     async def move(self, pose: Pose) -> Arrival:
@@ -203,8 +203,8 @@ async def compare(scene_names: list[str], objects: int, seconds: int) -> list[Co
             if not found:
                 continue
             account = Account(OPERATOR.user, OPERATOR.password, Role.OPERATOR)
-            device = VirtualDevice(scenes(scene_name), viewpoint=viewpoint.name, accounts=[account], time_scale=FAST)
-            async with drivers(device, scenes, settling_of(FAST)) as paths:
+            device = VirtualDevice(scenes(scene_name), viewpoint=viewpoint.name, accounts=[account], time_scale=DEFAULT_TIME_SCALE)
+            async with drivers(device, scenes, make_settling(DEFAULT_TIME_SCALE)) as paths:
                 for chase in found:
                     compared.append(Compared(chase))
                     compared[-1].runs[IN_PROCESS] = await _in_process(scenes, chase)

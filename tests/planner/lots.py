@@ -96,7 +96,7 @@ def _moves_alike(expected: dict[str, Any], call: PlannedCall) -> bool:
     if expected["name"] not in _MOVES:
         return call.name not in _MOVES
     if expected["name"] in {"zoom_to_object", "track_object"}:
-        return call.name == expected["name"]
+        return bool(call.name == expected["name"])
     return _fits(expected, call)
 
 

@@ -16,11 +16,11 @@ import scope_ptz
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection
 from scope_ptz.camera.conformance import CameraConformance
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import CameraError, ConfigError, InputError, PerceptionError, PlannerError, ToolCallError, UnknownNameError
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import RateLimits
-from scope_ptz.serve.site.service import SiteOptions
+from scope_ptz.serve.site.site import SiteOptions
 from tests.serve.conftest import SPEC
 from tests.serve.serving import CAMERA, Served, serving
 from tests.support.loopback import nobody_listens

@@ -18,8 +18,9 @@ def test_another_seed_draws_other_tasks(monkeypatch: pytest.MonkeyPatch) -> None
         return BuiltTasks()
 
     monkeypatch.setattr(unseen, "build", build)
-    for arguments in ({}, {"seed": 1}, {"seed": 2}, {"seed": 3}, {"seed": 2}):
-        unseen.build_unseen([], (7, 8, 9), **arguments)
+    unseen.build_unseen([], (7, 8, 9))
+    for seed in (1, 2, 3, 2):
+        unseen.build_unseen([], (7, 8, 9), seed=seed)
     published, default, second, third, again = drawn
     assert published == default == 1_000_000 + 7 + 8 * 31 + 9 * 31**2
     assert len({published, second, third}) == 3

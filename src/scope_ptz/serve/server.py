@@ -52,7 +52,7 @@ async def serving(app: ASGIApp, listener: socket.socket, closing: asyncio.Event)
     """Serve an application while the context is open, and yield the port.
 
     Args:
-        app: The application, wrapped in a ``Gate``.
+        app: The application, wrapped in a ``AccessMiddleware``.
         listener: The listening socket, which is closed at the end.
         closing: Set when the server shuts down, so that streams end.
     """

@@ -15,7 +15,7 @@ from scope_ptz.camera.network.pose_track import PosePoller
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
-from tests.camera.faults.drivers import AXIS, ONVIF, Driver, make_device, served, set_patience, until
+from tests.camera.faults.drivers import AXIS, ONVIF, Driver, make_device, served, set_timeouts, until
 from tests.support.partition import BadNetwork, Fate
 
 pytestmark = pytest.mark.anyio
@@ -67,7 +67,7 @@ async def test_live_frames_resume_after_an_outage(driver: Driver, transport: str
     async with connected(driver, transport, device) as (camera, links), aclosing(camera.frames(rate_hz=25.0)) as frames:
         await anext(frames)
         assert camera.frames_problem == ""
-        set_patience(camera, 0.5)  # type: ignore[arg-type]
+        set_timeouts(camera, 0.5)  # type: ignore[arg-type]
         links.fail(fate)
         began_s = camera.clock.now_s()
 
@@ -77,7 +77,7 @@ async def test_live_frames_resume_after_an_outage(driver: Driver, transport: str
             with pytest.raises((CameraUnreachableError, CameraTimeoutError)):
                 await camera.move(Pose(40.0, -10.0, 2.0))
             await anyio.sleep(max(0.0, began_s + OUTAGE_S - camera.clock.now_s()))
-            set_patience(camera)  # type: ignore[arg-type]
+            set_timeouts(camera)  # type: ignore[arg-type]
             links.recover()
 
         with anyio.fail_after(40):

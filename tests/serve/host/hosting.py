@@ -12,7 +12,6 @@ from typing import Any
 import httpx2
 from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
-from scope_ptz.serve.security.gate import MCP_PATH, Access
 
 from scope_ptz.bench.signatures.keys import generate_key
 from scope_ptz.serve.bench_host.application import serve_host
@@ -20,6 +19,7 @@ from scope_ptz.serve.bench_host.host import Host, participants_file
 from scope_ptz.serve.bench_host.http_routes import MESSAGES_PATH, PROGRESS_PATH
 from scope_ptz.serve.bench_host.links import HostSide, LocalLink, RunWorker
 from scope_ptz.serve.bench_host.wire import EvaluationSettings, WorkerSettings
+from scope_ptz.serve.security.access import MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
 

@@ -6,12 +6,12 @@ import asyncio
 from pathlib import Path
 
 import pytest
-from scope_ptz.serve.security.gate import MCP_PATH, Access
 
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.serve.bench_host.host import STATE_FILE, Host, locked, participants_file
 from scope_ptz.serve.bench_host.http_routes import MESSAGES_PATH, PROGRESS_PATH
 from scope_ptz.serve.bench_host.wire import EvaluationSettings
+from scope_ptz.serve.security.access import MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import Rate, RateLimits
 from scope_ptz.serve.security.tokens import TokenFile
 from tests.serve.host.hosting import HELLO, call, hosting, reply

@@ -11,7 +11,7 @@ from urllib.parse import quote, urlsplit
 
 import httpx2
 
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.endpoints.events import EventParser
 from scope_ptz.errors import (
     CameraError,

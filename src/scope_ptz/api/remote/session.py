@@ -20,7 +20,7 @@ from scope_ptz.api.options import ServedModels, SessionOptions
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection, RemoteNameError
 from scope_ptz.api.run import Event, Run, event_of
-from scope_ptz.camera.guard.guarded import KeepOutError
+from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import CameraError, InputError, PerceptionError, PlannerError, ScopeError, ToolCallError
 from scope_ptz.perception.no_perception import NoPerception
 from scope_ptz.planner.base import Decision, Planner, State

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from scope_ptz.serve.bench_host.host import Host
-    from scope_ptz.serve.security.gate import Access
+    from scope_ptz.serve.security.access import Access
     from scope_ptz.serve.security.tokens import TokenFile
 
 _PACKAGES = ("cryptography", "fastapi", "inspect_ai", "mcp", "mcp_types", "scipy", "starlette", "uvicorn")
@@ -91,7 +91,7 @@ def host(
     with _naming_extras():
         from scope_ptz.serve.bench_host.host import Host, locked, participants_file
         from scope_ptz.serve.bench_host.wire import EvaluationSettings, PerceptionSettings
-        from scope_ptz.serve.security.gate import Access
+        from scope_ptz.serve.security.access import Access
         from scope_ptz.serve.security.tokens import TokenFile
 
     settings = EvaluationSettings(

@@ -16,7 +16,7 @@ from scope_ptz.serve.bench_host.host import Host
 from scope_ptz.serve.bench_host.http_routes import MESSAGES_PATH, http_routes, scope_error
 from scope_ptz.serve.bench_host.mcp_channel import serving_mcp_channel
 from scope_ptz.serve.http.errors import http_error
-from scope_ptz.serve.security.gate import MCP_PATH, Access, Gate
+from scope_ptz.serve.security.access import MCP_PATH, Access, AccessMiddleware
 from scope_ptz.serve.server import serving
 from scope_ptz.virtual_camera.http.server import listen
 
@@ -42,7 +42,7 @@ async def serve_host(host: Host, access: Access, *, port: int = 8000) -> AsyncIt
         async with serving_mcp_channel(host, access) as mcp:
             routes = [Route("/", root), *http_routes(host, access), mcp]
             app = Starlette(routes=routes, exception_handlers={HTTPException: http_error, ScopeError: scope_error})
-            async with serving(Gate(app, access), listener, host.closing) as bound:
+            async with serving(AccessMiddleware(app, access), listener, host.closing) as bound:
                 yield bound
     finally:
         await host.close()

@@ -12,7 +12,7 @@ from starlette.routing import Route
 from scope_ptz.serve.bench_host.evaluation import HostedEvaluation, NotReadyError, NotYourTurnError
 from scope_ptz.serve.bench_host.host import Host
 from scope_ptz.serve.http.errors import error_reply
-from scope_ptz.serve.security.gate import Access
+from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import Kind
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.error_codes import status_of
@@ -24,7 +24,7 @@ HEALTH_PATH = "/api/v1/health"
 
 
 def http_routes(host: Host, access: Access) -> list[Route]:
-    """Return the routes of the HTTP channel, to be mounted behind a ``Gate``."""
+    """Return the routes of the HTTP channel, to be mounted behind a ``AccessMiddleware``."""
 
     async def messages(request: Request) -> Response:
         evaluation = _evaluation(request, "command")

@@ -52,7 +52,7 @@ from scope_ptz.serve.mcp.pictures import UNTRUSTED_META
 from scope_ptz.serve.mcp.server import Context
 from scope_ptz.serve.mcp.tool import ToolArguments, failure, parse_arguments, reply, without_titles
 from scope_ptz.serve.mcp.untrusted import between_markers, mark_texts
-from scope_ptz.serve.security.gate import MAX_BODY_BYTES, MCP_PATH, Access
+from scope_ptz.serve.security.access import MAX_BODY_BYTES, MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.tools.registry import TOOLS
 from scope_ptz.version import __version__
@@ -88,7 +88,7 @@ _OWN_TOOLS: dict[str, type[ToolArguments]] = {"begin_task": BeginTask, "view": V
 
 @asynccontextmanager
 async def serving_mcp_channel(host: Host, access: Access) -> AsyncIterator[Route]:
-    """Serve the MCP channel while the context is open, and yield its route, which must be mounted behind a ``Gate``."""
+    """Serve the MCP channel while the context is open, and yield its route, which must be mounted behind a ``AccessMiddleware``."""
     handlers = _Handlers(host, access.limits)
     server: Server[Any] = Server(
         "scope-ptz-host",

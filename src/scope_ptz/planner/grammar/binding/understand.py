@@ -58,8 +58,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     steps = parse(instruction, preset_names or ()).steps
     try:
         bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction, preset_names or ())
-    except UnresolvedError as question:
-        return Understanding(clarification=str(question))
+    except UnresolvedError as unresolved:
+        return Understanding(clarification=str(unresolved))
     if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
