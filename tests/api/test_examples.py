@@ -26,12 +26,14 @@ ARGUMENTS = {
 }
 FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py", "pydantic_ai_agent.py")
 """Programs that need a model server: see ``test_function_calling_examples.py``."""
+HOSTED = ("hosted_agent.py", "hosted_agent_mcp.py")
+"""Programs that connect to a host of an evaluation: see ``tests/full/test_hosting_recipe.py``."""
 
 SLOW = {"evaluate.py", "batch_over_views.py", "own_planner.py"}  # 6 to 10 s each
 
 
 def test_every_example_is_run() -> None:
-    assert {path.name for path in EXAMPLES.glob("*.py")} == {*EXPECTED, *FUNCTION_CALLING}
+    assert {path.name for path in EXAMPLES.glob("*.py")} == {*EXPECTED, *FUNCTION_CALLING, *HOSTED}
 
 
 @pytest.mark.usefixtures("opened_once")

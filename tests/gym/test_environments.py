@@ -19,7 +19,7 @@ from gymnasium.utils.env_checker import check_env
 import scope_ptz.gym as scope_gym
 from scope_ptz.errors import InputError, UnknownNameError
 from scope_ptz.gym.world import MAX_SCENES, World
-from scope_ptz.simulator.pack import Scene, list_scenes
+from scope_ptz.simulator.pack import Scene, list_scenes, load_scene
 from tests.gym.conftest import COUNTING, TURNING, YARD
 
 Make = Callable[..., Any]
@@ -184,7 +184,8 @@ except ImportError as error:
     assert 'pip install "scope-ptz[gym]"' in message
 
 
-def test_a_world_keeps_only_its_last_scenes_open() -> None:
+def test_a_world_keeps_only_its_last_scenes_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.gym.world.shared_scene", load_scene)  # scenes that no other test keeps open
     world = World("ground-truth", SMALL, SMALL)
     opened: list[weakref.ref[Scene]] = []
     for name in (*list_scenes(), *list_scenes()):

@@ -141,9 +141,9 @@ def load_tasks(
 
     Example:
         >>> import scope_ptz
-        >>> tasks = scope_ptz.load_tasks("core", limit=8)
+        >>> tasks = scope_ptz.load_tasks("core", limit=16)
         >>> len(tasks), len({task.category for task in tasks})
-        (8, 8)
+        (16, 8)
     """
     from scope_ptz.bench.engine.entries import select
     from scope_ptz.factory.evaluation import tasks_of

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections import Counter
 from functools import partial
 from pathlib import Path
@@ -18,14 +19,19 @@ from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from tests.bench.engine.editing import Change, Json, edited, files_of, records_of, set_trace, trace_change, write_log
 from tests.cli.conftest import Scope
+from tests.frozen import adapter
 
 PUBLISHED = Path(__file__).parents[2] / "frozen" / "v0_1_0" / "logs" / "truth.eval"
-"""A log of published tasks, with successes and failures."""
+"""A log of published tasks, with successes and failures, that version 0.1.0 wrote."""
 
 
 @pytest.fixture(scope="module")
-def honest() -> Evaluation:
-    found = read_evaluation(PUBLISHED)
+def honest(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
+    """The log with the scores of the current rules, as if it had been written now."""
+    log = tmp_path_factory.mktemp("honest") / PUBLISHED.name
+    shutil.copy(PUBLISHED, log)
+    assert adapter.rescore_checks(log).code == 0
+    found = read_evaluation(log)
     assert found.findings == ()
     assert failures(found)
     return found
@@ -91,7 +97,7 @@ def claim_answer(sample: Json) -> None:
 )
 def test_edited_scores_are_named_and_not_used(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
     assert found.trials == honest.trials
     assert {finding.sample for finding in found.findings} == set(attacked)
     assert {finding.kind for finding in found.findings} == {"score-differs"}
@@ -126,7 +132,7 @@ def imported_task(sample: Json) -> None:
 @pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task, imported_task])
 def test_the_published_task_decides(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", change, attacked))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
     assert [(t.task, t.headline, t.error_mode, t.checks) for t in found.trials] == [
         (t.task, t.headline, t.error_mode, t.checks) for t in honest.trials
     ]
@@ -138,7 +144,7 @@ def test_presets_of_the_log_do_not_decide_where_the_camera_stood(honest: Evaluat
         places = sample["store"][STORE]["presets"]
         sample["store"][STORE]["presets"] = dict.fromkeys(places, "elsewhere")
 
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "a.eval", everywhere_the_same, [t.sample for t in honest.trials]))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "a.eval", everywhere_the_same, [t.sample for t in honest.trials]))
     assert found.trials == honest.trials
 
 
@@ -210,7 +216,7 @@ def no_time(records: list[Json]) -> None:
 )  # fmt: skip
 def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evaluation, tmp_path: Path, change: Any) -> None:
     names = [trial.sample for trial in honest.trials if trial.tool_calls]
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", trace_change(change), names))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", trace_change(change), names))
     assert {trial.headline for trial in found.trials if trial.sample in names} == {"unscored"}
     assert {finding.sample for finding in found.findings} == set(names)
     assert {finding.kind for finding in found.findings} <= {"trace-damaged", "trace-missing"}
@@ -219,7 +225,7 @@ def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evalua
 def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     names = [trial.sample for trial in honest.trials]
     for number, text in enumerate(("", "nothing", '{"event": "start"}\n', "[]\n" * 5)):
-        path = edited(PUBLISHED, tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
+        path = edited(Path(honest.log), tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
         found = read_evaluation(path)
         assert not correct(found)
         assert len(found.trials) == len(honest.trials)
@@ -229,7 +235,7 @@ def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_pa
     def without_store(sample: Json) -> None:
         sample["store"], sample["events"] = {}, []
 
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "store.eval", without_store, names))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "store.eval", without_store, names))
     assert {trial.headline for trial in found.trials} == {"unscored"}
 
 
@@ -244,14 +250,16 @@ def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Eval
         set_trace(sample, "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records))
 
     names = [trial.sample for trial in honest.trials]
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "unusual.eval", unusual, names))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "unusual.eval", unusual, names))
     assert {trial.answer for trial in found.trials} == {"One\u2028two\x85three."}
     assert "unscored" not in {trial.headline for trial in found.trials}
 
 
 def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     gone = set(failures(honest))
-    files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
+    files = {
+        n: c for n, c in files_of(Path(honest.log)).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)
+    }
     found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
     assert correct(found) == correct(honest)
     assert len(found.trials) == len(honest.trials)
@@ -261,7 +269,9 @@ def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path
 @pytest.mark.parametrize("status", ["success", "cancelled", "error"])
 def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path, status: str) -> None:
     gone = set(failures(honest))
-    files = {n: c for n, c in files_of(PUBLISHED).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)}
+    files = {
+        n: c for n, c in files_of(Path(honest.log)).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)
+    }
     dataset = files["header.json"]["eval"]["dataset"]
     dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
     dataset["samples"] = len(dataset["sample_ids"])
@@ -273,7 +283,7 @@ def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluati
 
 def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
     """A success replaces failures, under their names; or it is added once more, under its own."""
-    files = files_of(PUBLISHED)
+    files = files_of(Path(honest.log))
     samples = {f"{c['id']}#{c['epoch']}": (n, c) for n, c in files.items() if n.startswith("samples/")}
     success = samples[sorted(correct(honest))[0]][1]
     failed_name, failed = samples[failures(honest)[0]]
@@ -293,7 +303,7 @@ def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) ->
 
 def test_further_runs_of_a_task_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
     """A success is run once more than the card states, which would give its task more weight."""
-    files = files_of(PUBLISHED)
+    files = files_of(Path(honest.log))
     name = sorted(correct(honest))[0]
     again = next(
         json.loads(json.dumps(c)) for n, c in files.items() if n.startswith("samples/") and f"{c['id']}#{c['epoch']}" == name
@@ -308,8 +318,8 @@ def test_further_runs_of_a_task_do_not_count(honest: Evaluation, tmp_path: Path)
     assert "repeat 2, but the card states 1" in found.findings[0].detail
 
 
-def test_a_card_with_other_models_is_named(tmp_path: Path) -> None:
-    files = files_of(PUBLISHED)
+def test_a_card_with_other_models_is_named(honest: Evaluation, tmp_path: Path) -> None:
+    files = files_of(Path(honest.log))
     files["header.json"]["eval"]["metadata"]["card"]["perception"] |= {"name": "moondream3", "deterministic": False}
     found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
     assert [finding.kind for finding in found.findings] == ["card-differs"]
@@ -323,7 +333,7 @@ def test_a_task_that_the_split_does_not_have_is_not_correct(honest: Evaluation, 
         for part in (sample, sample["metadata"], sample["metadata"]["task"]):
             part["id"] = "scope1-invented-counting-001"
 
-    found = read_evaluation(edited(PUBLISHED, tmp_path / "attacked.eval", rename, [name]))
+    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", rename, [name]))
     assert not correct(found) - correct(honest)
     assert {"task-unknown", "sample-missing"} <= {finding.kind for finding in found.findings}
 

@@ -136,7 +136,7 @@ def test_the_label_of_isolation_is_in_the_first_table() -> None:
     made = build(fixed("qwen3-4b", (1,)), *outside)
     assert row(made, "choice", "qwen3-4b + moondream2")["isolation"] == "built in"
     for label in labels:
-        assert row(made, "choice", f"qwen3-4b + moondream2, agent mine:{label}")["isolation"] == label
+        assert row(made, "choice", f"qwen3-4b + moondream2, agent mine:{label} ({label})")["isolation"] == label
 
 
 def test_chance_corrected_accuracy_is_shown_if_the_tasks_are_known(report: EvaluationReport) -> None:

@@ -48,6 +48,7 @@ class EvaluationReport:
 
     Attributes:
         runs: The runs in the order of the report.
+        contradictions: Logs that contradict their traces.
         problems: Evaluations that ended in an error, are unfinished, or lost many trials to infrastructure, with bounds.
         notice: A notice that applies to the whole report, such as that its runs are simulated; may be empty.
         summary: The main results.
@@ -56,6 +57,7 @@ class EvaluationReport:
     """
 
     runs: tuple[ReportRun, ...]
+    contradictions: tuple[str, ...]
     problems: tuple[str, ...]
     notice: str
     summary: tuple[str, ...]
@@ -125,6 +127,7 @@ def build_report(
     ]
     return EvaluationReport(
         runs,
+        tuple(line for run in runs for line in finding_lines(run.evaluation)),
         problems(runs),
         _notice(runs),
         (*_summary(runs, ranked, comparable), *chance_lines(runs, tasks or {})),
@@ -143,8 +146,7 @@ def _without_empty_tables(section: Section) -> Section:
 
 
 def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
-    warnings = [line for run in runs for line in finding_lines(run.evaluation)]
-    warnings += stored_verdict_lines([run.evaluation for run in runs])
+    warnings = stored_verdict_lines([run.evaluation for run in runs])
     if left_out := [run.label for run in ranked if run not in comparable]:
         warnings.append(
             f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "

@@ -22,6 +22,7 @@ def terminal_lines(report: EvaluationReport) -> Iterator[str]:
     """Yield the lines that the command prints: what does not hold, which pair to choose, and the main results."""
     if report.notice:
         yield report.notice
+    yield from report.contradictions
     yield from report.problems
     choice = report.sections[0]
     yield from choice.text

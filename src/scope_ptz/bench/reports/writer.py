@@ -115,7 +115,7 @@ def markdown(report: EvaluationReport) -> str:
     """Return the report as Markdown. Its charts are the files in ``charts/``."""
     parts = ["# SCOPE benchmark report"]
     parts += [f"> **{escape(report.notice)}**"] if report.notice else []
-    parts += ["> " + escape(line) for line in report.problems]
+    parts += ["> " + escape(line) for line in (*report.contradictions, *report.problems)]
     for number, section in enumerate(report.sections):
         parts.append(f"## {escape(section.title)}")
         parts += [escape(line) for line in section.text]

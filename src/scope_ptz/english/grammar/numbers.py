@@ -13,6 +13,7 @@ NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen
 ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
 
 _DIGITS = re.compile(r"[-+−]?\d*\.?\d+")
+_FRACTION = re.compile(r"\d{1,9}/\d{1,9}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     """
     if not words:
         return NumberPhrase()
-    if "/" in words[0]:
+    if _FRACTION.fullmatch(words[0]):
         numerator, denominator = words[0].split("/")
         return NumberPhrase(int(numerator) / int(denominator), 1, "FRACTION") if int(denominator) else NumberPhrase()
     if _DIGITS.fullmatch(words[0]):

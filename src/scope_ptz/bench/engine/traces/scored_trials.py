@@ -26,13 +26,21 @@ TIME_TOLERANCE_S = 1e-6
 """Tolerance for the scene time at the start of a run, in seconds."""
 
 
-def published_entry(entry: Entry) -> tuple[Entry, bool]:
-    """Return an entry with the published task of the same id, and whether the task or the facts in ``entry`` differ from it.
+def published_entry(entry: Entry, *, published_split: bool = False) -> tuple[Entry, bool]:
+    """Return an entry with the published task that it is, and whether the task or the facts in ``entry`` differ from it.
 
-    An entry whose task is not published is returned unchanged.
+    An entry whose task is not published is returned unchanged. A private task may have the id of a published one: it is the
+    published task only if the scene and the instruction are the same too.
+
+    Args:
+        entry: The entry of a log or a submission.
+        published_split: Whether it belongs to a published split. Its id alone then decides.
     """
     found = entry_of_published(entry.facts.id, entry.facts.viewpoint)
     if found is None:
+        return entry, False
+    same_wording = (entry.world, entry.facts.instruction) == (found.world, found.facts.instruction)
+    if not (published_split or same_wording or entry.task is None):
         return entry, False
     same_task = entry.task is not None and entry.imported is None and digest_of([entry.task]) == published_digest(entry.facts.id)
     same_start = (entry.facts, entry.world, entry.time_s) == (found.facts, found.world, found.time_s)

@@ -71,7 +71,7 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
         TraceError: The sample contains no task.
     """
     scores = sample.get("scores") or {}
-    entry, differs = _entry_of(sample)
+    entry, differs = _entry_of(sample, published_split=split in SPLITS)
     judgements, epoch = judgements_in(scores), int(sample["epoch"])
     name = sample_name(entry.facts.id, epoch)
     findings = []
@@ -96,10 +96,10 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
     return TracedTrial(trial, tuple(findings), entry, digest, models_of(stored_run))
 
 
-def _entry_of(sample: Mapping[str, Any]) -> tuple[Entry, bool]:
+def _entry_of(sample: Mapping[str, Any], *, published_split: bool) -> tuple[Entry, bool]:
     """Return ``published_entry`` of a sample. The published task also replaces a copy that cannot be read."""
     try:
-        return published_entry(Entry.of_metadata(sample["metadata"]))
+        return published_entry(Entry.of_metadata(sample["metadata"]), published_split=published_split)
     except TraceError:
         published = entry_of_published(str(sample.get("id")))
         if published is None:
