@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections import Counter
+from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -255,11 +256,14 @@ def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Eval
     assert "unscored" not in {trial.headline for trial in found.trials}
 
 
+def without_samples(log: Path, names: Collection[str]) -> dict[str, Any]:
+    """Return the files of a log without those of some samples."""
+    return {n: c for n, c in files_of(log).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in names)}
+
+
 def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     gone = set(failures(honest))
-    files = {
-        n: c for n, c in files_of(Path(honest.log)).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)
-    }
+    files = without_samples(Path(honest.log), gone)
     found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
     assert correct(found) == correct(honest)
     assert len(found.trials) == len(honest.trials)
@@ -269,9 +273,7 @@ def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path
 @pytest.mark.parametrize("status", ["success", "cancelled", "error"])
 def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path, status: str) -> None:
     gone = set(failures(honest))
-    files = {
-        n: c for n, c in files_of(Path(honest.log)).items() if not (n.startswith("samples/") and f"{c['id']}#{c['epoch']}" in gone)
-    }
+    files = without_samples(Path(honest.log), gone)
     dataset = files["header.json"]["eval"]["dataset"]
     dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
     dataset["samples"] = len(dataset["sample_ids"])
