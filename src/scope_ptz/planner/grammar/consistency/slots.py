@@ -11,7 +11,9 @@ _DIRECTION = r"(?:left|right|up|down|in|out|home|back|closer|wider|clockwise|ant
 _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
-    r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into)\b.*", re.IGNORECASE
+    r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
+    r"|\b(?:are|is|were|was) there\b.*",
+    re.IGNORECASE,
 )
 _JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
 """The words that can begin another clause."""
@@ -27,6 +29,7 @@ _SWALLOWED = tuple(
         r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*",
         r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*",
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
+        r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )
 )
 """Patterns of commands, angles and conditions, each up to the end of the text."""

@@ -36,9 +36,15 @@ _IF_ANY = re.compile(
 _LOOKS = re.compile(r"\b(?:how many|what|which|count|tell me|let me know|who|where|if|unless|until)\b", re.IGNORECASE)
 
 
+_PARK = re.compile(
+    r"(^|[,;.]\s*|\b(?:and|then|please|now)\s+)park (?:the camera |it |yourself )?(?:at|on|over|by|in)\b(?= \w)", re.IGNORECASE
+)
+"""To park the camera is to send it home, but to park it at a preset is to go there."""
+
+
 def with_settings_first(text: str) -> str:
     """Return an instruction with the moves before the question, if its words say that the moves serve the question."""
-    text = _IF_ANY.sub(r"\1", text)
+    text = _PARK.sub(r"\1go to", _IF_ANY.sub(r"\1", text))
     plain = text.strip()
     for pattern in _PATTERNS:
         match = pattern.fullmatch(plain)
