@@ -88,6 +88,7 @@ def test_action_only_tasks_expect_no_reply() -> None:
     assert not any(expects_reply(task) for task in tasks if isinstance(task.expected, ActionOnly))
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("text", ["None.", "1", "red"])
 async def test_the_real_tools_give_the_same_verdicts(text: str) -> None:
     """The moves and the look of the reference program, through the real tools, on tasks with one view."""

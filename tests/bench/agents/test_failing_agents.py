@@ -288,4 +288,8 @@ anyio.run(play, started_in(Path({str(tmp_path)!r}), {name!r}))
     wait_for_end(pid)
 
 
-pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")]
+pytestmark = [
+    pytest.mark.full,
+    pytest.mark.anyio,
+    pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc"),
+]

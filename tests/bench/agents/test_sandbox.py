@@ -134,6 +134,7 @@ async def test_a_program(tmp_path: Path) -> None:
 
 
 @needs_sandbox
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("body", "kind"),
     [

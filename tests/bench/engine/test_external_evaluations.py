@@ -40,6 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "agent"
 
 
+@pytest.mark.full
 def test_failures_of_the_agent_are_scored(scope: Scope, tasks_file: Path, folder: Path) -> None:
     (folder / "failing_agent.py").write_text(FAILING)
     options = ("--agent", "failing_agent:Agent", "--agent-step-s", "5", "--no-pictures", "--out", "logs", "--json")
@@ -67,6 +68,7 @@ class Agent:
 """
 
 
+@pytest.mark.full
 def test_labels_and_limits_are_part_of_the_identity(scope: Scope, tasks_file: Path, folder: Path) -> None:
     (folder / "quick_agent.py").write_text(QUICK)
 
@@ -105,6 +107,7 @@ class Agent:
 
 
 @needs_sandbox
+@pytest.mark.full
 def test_a_sandboxed_agent_does_not_see_logs_and_tasks_in_its_folder(scope: Scope, tasks_file: Path, folder: Path) -> None:
     (folder / "curious_agent.py").write_text(CURIOUS)
     (folder / "tasks.jsonl").write_bytes(tasks_file.read_bytes())

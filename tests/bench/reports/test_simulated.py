@@ -69,6 +69,7 @@ def full(tmp_path_factory: pytest.TempPathFactory) -> EvaluationReport:
     return build_report([read_result(path) for path in paths], load_registry())
 
 
+@pytest.mark.full
 def test_everything_that_the_paper_shows_is_filled(full: EvaluationReport) -> None:
     for shown, (key, columns) in FILLED.items():
         found = table(full, key)
@@ -88,6 +89,7 @@ def test_everything_that_the_paper_shows_is_filled(full: EvaluationReport) -> No
     assert tasks == {CATEGORY_TITLES[c.category]: c.tasks for c in load_paper().categories} | {"All": 536}
 
 
+@pytest.mark.full
 def test_every_name_says_that_it_is_simulated(full: EvaluationReport) -> None:
     assert full.notice.startswith("All runs of this report are simulated: no model was run.")
     assert full.notice in html(full) and next(iter(terminal_lines(full))) == full.notice
@@ -98,6 +100,7 @@ def test_every_name_says_that_it_is_simulated(full: EvaluationReport) -> None:
         assert all(name.startswith(("simulated-", "Mean of")) for name in names), key
 
 
+@pytest.mark.full
 def test_the_known_strengths_are_within_the_intervals(full: EvaluationReport) -> None:
     counts = recovered(full)
     # The effects of the viewpoints are shared by all pairs of a report, so that intervals miss together. The rate over many reports
@@ -108,6 +111,7 @@ def test_the_known_strengths_are_within_the_intervals(full: EvaluationReport) ->
     assert all(inside >= 0.8 * total for inside, total in counts.values()), counts
 
 
+@pytest.mark.full
 def test_latencies_error_modes_losses_and_the_judge_are_recovered(full: EvaluationReport) -> None:
     for pair in paper_pairs():
         planner = row(full, "latency_planner", f"simulated-{pair.planner}")["trial_median"]
@@ -129,6 +133,7 @@ def test_latencies_error_modes_losses_and_the_judge_are_recovered(full: Evaluati
     assert len(full.problems) == 2 and FAILURE in text and " + ".join(f"simulated-{name}" for name in HIGH_LOSS) in text
 
 
+@pytest.mark.full
 def test_the_known_order_is_not_contradicted(full: EvaluationReport) -> None:
     """A pair that is shown to be better is better, and the truly best pair is among the leaders."""
     truth = {pair.label: pair.macro for pair in paper_pairs()}
@@ -180,6 +185,7 @@ def category_share(run: ReportRun, name: str) -> object:
     return proportion(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
+@pytest.mark.full
 def test_about_95_percent_of_intervals_contain_the_truth() -> None:
     macro, by_category = covered(paper_pairs()[8], range(40), fresh=True)
     assert 0.88 <= fmean(macro) <= 1.0 and 0.92 <= fmean(by_category) <= 0.99
@@ -209,6 +215,7 @@ def test_differences_between_pairs_are_covered() -> None:
     assert 0.92 <= fmean(inside) <= 0.99
 
 
+@pytest.mark.full
 def test_difficulty_is_checked_on_items_that_do_not_use_the_rule(full: EvaluationReport) -> None:
     text = " ".join(next(s for s in full.sections if s.key == "difficulty").text)
     assert "classes by item statistics" in text
@@ -216,6 +223,7 @@ def test_difficulty_is_checked_on_items_that_do_not_use_the_rule(full: Evaluatio
     assert cells(full, "choice", paper_pairs()[0])["number"] is not None
 
 
+@pytest.mark.full
 def test_the_command_reads_stored_simulations(tmp_path: Path) -> None:
     from typer.testing import CliRunner
 

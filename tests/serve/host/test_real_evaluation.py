@@ -144,6 +144,7 @@ async def test_an_agent_that_gives_up_fails_and_counts(tmp_path: Path, settings:
         assert not any(trial.headline == "infrastructure" for trial in trials)
 
 
+@pytest.mark.full
 async def test_a_restarted_host_carries_the_attempt_on(tmp_path: Path, settings: EvaluationSettings) -> None:
     async with hosting(tmp_path / "host", run_worker, settings) as hosted, hosted.agent() as agent:
         done = [await solve(agent)]
@@ -165,6 +166,7 @@ async def test_a_restarted_host_carries_the_attempt_on(tmp_path: Path, settings:
         assert len(read_evaluation(log).trials) == len(TASKS)
 
 
+@pytest.mark.full
 async def test_the_order_differs_between_participants_and_not_between_restarts(
     tmp_path: Path, settings: EvaluationSettings
 ) -> None:
