@@ -217,3 +217,19 @@ def test_next_steps_can_be_typed(on_path: bool, started: str, shown: str, scope:
 def _started_as(program: str, monkeypatch: pytest.MonkeyPatch, work: Any) -> bool:
     monkeypatch.setattr("sys.argv", [program])
     return run_until_interrupted(work)
+
+
+def test_a_thing_that_nobody_can_know_is_an_error_and_an_absent_one_is_counted(scope: Scope) -> None:
+    unknown = scope("ask", "count the gizmotrons", "--scene", SCENE, "--json")
+    assert unknown.code == 1
+    for call in unknown.json["tool_calls"]:
+        assert "'gizmotrons'" in call["error"] and call["result"] is None
+    absent = scope("ask", "count the giraffes", "--scene", SCENE, "--json")
+    assert absent.code == 0
+    assert absent.json["tool_calls"][0]["result"]["count"] == 0
+
+
+def test_a_look_that_works_after_one_that_failed_is_an_answer(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = calls(("count_objects", {"description": "gizmotrons"})), calls(("count_objects", {"description": "balls"}))
+    follow(monkeypatch, first, second, answer("There are three balls."))
+    assert scope("ask", COUNT, "--scene", SCENE, "--json").code == 0
