@@ -70,7 +70,7 @@ class ScriptedWorker:
         try:
             while True:
                 try:
-                    async with asyncio.timeout(self.step_s):
+                    async with asyncio.timeout(self.step_s if log else None):  # time counts from the first message
                         message = await channel.receive()
                 except TimeoutError:
                     raise agent_failed("agent-timeout", "The agent took too long.") from None
