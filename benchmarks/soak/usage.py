@@ -11,6 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import ClassVar
 
+# Our names of memory sizes, and those in /proc/self/status.
 STATUS = {"memory_mb": "VmRSS", "anonymous_mb": "RssAnon", "files_mb": "RssFile"}
 
 
@@ -43,7 +44,7 @@ class WakeUpDelays:
         return longest_s
 
     def end(self) -> None:
-        """End the thread."""
+        """Stop ``watch``, so that its thread ends."""
         self._ended.set()
 
 
@@ -59,9 +60,9 @@ class MallocInfo(ctypes.Structure):
 def counts() -> dict[str, float]:
     """Return the memory, threads, sockets and processor time of this process."""
     sockets = 0
-    for each in Path("/proc/self/fd").iterdir():
+    for descriptor in Path("/proc/self/fd").iterdir():
         with suppress(OSError):
-            sockets += str(each.readlink()).startswith("socket:")
+            sockets += str(descriptor.readlink()).startswith("socket:")
     used = resource.getrusage(resource.RUSAGE_SELF)
     return {
         **memory(),

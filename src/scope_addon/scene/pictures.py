@@ -17,7 +17,7 @@ _RENDER_SETTINGS = (
     "filepath", "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y", "use_border",
     "use_file_extension", "use_multiview", "use_overwrite", "use_placeholder", "use_sequencer",
 )  # fmt: skip
-_IMAGE_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth", "compression")  # media_type exists from 5.0 on
+_IMAGE_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth", "compression")  # media_type exists since Blender 5.0
 
 
 def take(scene: Any, camera: Any, size: tuple[int, int], source: str) -> Callable[[], bytes]:
@@ -50,7 +50,7 @@ def viewport() -> tuple[Any, Any] | None:
 
 
 def appearance(source: str) -> str:
-    """Return a text that changes with those settings of the viewport or the render engine that change how pictures look."""
+    """Return a string that identifies how pictures look: the shading settings of the viewport, or the render engine."""
     scene, found = bpy.context.scene, viewport() if source == "VIEWPORT" and not bpy.app.background else None
     if found is None:
         return scene.render.engine

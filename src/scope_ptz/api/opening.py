@@ -56,8 +56,8 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
 
     Args:
         camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), a ``Camera`` object, or a camera on a
-            ``scope serve`` server ("http://host:8000/yard-gate"). With a server, the planner and perception run there, and ``pair``
-            and ``preset`` are the only other arguments. Its token comes from the environment variable SCOPE_TOKEN.
+            ``scope serve`` server ("http://host:8000/yard-gate"). With a server, the planner and perception run there, and you
+            can pass only ``pair`` and ``preset`` as well. The server's token comes from the environment variable SCOPE_TOKEN.
         planner: name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
         perception: name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
         pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.

@@ -29,7 +29,7 @@ DIGEST_CHARS = 16
 
 
 def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """Return the run card of a human session, in which the person is both planner and perception."""
+    """Return the run card of a session by the person named ``by``, who is both planner and perception."""
     person = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
@@ -89,7 +89,7 @@ class StoredHumanRun:
 
 
 def open_run(result: Path, sample: str) -> StoredHumanRun:
-    """Open a run by its name (``Trial.sample``). Its folder is in the folder of the result.
+    """Open a run by its name (``Trial.sample``). Its folder is next to the result file.
 
     Raises:
         TraceError: The run cannot be read, or its name refers to a path outside the folder.

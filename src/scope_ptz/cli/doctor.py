@@ -168,10 +168,10 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
     console = Console(highlight=False)
 
     async def work() -> None:
-        choice = await resolve_models(options)
-        if choice.planner.endpoint is None and choice.perception.spec is None:
+        resolved = await resolve_models(options)
+        if resolved.planner.endpoint is None and resolved.perception.spec is None:
             raise InputError("There is no server to check. Give one with --planner-url, or with --perception and --perception-url.")
-        async for server, check in _server_checks(choice.planner, choice.perception):
+        async for server, check in _server_checks(resolved.planner, resolved.perception):
             results.append((server, check))
             if not as_json:
                 _show_check(console, server, check)
@@ -189,11 +189,11 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
         from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
 
-        server, alive = f"planner {planner.name}".strip(), False
+        server, completed = f"planner {planner.name}".strip(), False
         async for check in check_chat(planner.endpoint):
-            alive = check.what == UNKNOWN_MODEL_CHECK
+            completed = check.what == UNKNOWN_MODEL_CHECK  # the last check; an unreachable server does not get this far
             yield server, check
-        if alive:
+        if completed:
             async for check in check_planning(planner.endpoint, schemas(), planner.options):
                 yield server, check
     if perception.spec is not None:

@@ -76,7 +76,7 @@ class Caller:
     ) -> T | ServerFailure:
         """Make and record one attempt.
 
-        A failure is returned instead of raised, so that it carries no library exception, which may quote a key.
+        A failure is returned instead of raised, so that no library exception is chained to it: such exceptions may quote a key.
         """
         open_for_s = self.breaker.admit()
         if open_for_s is not None:

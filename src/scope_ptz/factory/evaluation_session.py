@@ -45,7 +45,7 @@ GC_THRESHOLDS = (20_000, 20, 50)
 
 
 class EvaluationSession:
-    """The tasks, models and connections of one call of ``evaluate``. ``close`` closes the connections."""
+    """The tasks, models and connections of one call to ``evaluate``. ``close`` closes the connections."""
 
     def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
         from scope_ptz.bench.engine.entries import digest, select
@@ -255,21 +255,22 @@ class _CircuitBreaker(Watcher):
 
 @contextmanager
 def reduced_garbage_collection() -> Iterator[None]:
-    """Run the garbage collector less often inside the block, and exclude existing objects from it.
+    """Run the garbage collector less often inside the block, and exclude existing objects from collection.
 
     Scenes and tasks consist of many small objects. Scanning them repeatedly would take a tenth of an evaluation's time.
-    If the program has already excluded objects, no further ones are excluded, because ``gc.unfreeze`` would include all of them.
+    If the program has already called ``gc.freeze``, existing objects stay included: ``gc.unfreeze`` at the end of the block
+    would also unfreeze the objects of the program.
     """
-    thresholds, freezes = gc.get_threshold(), gc.get_freeze_count() == 0
+    thresholds, can_freeze = gc.get_threshold(), gc.get_freeze_count() == 0
     gc.collect()
-    if freezes:
+    if can_freeze:
         gc.freeze()
     gc.set_threshold(*GC_THRESHOLDS)
     try:
         yield
     finally:
         gc.set_threshold(*thresholds)
-        if freezes:
+        if can_freeze:
             gc.unfreeze()
 
 
@@ -298,7 +299,10 @@ def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Pla
 
 
 def _is_built_in(pair: ResolvedPair) -> bool:
-    """Return whether planner and perception are built in. Repeating some of their cheap runs when resuming is acceptable."""
+    """Return whether planner and perception are built in.
+
+    Their runs are cheap, so an interrupted evaluation may lose some of them and repeat them when it is resumed.
+    """
     planner, perception = pair.planner, pair.perception
     return (
         planner.name == GRAMMAR

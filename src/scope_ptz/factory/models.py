@@ -165,7 +165,7 @@ def _make_served_truth(served_truth: Callable[[], ServedTruth] | None) -> Percep
 
 
 def dry_run_note(note: str) -> str:
-    """Return the note of a dry run: what its answers are about, and the note about perception."""
+    """Return the note for the user about a dry run, followed by ``note``, which is about perception."""
     return f"Dry run: nothing has moved, and answers are about the view at the start. {note}".rstrip()
 
 

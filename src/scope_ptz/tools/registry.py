@@ -1,4 +1,4 @@
-"""The registry of the nine tools of the paper. To add a tool, write a module for it and add it to ``TOOLS``."""
+"""The registry of the nine camera tools of the paper. To add a tool, write a module for it and add it to ``TOOLS``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ToolRegistry(Mapping[str, Tool]):
     """Tools by name, in the order in which planners receive them.
 
     Args:
-        tools: The tools.
+        tools: The tools, in this order.
     """
 
     def __init__(self, *tools: Tool) -> None:

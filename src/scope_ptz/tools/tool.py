@@ -19,7 +19,7 @@ def _json_schema(arguments: type[Arguments]) -> dict[str, Any]:
     return arguments.model_json_schema()
 
 
-def _always_false(arguments: Any) -> bool:  # noqa: ARG001 - the signature of ``only_reads``
+def _always_false(arguments: Any) -> bool:  # noqa: ARG001 - must match the signature of ``only_reads``
     return False
 
 

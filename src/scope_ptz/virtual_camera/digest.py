@@ -19,8 +19,8 @@ NONCE_LIFETIME_S = 300.0
 """How long a nonce is accepted, in seconds. After that, a correct response gets a new challenge that is marked stale."""
 
 _ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.sha256, "MD5": hashlib.md5}
-# Challenges are sent in this order. A client that reads only one of them reads either the first, and then supports SHA-256, or the
-# last, and then needs MD5 (FFmpeg).
+# Challenges are sent in this order. Some clients read only the first challenge, and these support SHA-256. Others, such as FFmpeg,
+# read only the last one, and these need MD5.
 
 _PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
 _NONCE = Struct("!d12s")  # the content of a nonce: its time of issue and random bytes; a signature follows
@@ -83,35 +83,35 @@ class DigestAuthenticator:
             uri: The request target (in HTTP, the path and query), which the URI in the header must match. None accepts any URI,
                 for RTSP: in requests for a track, clients authenticate with the URI of the whole stream.
         """
-        answer = _parse(authorization or "")
-        algorithm = _ALGORITHMS.get(answer.get("algorithm", "MD5").upper())
-        nonce, answered_uri = answer.get("nonce", ""), answer.get("uri", "")
+        fields = _parse(authorization or "")
+        algorithm = _ALGORITHMS.get(fields.get("algorithm", "MD5").upper())
+        nonce, stated_uri = fields.get("nonce", ""), fields.get("uri", "")
         issued_s = self._issued_s(nonce)
-        if algorithm is None or issued_s is None or (uri is not None and not _same_target(answered_uri, uri)):
+        if algorithm is None or issued_s is None or (uri is not None and not _same_target(stated_uri, uri)):
             return Verdict()
-        if (self._qop or "qop" in answer) and not (answer.get("qop") == "auth" and answer.get("cnonce")):
+        if (self._qop or "qop" in fields) and not (fields.get("qop") == "auth" and fields.get("cnonce")):
             return Verdict()
-        account = self._accounts.find(answer.get("username", ""))
+        account = self._accounts.find(fields.get("username", ""))
         # An unknown name takes as long to reject as a wrong password, so that names cannot be found by timing.
         password = secrets.token_hex(16) if account is None else account.password
-        expected = self._response(algorithm, answer, password, method)
-        if not hmac.compare_digest(expected.encode(), answer.get("response", "").lower().encode()) or account is None:
+        expected = self._response(algorithm, fields, password, method)
+        if not hmac.compare_digest(expected.encode(), fields.get("response", "").lower().encode()) or account is None:
             return Verdict()
-        if answer.get("realm") != self.realm:
+        if fields.get("realm") != self.realm:
             return Verdict()
-        if self._now_s() - issued_s > self._lifetime_s or not self._is_first_use(nonce, issued_s, answer):
+        if self._now_s() - issued_s > self._lifetime_s or not self._is_first_use(nonce, issued_s, fields):
             return Verdict(stale=True)
         return Verdict(account)
 
-    def _response(self, algorithm: Callable[[bytes], hashlib._Hash], answer: dict[str, str], password: str, method: str) -> str:
+    def _response(self, algorithm: Callable[[bytes], hashlib._Hash], fields: dict[str, str], password: str, method: str) -> str:
         def digest(*parts: str) -> str:
             return algorithm(":".join(parts).encode()).hexdigest()
 
-        secret = digest(answer.get("username", ""), self.realm, password)
-        request = digest(method, answer.get("uri", ""))
-        if "qop" not in answer:
-            return digest(secret, answer.get("nonce", ""), request)
-        return digest(secret, answer.get("nonce", ""), answer.get("nc", ""), answer["cnonce"], answer["qop"], request)
+        secret = digest(fields.get("username", ""), self.realm, password)
+        request = digest(method, fields.get("uri", ""))
+        if "qop" not in fields:
+            return digest(secret, fields.get("nonce", ""), request)
+        return digest(secret, fields.get("nonce", ""), fields.get("nc", ""), fields["cnonce"], fields["qop"], request)
 
     def _new_nonce(self) -> str:
         content = _NONCE.pack(self._now_s(), secrets.token_bytes(12))
@@ -131,12 +131,12 @@ class DigestAuthenticator:
     def _signature(self, content: bytes) -> bytes:
         return hmac.digest(self._key, content, "sha256")[:_SIGNATURE_BYTES]
 
-    def _is_first_use(self, nonce: str, issued_s: float, answer: dict[str, str]) -> bool:
+    def _is_first_use(self, nonce: str, issued_s: float, fields: dict[str, str]) -> bool:
         """Return whether this is the first request with its nonce and count. Without ``qop``, there is no count to check."""
-        if "qop" not in answer:
+        if "qop" not in fields:
             return True
         try:
-            count = int(answer.get("nc", ""), 16)
+            count = int(fields.get("nc", ""), 16)
         except ValueError:
             return False
         if nonce not in self._used:
@@ -175,7 +175,7 @@ class _NonceCounts:
 
 
 def _parse(authorization: str) -> dict[str, str]:
-    """Return the parameters of a digest response; empty if the header is invalid."""
+    """Return the fields of an ``Authorization`` header; empty if it is not a digest response."""
     scheme, _, rest = authorization.strip().partition(" ")
     if scheme.lower() != "digest":
         return {}
@@ -183,12 +183,12 @@ def _parse(authorization: str) -> dict[str, str]:
     return {name.lower(): re.sub(r"\\(.)", r"\1", quoted) or plain for name, quoted, plain in found}
 
 
-def _same_target(answered: str, target: str) -> bool:
+def _same_target(stated: str, target: str) -> bool:
     """Return whether the URI in an ``Authorization`` header matches the request target.
 
     Some clients send the full URL there instead of the path and query.
     """
-    if answered == target:
+    if stated == target:
         return True
-    parts = urlsplit(answered)
+    parts = urlsplit(stated)
     return bool(parts.scheme) and (parts.path or "/") + (f"?{parts.query}" if parts.query else "") == target

@@ -1,4 +1,4 @@
-"""The ways in which an external agent fails. They count against the agent, never as failures of the infrastructure."""
+"""The ways in which an external agent can fail. They count against the agent, never as failures of the infrastructure."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ def agent_failed(fault: AgentFault, message: str) -> PlannerError:
 
 
 def fault_reason(fault: str, message: str) -> str:
-    """Return the reason for the verdict on a run that its agent ended by failing."""
+    """Return the verdict reason for a run that ended because its agent failed."""
     return f"the agent failed ({fault}): {message}"
 
 
 def fault_in(reason: str) -> str | None:
-    """Return the fault that ``fault_reason`` put into the reason for a verdict; None if there is none."""
+    """Return the fault in a verdict reason that ``fault_reason`` wrote; None if there is none."""
     found = re.match(r"the agent failed \((agent-[a-z]+)\)", reason)
     return found[1] if found else None

@@ -1,4 +1,8 @@
-"""A channel to an agent in a process of its own: JSON lines on the agent's stdin and stdout."""
+"""A channel to an agent in a process of its own: JSON lines on the agent's stdin and stdout.
+
+The agent is started by a keeper (``keeper.py``), a small supervisor process that limits its resources and kills everything that it
+started. The host closes the control pipe to end the agent, and the keeper reports on the status pipe how it ended.
+"""
 
 from __future__ import annotations
 
@@ -34,9 +38,9 @@ MAX_PROCESSES = 256
 MAX_STDERR_BYTES = 64_000_000
 """Maximum size of what an agent writes to stderr in one run."""
 GRACE_S = 2.0
-"""Seconds for an agent to end by itself after its run."""
+"""Seconds that an agent has to exit on its own after its run."""
 WRITE_S = 0.5
-"""Seconds for the last message to an agent."""
+"""Timeout in seconds for sending the last message to an agent, and for closing its stdin."""
 KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
 """Seconds after which the keeper itself is killed."""
 CHUNK_BYTES = 65_536
@@ -138,7 +142,7 @@ class PipeChannel(AgentChannel):
                 raise await self._failure() from None
 
     async def close(self, reason: str) -> None:
-        """End the agent with all its processes. An agent that does not end by itself within two seconds is killed."""
+        """End the agent with all its processes. An agent that does not exit on its own within ``GRACE_S`` is killed."""
         with anyio.CancelScope(shield=True):
             if self._report is None:
                 with suppress(*_PIPE_ERRORS), anyio.move_on_after(WRITE_S):
@@ -150,7 +154,7 @@ class PipeChannel(AgentChannel):
         if self._report is not None:
             return self._report
         self._report = ExitReport()
-        # An agent that has opened the control pipe for itself would hide its end of file.
+        # Write to the pipe as well as closing it: if the agent has opened it too, the keeper sees no end of file.
         os.set_blocking(self._control, False)
         with suppress(OSError):
             os.write(self._control, b"end")
@@ -169,7 +173,7 @@ class PipeChannel(AgentChannel):
     async def _failure(self) -> PlannerError:
         """Return the error for an agent that has gone."""
         report = await self._ended()
-        said = f": {report.last_line}" if report.last_line else "."
+        detail = f": {report.last_line}" if report.last_line else "."
         limit = f"The agent used more than {self.launch.memory_mb} MB of memory. --agent-memory-mb sets the limit."
         code = report.code
         if report.exceeded == "memory" or code == runner.OUT_OF_MEMORY or report.last_line.startswith("MemoryError"):
@@ -179,21 +183,21 @@ class PipeChannel(AgentChannel):
         if report.exceeded == "stderr":
             return agent_failed("agent-output", f"The agent wrote more than {MAX_STDERR_BYTES} bytes to stderr.")
         if code == runner.FAILED:
-            return agent_failed("agent-error", f"The agent failed{said}")
+            return agent_failed("agent-error", f"The agent failed{detail}")
         if code == runner.NOT_LOADED:
             return agent_failed("agent-error", report.last_line)
         if code is None:
-            return agent_failed("agent-exited", f"The agent's process was killed before the agent replied{said}")
+            return agent_failed("agent-exited", f"The agent's process was killed before the agent replied{detail}")
         if code < 0:
             name = signal.Signals(-code).name if -code in {*signal.Signals} else str(-code)
             return agent_failed(
-                "agent-exited", f"The agent's process was ended by the signal {name} before the agent replied{said}"
+                "agent-exited", f"The agent's process was ended by the signal {name} before the agent replied{detail}"
             )
-        return agent_failed("agent-exited", f"The agent's process ended with exit code {code} before the agent replied{said}")
+        return agent_failed("agent-exited", f"The agent's process ended with exit code {code} before the agent replied{detail}")
 
 
 def _read_report(status: int) -> ExitReport:
-    """Read the keeper's report, and close the pipe. The keeper has ended, so that reading does not block."""
+    """Read the keeper's report, and close the pipe. The keeper has ended, so reading does not block."""
     with os.fdopen(status, "rb") as pipe:
         pid, _, data = pipe.read().partition(b"\n")
     try:
@@ -201,7 +205,7 @@ def _read_report(status: int) -> ExitReport:
         lines = [line for line in fields["stderr"].splitlines() if line.strip()]
         return ExitReport(fields["code"], fields["exceeded"], printable(lines[-1].strip(), MAX_QUOTED_CHARS) if lines else "")
     except (ValueError, KeyError, TypeError, AttributeError):
-        # The agent has attacked its keeper, which can end it no more.
+        # There is no valid report, so the keeper was probably killed by the agent. Kill the agent's process group here.
         with suppress(OSError, ValueError):
             os.killpg(int(pid) or _NO_GROUP, signal.SIGKILL)
         return ExitReport()

@@ -1,4 +1,4 @@
-"""Start external agents: from the user's options to a planner for each run."""
+"""Start external agents: turn the user's options into a planner for each run."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class LocalAgent:
 
     Attributes:
         name: Its name in traces and on run cards.
-        isolation: The label of its results.
+        isolation: How it is separated from the tasks and the ground truth; its results carry this label.
         source: Digest of its source; empty if the source is unknown.
-        settings: What else determines its results, as JSON data: a part of the identity of evaluations.
+        settings: Other settings that affect its results, as JSON data. They are part of an evaluation's identity.
         options: The options.
         open_channel: Starts it for one run.
     """
@@ -48,7 +48,7 @@ class LocalAgent:
         planner = ChannelPlanner(await self.open_channel(), self.name, self.options.times)
         try:
             await planner.connect()
-        except BaseException:  # also cancellation, which must leave no process behind
+        except BaseException:  # including cancellation, which must leave no process behind
             await planner.close()
             raise
         return planner
@@ -97,7 +97,7 @@ def _class(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, .
     source = find_module(name, folder, interpreter.search_path)
     installed = source is not None and any(source.folder.is_relative_to(prefix) for prefix in interpreter.prefixes)
     if options.python is None and source is not None and source.folder != folder and not installed:
-        # Programs may have added folders to their own search path, which a new process does not have.
+        # This program may have added the folder to its own search path, which a new process does not inherit.
         environment["PYTHONPATH"] = os.pathsep.join(
             [str(source.folder), *environment.get("PYTHONPATH", "").split(os.pathsep)]
         ).rstrip(":")
@@ -133,19 +133,19 @@ def _in_sandbox(
     interpreter: Interpreter | None,
     hidden: tuple[Path, ...],
 ) -> LocalAgent:
-    """Return an agent in the sandbox. Its working folder is the one in which its module was found."""
+    """Return an agent in the sandbox. Its working folder is the folder that contains its module."""
     require_sandbox()
-    shown: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_links_to(interpreter.program))
-    installed = source is None or any(source.folder.is_relative_to(path) for path in shown)
+    visible: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_links_to(interpreter.program))
+    installed = source is None or any(source.folder.is_relative_to(path) for path in visible)
     contents = SandboxContents(
         folder=None if source is None or installed else source.folder,
-        shown=shown,
+        shown=visible,
         runner=Path(runner.__file__) if interpreter is not None else None,
         hidden=(*own_files(), *hidden, *(path / "scope_ptz" for path in (interpreter.search_path if interpreter else ()))),
     )
     kept = {name: value for name, value in launch.environment.items() if name not in ("PYTHONPATH", "TMPDIR")}
-    outer = replace(launch, folder=Path("/"), environment=kept | {"HOME": SCRATCH})
-    return _local(outer, source, settings, options, contents)
+    sandbox_launch = replace(launch, folder=Path("/"), environment=kept | {"HOME": SCRATCH})
+    return _local(sandbox_launch, source, settings, options, contents)
 
 
 def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
@@ -153,7 +153,7 @@ def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
 
 
 def _links_to(program: Path) -> tuple[Path, ...]:
-    """Return the program, and the links between it and the file that it stands for."""
+    """Return the program and each target of its chain of symbolic links, down to the real file."""
     links = [program]
     while links[-1].is_symlink():
         links.append(Path(os.path.normpath(links[-1].parent / links[-1].readlink())))
@@ -172,8 +172,8 @@ def _local(
 
     async def open_channel() -> AgentChannel:
         # Files that must be hidden may appear later, such as the folder of the logs.
-        inner = launch if contents is None else replace(launch, command=sandboxed(launch.command, contents))
-        return await PipeChannel.start(inner)
+        current = launch if contents is None else replace(launch, command=sandboxed(launch.command, contents))
+        return await PipeChannel.start(current)
 
     return LocalAgent(launch.name, launch.isolation, source.digest() if source else "", settings, options, open_channel)
 
@@ -201,5 +201,5 @@ def _settings(options: AgentOptions) -> dict[str, Any]:
 
 
 def _absolute(program: Path) -> Path:
-    """Return the path of an interpreter. Its links are kept, because a virtual environment is found by them."""
+    """Return the absolute path of an interpreter. Links are kept, because Python finds a virtual environment by its link."""
     return find_program(str(program), Path.cwd()).absolute()

@@ -22,7 +22,7 @@ def journal_file(log: Path) -> Path:
 
 
 class Journal:
-    """The judgements of the runs of a log, by sample, judge and index.
+    """The judgements of the runs of a log, by sample, judge and repeat.
 
     Attributes:
         path: File of the journal; None for a journal in memory.

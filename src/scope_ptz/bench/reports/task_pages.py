@@ -25,7 +25,7 @@ FRAME_WIDTH = 640
 MAX_PIXELS = 64_000_000
 """Maximum number of pixels of a picture. Larger pictures are not shown."""
 MAX_TEXT_CHARS = 2_000
-"""Maximum length of a text on a page in characters. Longer texts are cut."""
+"""Maximum length of a text on a page, in characters. Longer texts are truncated."""
 
 
 class OpenedRun(Protocol):
@@ -261,10 +261,10 @@ def _reply_text(result: Mapping[str, Any] | None) -> str:
     for plural, singular in (("boxes", "box"), ("points", "point")):
         shapes = result.get(plural) if result else None
         if isinstance(shapes, list | tuple) and result is not None:
-            number = f"{len(shapes)} {singular if len(shapes) == 1 else plural}" if shapes else f"no {singular}"
+            count = f"{len(shapes)} {singular if len(shapes) == 1 else plural}" if shapes else f"no {singular}"
             more = "" if result.get("complete", True) else ", and more than these"
             positions = "; ".join(_shape_text(shape) for shape in shapes)
-            return f"{number}{more}{f': {positions}' if positions else ''}{_notes(result)}"
+            return f"{count}{more}{f': {positions}' if positions else ''}{_notes(result)}"
     return _message(result) + _notes(result or {})
 
 
@@ -272,13 +272,13 @@ def _shape_text(shape: Any) -> str:
     """Return a box or a point as text, with its position in percent of the frame. Other values are returned as they are."""
     if not isinstance(shape, Mapping):
         return _value_text(shape)
-    sides = [_percent(shape, axis) for axis in "xy"]
-    if None in sides:
+    extents = [_percent(shape, axis) for axis in "xy"]
+    if None in extents:
         return _value_text(shape)
     score = shape.get("score")
     parts = [str(shape["label"])] if shape.get("label") else []
     parts += [f"score {score:.2f}"] if isinstance(score, int | float) else []
-    return f"{' '.join([*parts, 'at'])} {sides[0]} from the left, {sides[1]} from the top"
+    return f"{' '.join([*parts, 'at'])} {extents[0]} from the left, {extents[1]} from the top"
 
 
 def _percent(shape: Mapping[str, Any], axis: str) -> str | None:
@@ -307,7 +307,7 @@ def _value_text(value: Any) -> str:
 
 
 def cut(text: str) -> str:
-    """Return a text cut to ``MAX_TEXT_CHARS``, with a note of its full length."""
+    """Truncate a text to ``MAX_TEXT_CHARS``. A note states the full length of a truncated text."""
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} … ({len(text):,} characters)"
 
 

@@ -154,7 +154,7 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
 def proportion(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
     """Estimate a proportion in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015).
 
-    If the variance is 0, the effective size is the number of units.
+    If the variance is 0, the effective sample size is the number of units.
 
     Args:
         scores: The outcomes.
@@ -227,7 +227,7 @@ Bounded = tuple[float, float | None, float | None]
 
 
 def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, None]:
-    """Return the interval of the difference of two independent proportions by Newcombe's method, which combines their intervals.
+    """Return Newcombe's interval for the difference of two independent proportions, which combines their intervals.
 
     Returns:
         The lower and upper limit, or (None, None) if one of the intervals is unknown.
@@ -243,7 +243,7 @@ def _single_cluster_strata(scores: Scores, weights: Mapping[Any, float]) -> tupl
 
 
 def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:
-    """Return Wilson's interval (1927) of a proportion, within [0, 1]. The sample size need not be an integer."""
+    """Return Wilson's interval (1927) for a proportion, within [0, 1]. The sample size need not be an integer."""
     square = quantile**2 / size
     centre = (value + square / 2) / (1 + square)
     half = quantile / (1 + square) * sqrt(max(0.0, value * (1 - value)) / size + square / (4 * size))

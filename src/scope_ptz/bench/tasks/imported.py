@@ -1,4 +1,4 @@
-"""Imported tasks as data, and their files: JSONL with one task per line."""
+"""Imported tasks, and the JSONL files that store them, one task per line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class ImportedTask(BaseModel):
         policy: How the expected calls are checked.
         order: Whether the calls must be made in the given order ("ordered") or in any order.
         start_s: Scene time at the start, in seconds.
-        findings: Findings about the row.
+        findings: Problems that the import found in the source row.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

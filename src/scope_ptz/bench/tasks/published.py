@@ -1,6 +1,6 @@
 """The published tasks by their ids, and the viewpoints of the presets of the scenes in the package.
 
-Logs and submissions contain copies of their tasks. Scores use the published task instead, so that a changed copy changes nothing.
+Logs and submissions contain copies of their tasks. Scores use the published task instead, so a modified copy has no effect.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.simulator.pack import load_scene
 
 PUBLISHED_SPLITS = ("core", "paraphrase", "reaction", "unseen")
-"""The splits that contain every published task once."""
+"""The splits that together contain each published task exactly once."""
 
 
 @lru_cache(maxsize=1)
@@ -39,10 +39,13 @@ def published_digest(task_id: str) -> str | None:
 
 @lru_cache(maxsize=256)
 def preset_viewpoints(world: str) -> tuple[Mapping[str, str], str] | None:
-    """Return the viewpoints of the presets of a scene in the package, and of its home preset; None for other scenes.
+    """Return the viewpoint of each preset by its name, and the viewpoint of the home preset.
 
     Args:
-        world: Name of the scene or of its variation, which has presets of its own.
+        world: Name of a scene, or of a variation of a scene, which has its own presets.
+
+    Returns:
+        None if the package does not contain the scene.
     """
     try:
         file = load_scene(world).file

@@ -105,7 +105,7 @@ async def calibrate(
 ) -> Calibration:
     """Measure a camera, and return it to its initial pose.
 
-    Moving objects are no problem as long as most of the picture is static. A simulated world is paused.
+    Moving objects do no harm as long as most of the picture is static. A simulated world is paused while angles are measured.
 
     Args:
         camera: The camera. Nobody else may move it.
@@ -183,7 +183,7 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
     right, left, up = (r.rotation(pair, focal) for pair, _ in pairs)
     pan = statistics.mean(math.copysign(each.angle_deg, each.right_deg) / pairs[k][1] for k, each in enumerate((right, left)))
     tilt = math.copysign(up.angle_deg, up.up_deg) / pairs[2][1]
-    # If the camera looks up or down, a turn about the vertical also rolls the picture.
+    # If the camera looks up or down, a pan also rolls the picture. The ratio of the roll to the turn gives the actual tilt.
     seen_tilt = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
     seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
     progress(f"Pan turns {pan:+.3f} and tilt {tilt:+.3f} degrees per reported degree.")
@@ -238,14 +238,14 @@ async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
         await camera.move(Pose(base.pan_deg + (20.0 if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
         arrived_s = camera.clock.now_s()
         moves.append(arrived_s - started_s)
-        still_s, before = arrived_s, (await camera.frame()).image
+        last_motion_s, before = arrived_s, (await camera.frame()).image
         for _ in range(20):
             frame = await camera.frame()
             fraction = moving_fraction(before, frame.image)
             if fraction is None or fraction < 0.5:
                 break
-            still_s, before = camera.clock.now_s(), frame.image
-        settlings.append(still_s - arrived_s)
+            last_motion_s, before = camera.clock.now_s(), frame.image
+        settlings.append(last_motion_s - arrived_s)
     return statistics.median(moves), statistics.median(settlings)
 
 
@@ -273,8 +273,8 @@ def _base(camera: Camera, start: Pose, turn_deg: float) -> Pose:
     pan = wrap_pan_deg(start.pan_deg + turn_deg)
     if not limits.pan_endless:
         pan = min(max(pan, limits.min_pan_deg + room), limits.max_pan_deg - room)
-    steep = max(-35.0, limits.min_tilt_deg), min(15.0, limits.max_tilt_deg)
-    tilt = min(max(start.tilt_deg, steep[0]), steep[1]) if steep[0] < steep[1] else start.tilt_deg
+    lowest, highest = max(-35.0, limits.min_tilt_deg), min(15.0, limits.max_tilt_deg)
+    tilt = min(max(start.tilt_deg, lowest), highest) if lowest < highest else start.tilt_deg
     return Pose(pan, tilt, limits.min_zoom)
 
 

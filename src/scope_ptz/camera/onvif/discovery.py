@@ -121,11 +121,12 @@ def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
         return []
     found = []
     for each in root.iterfind(f".//{{{_DISCOVERY}}}ProbeMatch"):
-        places = [place for text in (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split() if (place := _parse_address(text))]
-        if not places:
+        urls = (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split()
+        endpoints = [endpoint for url in urls if (endpoint := _parse_address(url))]
+        if not endpoints:
             continue
         # If there are several addresses, choose the one that the answer came from, because it can be reached.
-        host, port, tls = next((place for place in places if place[0] == sender), places[0])
+        host, port, tls = next((endpoint for endpoint in endpoints if endpoint[0] == sender), endpoints[0])
         scopes = (each.findtext(f"{{{_DISCOVERY}}}Scopes") or "").split()
         standard = 443 if tls else 80
         shown = f"[{host}]" if ":" in host else host
@@ -146,12 +147,12 @@ class _Collector(asyncio.DatagramProtocol):
                 self._found.setdefault(device.address, device)
 
     def error_received(self, error: Exception) -> None:
-        """Ignore errors that routers report, because no answer is required."""
+        """Ignore network errors such as an unreachable host, because a probe needs no answer."""
 
 
 def _open(interface: str) -> socket.socket:
     try:
-        number = socket.inet_aton(interface)
+        packed_address = socket.inet_aton(interface)
     except OSError:
         raise InputError(
             f"An interface must be given by its IPv4 address, for example 192.168.1.20; got '{interface[:40]}'."
@@ -159,7 +160,7 @@ def _open(interface: str) -> socket.socket:
     udp_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         udp_socket.bind((interface, 0))
-        udp_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, number)
+        udp_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, packed_address)
         udp_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
         udp_socket.setblocking(False)
     except OSError:

@@ -200,7 +200,11 @@ def import_tasks(
 
 
 def places_in(folder: Path | None, mapping: Path | None) -> SceneNames:
-    """Return the scenes of a folder and the installed ones, with a mapping of names. Raises ``InputError``."""
+    """Return the scenes of a folder and the installed ones, with a mapping of their names.
+
+    Raises:
+        InputError: The folder does not exist, or the mapping cannot be read.
+    """
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes, load_scene

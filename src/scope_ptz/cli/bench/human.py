@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Task
     from scope_ptz.simulator.pack import Scene
 
-MAX_STEPS = 200  # number of steps after which a run ends
+MAX_STEPS = 200  # maximum number of steps per run
 
 
 def human(
@@ -58,9 +58,9 @@ class _Session:
         """Go through the tasks that are not finished yet."""
         from scope_ptz.bench.human_agent import HELP
 
-        open_tasks = [task for task in self.tasks if self._trace(task) is None]
-        put(f"{len(open_tasks)} of {len(self.tasks)} tasks to do. The camera's pictures are written to files. Commands:\n{HELP}")
-        for task in open_tasks[:limit]:
+        remaining = [task for task in self.tasks if self._trace(task) is None]
+        put(f"{len(remaining)} of {len(self.tasks)} tasks to do. The camera's pictures are written to files. Commands:\n{HELP}")
+        for task in remaining[:limit]:
             interruption = self._do_task(task)
             if interruption is None:
                 put("Recorded.")
@@ -82,7 +82,11 @@ class _Session:
         return trace if trace.ended is not None else None
 
     def _do_task(self, task: Task) -> TaskLeftError | None:
-        """Let the person do one task, and return the error that ended it unfinished, if any. An unfinished run is not stored."""
+        """Let the person do one task. The run is deleted if the person leaves it unfinished.
+
+        Returns:
+            The error with which the person left the task; None if the task is finished.
+        """
         import anyio
 
         folder = self._folder(task)
@@ -129,7 +133,11 @@ class _Session:
 
 
 async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> TaskLeftError | None:
-    """Record a run in which a person is planner and perception. Return the error that ended an unfinished task, else None."""
+    """Record a run in which a person is both planner and perception.
+
+    Returns:
+        The error with which the person left the task; None if the task is finished.
+    """
     from scope_ptz.agent.loop import Agent
     from scope_ptz.agent.records import Budgets, RunLabels
     from scope_ptz.agent.store import RunFolder

@@ -1,4 +1,4 @@
-"""Read logs for the commands: execute the checks with a progress bar, and name the logs whose own scores differ."""
+"""Read evaluation logs for the commands: rescore them with a progress bar, and report contradictions between logs and traces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.scoring.trials import Evaluation
 
 MIN_SAMPLES_SHOWN = 40
-"""Number of samples from which on a progress bar is shown."""
+"""Minimum number of samples for which a progress bar is shown."""
 
 
 @contextmanager
@@ -34,7 +34,7 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
 
 
 def read_log(path: Path) -> Evaluation:
-    """Read a log with verdicts that are recomputed from its traces. A progress bar is shown for a large log.
+    """Read a log, and recompute its verdicts from its traces. A progress bar is shown for a large log.
 
     Raises:
         TraceError: The log does not exist or is damaged.
@@ -46,7 +46,7 @@ def read_log(path: Path) -> Evaluation:
 
 
 def print_findings(evaluation: Evaluation) -> None:
-    """Print the contradictions between a log and its traces on stderr."""
+    """Print the contradictions between a log and its traces to stderr."""
     from scope_ptz.bench.reports.log_findings import finding_lines
 
     for line in finding_lines(evaluation):

@@ -1,4 +1,4 @@
-"""Parse model replies: boxes and points from many forms of JSON, even if it is cut off, and plain answers.
+"""Parse model replies into boxes and points, or into plain answers. Many forms of JSON are accepted, even truncated ones.
 
 A reply means "nothing found" only if it contains an empty list or a short sentence that states this. Any other reply that cannot
 be parsed raises ``PerceptionError`` of kind "malformed".
@@ -26,7 +26,7 @@ MAX_ANSWER_CHARS = 2_000
 
 @dataclass(frozen=True, slots=True)
 class ParsedPlaces:
-    """The objects that a reply names, in order. ``complete`` is False if the reply was cut off and may have named more."""
+    """The boxes and points in a reply, in order. ``complete`` is False if the reply was cut off and may have contained more."""
 
     things: tuple[RawThing, ...]
     complete: bool = True
@@ -42,12 +42,12 @@ def read_places(text: str) -> ParsedPlaces:
         PerceptionError: The reply cannot be parsed (kind "malformed").
     """
     visible = without_reasoning(text)
-    body, whole = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
+    body, fits = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
     documents, reply_complete = _documents(body)
     things = tuple(thing for document in documents for thing in _collect(document)) or tuple(_tagged(body))
     if things:
-        return ParsedPlaces(things, whole and reply_complete)
-    if whole and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
+        return ParsedPlaces(things, fits and reply_complete)
+    if fits and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
         return ParsedPlaces(())
     cut_note = "" if reply_complete else " (cut off before the first one was complete)"
     raise PerceptionError(f"The reply contains no readable boxes or points{cut_note}: {excerpt(text)}", kind="malformed")
@@ -140,7 +140,7 @@ def _repair(text: str) -> tuple[Any, bool, int]:
 
     If the document was cut off, only complete values are kept, because a truncated number is a wrong number.
     """
-    end, open_brackets, last = 0, list[str](), (0, "")
+    end, open_brackets, last_closed = 0, list[str](), (0, "")
     quote = ""
     previous = ""
     skip = False
@@ -158,11 +158,11 @@ def _repair(text: str) -> tuple[Any, bool, int]:
                 return None, False, end + 1
         elif char in "]}" and open_brackets:
             open_brackets.pop()
-            last = (end + 1, "".join(reversed(open_brackets)))
+            last_closed = (end + 1, "".join(reversed(open_brackets)))
             if not open_brackets:
                 return _parse_leniently(text[: end + 1]), True, end + 1
         previous = char if not char.isspace() else previous
-    complete_end, closing = last
+    complete_end, closing = last_closed
     return (_parse_leniently(text[:complete_end] + closing) if complete_end else None), False, end + 1
 
 
@@ -206,7 +206,8 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
             return
         things_by_item = [list(_collect(inner, depth + 1)) for inner in value]
         for inner, things in zip(value, things_by_item, strict=True):
-            # Among objects with coordinates, one without any is malformed; ``places_in_frame`` counts it.
+            # If its siblings have coordinates, an object without any is malformed. It is kept without numbers, so that
+            # ``places_in_frame`` reports it as unusable.
             malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(things_by_item) else []
             yield from things or malformed
 
@@ -240,7 +241,7 @@ def _from_fields(fields: dict[str, Any]) -> list[RawThing]:
 
 
 def _parsed(value: Any) -> Any:
-    """Parse a list that was written as a string: "[1, 2, 3, 4]"."""
+    """Parse a list that is written as a string, such as "[1, 2, 3, 4]". Other values are returned unchanged."""
     if isinstance(value, str) and len(value) < 200 and re.fullmatch(r"[\s\[\](),.\d+-]+", value):
         return re.findall(r"[-+]?\d+\.?\d*|[-+]?\.\d+", value)
     return value
@@ -261,7 +262,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> float:
-    """Return a value as a float. Anything else becomes NaN, which ``places_in_frame`` counts."""
+    """Return a value as a float. If it is not a number, return NaN, which ``places_in_frame`` reports as unusable."""
     try:
         return float(value) if _is_number(value) else math.nan
     except OverflowError:

@@ -17,6 +17,7 @@ def strict_json(text: str) -> Any:
     """
     try:
         value = json.loads(encodable(text), parse_constant=_reject_constant, parse_float=_finite)
+        # Lone surrogates can only come from escapes such as \ud800.
         return _clean(value) if "\\ud" in text.lower() else value
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error

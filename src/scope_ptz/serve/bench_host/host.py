@@ -57,7 +57,7 @@ class Host:
         settings: What is evaluated.
         key: File of the private key that signs submissions.
         open_link: Starts a worker.
-        absent: Whether all runs that have not ended fail, so that every evaluation is finished without its participant.
+        absent: Whether to fail every run that has not ended, so that all evaluations finish without their participants.
         notify: Receives a line when an evaluation is finished.
 
     Raises:
@@ -102,7 +102,7 @@ class Host:
         raise NotReadyError("The process that runs the evaluation did not start.")
 
     def evaluation(self, participant: str) -> HostedEvaluation:
-        """Return the evaluation of a participant, whose name the gate has checked."""
+        """Return the evaluation of a participant. The caller must have checked that the name is registered."""
         if participant not in self._evaluations:
             settings = self._worker_settings(participant)
             self._evaluations[participant] = HostedEvaluation(
@@ -150,7 +150,7 @@ def participants_file(folder: Path) -> Path:
 
 
 def folder_name(participant: str) -> str:
-    """Return the name of a participant's folder. It is unique, and different on file systems that ignore case."""
+    """Return the name of a participant's folder. It is unique even on file systems that ignore case."""
     digest = hashlib.sha256(participant.encode()).hexdigest()[:NAME_DIGEST_CHARS]
     return f"{re.sub('[^A-Za-z0-9-]', '_', participant)}-{digest}"
 

@@ -1,4 +1,4 @@
-"""The URIs of resources. They contain names and ids, never paths of the server."""
+"""The URIs of resources. They contain names and ids, never file paths on the server."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class Session:
     Attributes:
         token: The token that the browser signed in with.
         key: A public identifier of the session, which the cookie cannot be derived from.
-        ends_s: The time on ``time.monotonic`` at which the session ends.
+        ends_s: The time at which the session ends, as measured by ``time.monotonic``.
     """
 
     token: Token

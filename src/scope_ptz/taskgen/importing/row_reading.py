@@ -1,4 +1,4 @@
-"""Convert a row to a task, or report the reasons why it cannot be run."""
+"""Convert a row of an imported CSV file to a task, or report why the task cannot be run."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ Note = Callable[[FindingKind, str], None]
 class ParsedRow:
     """A row with its cells converted to SCOPE's types and names.
 
-    ``scene`` and ``preset`` are None if they were not found. ``place`` contains their names in the file. ``view`` is a key for the
-    view that the row means in the file; presets of the file that were mapped to one preset remain different views.
+    ``scene`` and ``preset`` are the names in SCOPE, or None if there is no match. ``place`` contains the location and the preset as
+    written in the file. ``view`` identifies the view that the file means: if two presets of the file are mapped to the same preset
+    in SCOPE, their keys still differ.
     """
 
     row: Row
@@ -108,10 +109,10 @@ class ParsedRow:
 
 def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     """Convert the cells of a row, and add a finding for everything that is missing, unknown or unusual."""
-    cells, notes = row.cells, list[RowFinding]()
+    cells, findings = row.cells, list[RowFinding]()
 
     def note(kind: FindingKind, detail: str) -> None:
-        notes.append(RowFinding(kind=kind, detail=detail[:300]))
+        findings.append(RowFinding(kind=kind, detail=detail[:300]))
 
     question, answer = cells["question"], cells["expected_answer"]
     place = cells.get("file_location", ""), cells.get("preset_start", "")
@@ -126,7 +127,7 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         compare=compare,
         preset_of=lambda name: scene_names.preset(scene, name) if scene is not None and name.strip() else name,
     )
-    notes += expectation.findings
+    findings += expectation.findings
     if not answer and not expectation.calls:
         note("nothing-expected", "")
     scope = _scope(cells, expectation, note)
@@ -148,7 +149,7 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         policy=policy,
         order=order,
         difficulty=_difficulty(cells.get("difficulty", ""), note),
-        findings=tuple(notes),
+        findings=tuple(findings),
     )
 
 
@@ -210,7 +211,7 @@ def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["order
 
 
 def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
-    """Return the scope in the cell ``answer_view``. If the cell has no scope, return "full" if an expected call has that scope."""
+    """Return the scope in the cell ``answer_view``. Without one, return "full" if an expected call does, otherwise "current"."""
     cell = cells.get("answer_view", "")
     scope = scope_of(cell)
     if scope is not None:

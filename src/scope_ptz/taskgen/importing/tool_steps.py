@@ -17,7 +17,7 @@ def cell_excerpt(value: Any) -> str:
 
 
 def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield the tools in a cell, each with the arguments that are given together with it. Lists and objects may be nested.
+    """Yield the tools in a cell, each with the arguments given with it. Lists and objects may be nested.
 
     Args:
         content: The parsed content of the cell.
@@ -52,17 +52,17 @@ def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, M
 def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
     """Yield a line of text for every argument that belongs to no expected call.
 
-    Arguments without the name or number of a call belong to the first call. If some of them are nested, this applies only if there
-    is a single call.
+    Arguments can be grouped by the name or the number of a call. Ungrouped arguments belong to the first call; if any of their
+    values is a list or an object, they are accepted only if a single call is expected.
     """
     if given in (None, "", [], {}):
         return
     if not names:
         yield f"{cell_excerpt(given)}: the row expects no call that could have arguments"
     elif isinstance(given, list):
-        for index, one in enumerate(given):
-            if one is not None and (index >= len(names) or not isinstance(one, dict)):
-                yield f"{cell_excerpt(one)} (number {index + 1}) does not match an expected call"
+        for index, arguments in enumerate(given):
+            if arguments is not None and (index >= len(names) or not isinstance(arguments, dict)):
+                yield f"{cell_excerpt(arguments)} (number {index + 1}) does not match an expected call"
     elif not isinstance(given, dict):
         yield f"{cell_excerpt(given)} is not a set of arguments"
     elif any(isinstance(value, dict | list) for value in given.values()) and not belong_to_single_call(given, names):
@@ -71,7 +71,7 @@ def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
 
 
 def belong_to_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
-    """Return whether these are the arguments of a single call, and not the arguments of several calls by name or number."""
+    """Return whether these are the arguments of a single call, not arguments grouped by the name or number of a call."""
     return len(names) == 1 and not any(name in names or name == "0" or normalise(name) in TOOLS for name in given)
 
 
@@ -80,8 +80,8 @@ def _unused_arguments_of(name: str, value: Any, names: Sequence[str]) -> Iterato
     if name not in names and not numbered:
         yield f"{name}: {cell_excerpt(value)} does not match an expected call"
     elif isinstance(value, list):
-        for index, one in enumerate(value):
-            if one is not None and (index >= max(names.count(name), 1) or not isinstance(one, dict)):
-                yield f"{name}: {cell_excerpt(one)} (number {index + 1}) does not match an expected call"
+        for index, arguments in enumerate(value):
+            if arguments is not None and (index >= max(names.count(name), 1) or not isinstance(arguments, dict)):
+                yield f"{name}: {cell_excerpt(arguments)} (number {index + 1}) does not match an expected call"
     elif not isinstance(value, dict) and value not in (None, ""):
         yield f"{name}: {cell_excerpt(value)} is not a set of arguments"

@@ -26,7 +26,7 @@ PATHS = {
 VERSION = {"Major": 19, "Minor": 12}
 """Version of the ONVIF specifications that the services implement."""
 
-# The categories that ``GetCapabilities`` can request: those with a service and its namespace, and those without a service.
+# Categories of ``GetCapabilities``: the namespaces of those that this device implements, and those that it does not.
 _CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ, "Imaging": IMAGING}
 _ABSENT = {"Analytics", "Events"}
 
@@ -87,12 +87,12 @@ class DeviceService:
         return {"Capabilities": {"Network": network, "Security": security, "System": system}}
 
     def _capabilities(self, request: Request) -> Reply:
-        wanted = set(request.Category or ()) or {"All"}
-        if missing := wanted & _ABSENT:
+        requested = set(request.Category or ()) or {"All"}
+        if missing := requested & _ABSENT:
             raise SoapFault(f"The device has no {min(missing)} service.", "ActionNotSupported", "NoSuchService", receiver=True)
         found: dict[str, Any] = {}
         for category, namespace in _CATEGORIES.items():
-            if wanted & {"All", category}:
+            if requested & {"All", category}:
                 found[category] = {"XAddr": request.origin + PATHS[namespace]}
         if "Media" in found:
             found["Media"]["StreamingCapabilities"] = {"RTPMulticast": False, "RTP_TCP": True, "RTP_RTSP_TCP": True}

@@ -29,8 +29,9 @@ BURST_S = 0.33
 """Maximum size of an encoded picture, as its duration in seconds at the maximum bit rate. This limits the size of keyframes."""
 
 _START_CODE = re.compile(b"\x00{2,3}\x01")
-_SEI = 6  # type of the NAL units with supplemental information, which are not sent
-_BT601 = 6  # the colour matrix that ``encode`` uses, as a number in the stream for decoders
+_SEI = 6  # type of the NAL units with supplemental enhancement information, which are not sent
+# Codes in the stream that tell decoders how colours are represented.
+_BT601 = 6  # the colour matrix with which ``encode`` converts RGB to YUV
 _BT709 = 1
 _LIMITED_RANGE = 1
 
@@ -71,7 +72,7 @@ class H264Encoder:
         """Return the NAL units of a picture. This blocks until the picture is encoded.
 
         Args:
-            image: Array of shape ``(H, W, 3)``, RGB. An image of another size is fitted to that of the encoder.
+            image: Array of shape ``(H, W, 3)``, RGB. An image of another size is scaled and cropped to the encoder's size.
             time_s: The time at which the image was taken, in seconds from an arbitrary origin.
             keyframe: Whether decoding can begin at this picture. If so, the parameter sets come first.
 
@@ -90,8 +91,8 @@ class H264Encoder:
             packets = self._codec.encode(frame)
         except FFmpegError as error:
             raise CameraError(f"The picture cannot be encoded: {error}") from error
-        found = [nal for packet in packets for nal in nal_units(bytes(packet)) if nal[0] & 0x1F != _SEI]
-        return [self.sets.sps, self.sets.pps, *found] if keyframe else found
+        units = [nal for packet in packets for nal in nal_units(bytes(packet)) if nal[0] & 0x1F != _SEI]
+        return [self.sets.sps, self.sets.pps, *units] if keyframe else units
 
 
 def nal_units(stream: bytes) -> list[bytes]:

@@ -56,7 +56,7 @@ def shell(
     band: tuple[float, float, float],
     ramp_to: float,
 ) -> Built:
-    """Build the warehouse: walls with openings in the front, a parapet, a low roof with roof lights and vents, and the hall.
+    """Build the warehouse: walls with front openings, a parapet, a low-pitched roof with roof lights and vents, and the hall.
 
     The hall's floor is at dock height, except where x is less than ``ramp_to``: there it is at yard level. Its back wall is 13 m
     behind the front.
@@ -126,27 +126,27 @@ def roof_light() -> bpy.types.Material:
 def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
     """Add the interior that is visible through the open docks: floor, lamps, racks with cartons, and a back wall."""
     rng = random.Random("hall")
-    pale, depth = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
-    s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, depth / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
-    s.box((2 * w - 0.6, 0.1, h), (0, depth, h / 2), pale, 0.0)
-    s.box((2 * w - 0.6, 12.8, 0.1), (0, depth / 2, h - 0.35), plain("hall ceiling", (0.25, 0.26, 0.27), 0.8), 0.0)
+    pale, back_y = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
+    s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, back_y / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
+    s.box((2 * w - 0.6, 0.1, h), (0, back_y, h / 2), pale, 0.0)
+    s.box((2 * w - 0.6, 12.8, 0.1), (0, back_y / 2, h - 0.35), plain("hall ceiling", (0.25, 0.26, 0.27), 0.8), 0.0)
     blue, orange = paint("blue", dirt=0.2), paint("orange", dirt=0.2)
-    boards = [
+    boxes = [
         plain(f"hall carton {k}", c, 0.85)
         for k, c in enumerate(((0.34, 0.22, 0.12), (0.42, 0.30, 0.17), (0.24, 0.26, 0.30), (0.45, 0.44, 0.42)))
     ]
     x = -w + 3.0
     while x < w - 4.0:
         for px in (x, x + 2.7):
-            s.box((0.09, 0.9, 5.0), (px, depth + 1.4, 3.7), blue, 0.0)
+            s.box((0.09, 0.9, 5.0), (px, back_y + 1.4, 3.7), blue, 0.0)
         for level in range(3):
             z = 1.22 + 1.75 * level
             if level:
-                s.box((2.7, 0.9, 0.12), (x + 1.35, depth + 1.4, z - 0.06), orange, 0.0)
+                s.box((2.7, 0.9, 0.12), (x + 1.35, back_y + 1.4, z - 0.06), orange, 0.0)
             for k in range(2):
                 if rng.random() < 0.85:
                     height = rng.uniform(0.8, 1.45)
-                    s.box((1.12, 0.95, height), (x + 0.70 + 1.3 * k, depth + 1.45, z + height / 2 + 0.02), rng.choice(boards), 0.01)
+                    s.box((1.12, 0.95, height), (x + 0.70 + 1.3 * k, back_y + 1.45, z + height / 2 + 0.02), rng.choice(boxes), 0.01)
         x += 2.85
     for k in range(int(2 * w / 6.0)):
         for y in (-3.0, -8.0):
@@ -169,7 +169,10 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 
 
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
-    """Build flat letters on a rail, emissive white if lit. The wall is the plane y = 0. The middle of the letters is at z = 0."""
+    """Build flat letters with the cap height ``cap`` on a rail, emissive white if lit.
+
+    The wall is the plane y = 0. The middle of the letters is at z = 0.
+    """
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)
     width, _ = s.text(body, cap, (0, 0.12, 0), face, facing="+Y")

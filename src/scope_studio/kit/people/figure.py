@@ -60,8 +60,11 @@ def trunk(
     Args:
         swell: Distance between cloth and body (m).
         low: Height of the hem (m).
+        girth: Girth of the trunk relative to the average (1.0).
+        woman: Whether the figure is a woman's.
         neck: "collar", "hood" or None.
         flare: Additional width of the folds at the hem (m).
+        seed: Seed for the folds.
     """
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
@@ -137,10 +140,12 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
         bones.append((joints.knees[i], joints.ankles[i], 0.495, 0.085))
     along = _along(points, bones)
 
-    knee = np.exp(-(((along - 0.50) / 0.09) ** 2))
-    cuff = np.exp(-(((along - 0.10) / 0.10) ** 2))
-    crotch = np.exp(-(((along - 0.86) / 0.07) ** 2))
-    skin = crease((points, faces), 0.0035 + 0.007 * knee + 0.012 * cuff + 0.005 * crotch, (8.0, 8.0, 15.0), seed)
+    knee_weight = np.exp(-(((along - 0.50) / 0.09) ** 2))
+    cuff_weight = np.exp(-(((along - 0.10) / 0.10) ** 2))
+    crotch_weight = np.exp(-(((along - 0.86) / 0.07) ** 2))
+    skin = crease(
+        (points, faces), 0.0035 + 0.007 * knee_weight + 0.012 * cuff_weight + 0.005 * crotch_weight, (8.0, 8.0, 15.0), seed
+    )
     return crease(skin, 0.002, (24.0, 24.0, 30.0), seed + 3), along
 
 
@@ -195,7 +200,7 @@ def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[
 def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
     """Return both hands with fingers. A curl of -1 points the index finger, 0 is flat, 1 is a fist."""
     v = Volume()
-    fat = 0.0015 if glove else 0.0
+    glove_m = 0.0015 if glove else 0.0
     for i, side in enumerate(SIDES):
         wrist, elbow = joints.wrists[i], joints.elbows[i]
         along = (wrist - elbow).normalized()
@@ -204,8 +209,8 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
         across = along.cross(normal)  # unit vector towards the thumb on one side, away from it on the other
         thumb_side = across * (-side if across.dot(Vector((0, 1, 0.3))) * -side > 0 else side)
         curl = curls[i]
-        v.capsule(wrist - along * 0.045, wrist + along * 0.01, 0.029 + fat, 0.027 + fat, flat=0.78, across=across)
-        v.capsule(wrist + along * 0.015, wrist + along * 0.075, 0.032 + fat, 0.040 + fat, flat=0.40, across=across)
+        v.capsule(wrist - along * 0.045, wrist + along * 0.01, 0.029 + glove_m, 0.027 + glove_m, flat=0.78, across=across)
+        v.capsule(wrist + along * 0.015, wrist + along * 0.075, 0.032 + glove_m, 0.040 + glove_m, flat=0.40, across=across)
         for k in range(4):
             straight = curl < 0 and k == 0
             bend = 0.12 if straight else (abs(curl) if curl >= 0 else 1.0)
@@ -214,10 +219,10 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
             length = (0.038, 0.043, 0.040, 0.032)[k]
             mid = base + (along * math.cos(a1) + normal * math.sin(a1)) * length
             tip = mid + (along * math.cos(a2) + normal * math.sin(a2)) * length * 0.85
-            v.capsule(base, mid, 0.0105 + fat, 0.0095 + fat, sides=8)
-            v.capsule(mid, tip, 0.0095 + fat, 0.008 + fat, sides=8)
+            v.capsule(base, mid, 0.0105 + glove_m, 0.0095 + glove_m, sides=8)
+            v.capsule(mid, tip, 0.0095 + glove_m, 0.008 + glove_m, sides=8)
         root = wrist + along * 0.025 + thumb_side * 0.026 + normal * 0.006
         joint = root + along * 0.036 + thumb_side * 0.022 + normal * 0.014
-        v.capsule(root, joint, 0.014 + fat, 0.011 + fat, sides=8)
-        v.capsule(joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8)
+        v.capsule(root, joint, 0.014 + glove_m, 0.011 + glove_m, sides=8)
+        v.capsule(joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + glove_m, 0.008 + glove_m, sides=8)
     return v.merge(0.0055, 2)

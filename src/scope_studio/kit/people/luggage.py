@@ -9,7 +9,10 @@ from scope_studio.kit.core.stage import Built
 
 
 def suitcase(colour: str = "navy", *, height: float = 0.66, handle: bool = True) -> Built:
-    """Build a ribbed hard-shell case on four wheels, with its broad side towards +y. ``handle`` extends the handle."""
+    """Build a ribbed hard-shell case on four wheels, with its broad side towards +y.
+
+    If ``handle`` is true, the handle is pulled out.
+    """
     s = Solid(f"{colour} suitcase")
     _case(s, colour, height, handle)
     return s.built()
@@ -59,7 +62,7 @@ def backpack(colour: str = "red") -> Built:
 
 
 def travel_bag(colour: str = "brown") -> Built:
-    """Build a soft holdall, 0.55 m long, with two handles."""
+    """Build a soft holdall, 0.56 m long, with two handles."""
     s = Solid(f"{colour} travel bag")
     s.box((0.56, 0.27, 0.27), (0, 0, 0.14), cloth(colour), 0.08)
     for y in (-0.09, 0.09):

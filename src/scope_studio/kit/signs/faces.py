@@ -119,8 +119,8 @@ def arrow(s: Solid, u: float, v: float, size: float, direction: str, material: b
         (-0.10, 0.12),
     ]
     a = math.radians(ARROW_TURN[direction])
-    c, w = math.cos(a) * size, math.sin(a) * size
-    flat(s, [(u + x * c - y * w, v + x * w + y * c) for x, y in shape], material, LIFT_M + 0.0005)
+    cos, sin = math.cos(a) * size, math.sin(a) * size
+    flat(s, [(u + x * cos - y * sin, v + x * sin + y * cos) for x, y in shape], material, LIFT_M + 0.0005)
 
 
 def write(
@@ -166,13 +166,13 @@ def panel_face(s: Solid, spec: Panel) -> None:
     arrow_size = cap * 1.5
     for i, line in enumerate(spec.lines):
         v = (spec.height - 1.4 * margin) / 2 - (i + 0.5) * pitch
-        pointing = arrows[i] if len(arrows) == rows and not panel_arrow else None
+        direction = arrows[i] if len(arrows) == rows and not panel_arrow else None
         left, right = -spec.width / 2 + margin, -spec.width / 2 + margin + available_width
-        if pointing in ("left", "up-left", "down-left"):
-            arrow(s, left + arrow_size / 2, v, arrow_size, pointing, sheet(ink))
+        if direction in ("left", "up-left", "down-left"):
+            arrow(s, left + arrow_size / 2, v, arrow_size, direction, sheet(ink))
             left += arrow_size * 1.35
-        elif pointing:
-            arrow(s, right - arrow_size / 2, v, arrow_size, pointing, sheet(ink))
+        elif direction:
+            arrow(s, right - arrow_size / 2, v, arrow_size, direction, sheet(ink))
             right -= arrow_size * 1.35
         if i == 0 and spec.route:
             left += _route_patch(s, spec, left, v, cap) + cap * 0.7

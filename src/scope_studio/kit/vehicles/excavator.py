@@ -14,19 +14,19 @@ from scope_studio.kit.vehicles import paintwork as pw
 
 
 def _turn(origin: Point, degrees: float) -> Matrix:
-    """Return a frame at ``origin`` that is rotated about x. For positive angles, its +y axis points upwards."""
+    """Return a frame at ``origin`` that is rotated about x. Positive angles tilt its +y axis upwards."""
     return Matrix.Translation(origin) @ Matrix.Rotation(math.radians(degrees), 4, "X")
 
 
-def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: float) -> None:
-    """Add a hydraulic cylinder: a dark barrel from ``start`` and a chromed rod to ``end``.
+def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, barrel_fraction: float) -> None:
+    """Add a hydraulic cylinder: a painted barrel from ``start`` and a chromed rod to ``end``.
 
-    ``stroke`` is the length of the barrel as a fraction of the total length.
+    ``barrel_fraction`` is the length of the barrel divided by the total length.
     """
-    joint = start + (end - start) * stroke
+    joint = start + (end - start) * barrel_fraction
     parts.tube([tuple(start), tuple(joint)], radius, pw.paint_slot(), sides=12)
     parts.tube(
-        [tuple(start + (end - start) * (stroke - 0.03)), tuple(start + (end - start) * (stroke + 0.005))],
+        [tuple(start + (end - start) * (barrel_fraction - 0.03)), tuple(start + (end - start) * (barrel_fraction + 0.005))],
         radius * 1.2,
         fittings.iron(),
         sides=12,
@@ -156,9 +156,11 @@ def excavator(
     bucket_deg: float = -70.0,
     slew_deg: float = 0.0,
 ) -> Built:
-    """Build a 20-tonne tracked excavator with its tracks along y, 3.9 m long.
+    """Build a 20-tonne tracked excavator. Its tracks are 3.9 m long and parallel to y.
 
     Args:
+        colour: Name of the paint.
+        number: Fleet number, lettered on both sides and at the rear.
         boom_deg: Elevation of the lower part of the boom.
         stick_deg, bucket_deg: Elevations of stick and bucket. Negative values point down; values below -90 point back towards
             the cab.
@@ -188,10 +190,10 @@ def excavator(
 def _upper_works(parts: Parts) -> None:
     paint, iron = pw.paint_slot(), fittings.iron()
     parts.box((2.46, 3.3, 0.16), (0, -0.30, 1.10), iron, bevel_m=0.03)
-    weight = [(1.22 * math.sin(a) if abs(math.sin(a)) < 0.999 else math.copysign(1.22, math.sin(a)),
-        -1.62 - 0.68 * max(0.0, math.cos(a)) ** 0.4)
-              for a in (math.pi * (-0.5 + k / 12) for k in range(13))]  # fmt: skip
-    parts.prism(weight, 1.08, 1.98, paint, axis="Z", bevel_m=0.06, segments=2)
+    counterweight = [(1.22 * math.sin(a) if abs(math.sin(a)) < 0.999 else math.copysign(1.22, math.sin(a)),
+                      -1.62 - 0.68 * max(0.0, math.cos(a)) ** 0.4)
+                     for a in (math.pi * (-0.5 + k / 12) for k in range(13))]  # fmt: skip
+    parts.prism(counterweight, 1.08, 1.98, paint, axis="Z", bevel_m=0.06, segments=2)
     parts.box((2.2, 0.02, 0.05), (0, -2.26, 1.16), pw.black_trim())
     parts.box((1.10, 1.9, 0.86), (0.70, -0.70, 1.60), paint, bevel_m=0.06)
     parts.box((1.10, 1.0, 0.86), (-0.70, -1.15, 1.60), paint, bevel_m=0.06)
@@ -225,7 +227,7 @@ _BOOM, _STICK = 5.5, 2.8
 
 
 def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_deg: float) -> None:
-    """Add boom, stick and bucket with their cylinders, in the plane x = 0.1 of the upper structure."""
+    """Add boom, stick and bucket with their cylinders, in the plane x = 0.12 of the upper structure."""
     paint, iron = pw.paint_slot(), fittings.iron()
     x, foot = 0.12, Vector((0.12, 0.85, 1.75))
     for side in (-0.34, 0.34):

@@ -14,7 +14,7 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.parked_vehicles import driver
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. It is greater than the numbers of all instances."""
+"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
 
 
 def _loaded_forklift(_phase: float) -> Built:

@@ -10,14 +10,14 @@ from scope_studio.kit.furniture import cafe, shop_displays, shop_goods
 from scope_studio.kit.works import equipment, materials
 from scope_studio.scenes.high_street.shops import plots
 
-SHELF_M = SILL_M - 0.012
+SHELF_M = SILL_M - 0.012  # height of the display shelf in a shop window
 
 Item = tuple[Callable[[], Built], str, str, dict[str, str]]
 """An item in a shop window: function that builds it, category, name and attributes."""
 
 
 def build(stage: Stage, shops: dict[int, str]) -> None:
-    """Place the goods of all shops."""
+    """Place the goods of all shops. ``shops`` contains the object ids of the shops by house number."""
     _windows(stage, shops)
     _boards(stage, shops)
     _greengrocer(stage, shops[22])
@@ -59,11 +59,11 @@ def _windows(stage: Stage, shops: dict[int, str]) -> None:
         (lambda: goods.cake("brown"), "cake", "chocolate cake", {"colour": "brown"}),
     ])  # fmt: skip
     _row(stage, 3, shops[3], (2.6, 2.1, 1.6, 1.1, 0.6), [(goods.ham, "ham", "hanging ham", {"state": "hanging"})], z=2.10)
-    shelf = [
+    books = [
         (lambda c=c: goods.book(c, seed=len(c)), "book", f"{c} book", {"colour": c})
         for c in ("red", "navy", "green", "yellow", "purple", "light blue", "black", "orange")
     ]
-    _row(stage, 7, shops[7], (2.55, -2.4, -2.0, -1.6, -1.2, -0.8, -0.4, 0.0), shelf)
+    _row(stage, 7, shops[7], (2.55, -2.4, -2.0, -1.6, -1.2, -0.8, -0.4, 0.0), books)
     _row(stage, 17, shops[17], (2.7, 2.3, -2.6, -2.1, -1.6, -1.1, -0.6), [
         (lambda c=c: goods.bottle(c), "bottle", f"{c} bottle", {"colour": c}) for c in ("green", "blue", "amber", "green", "red",
         "blue")

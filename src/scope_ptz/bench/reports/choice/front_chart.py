@@ -23,7 +23,7 @@ MIN_AREA, AREA_PER_GB = 60.0, 2.6
 SIZE_EXAMPLES_GB = (10, 40, 160)
 """Memory sizes that the legend shows."""
 COARSE_TICKS, FINE_TICKS = (1.0, 2.0, 5.0), (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
-"""Ticks of the axis of seconds within a factor of ten."""
+"""Ticks of the latency axis within each decade."""
 NARROW_RATIO = 5.0
 """The fine ticks are used if the longest turn takes less than this many times the shortest one."""
 NEAR_REAL_TIME_S = 2 * REAL_TIME_S
@@ -33,8 +33,8 @@ NEAR_REAL_TIME_S = 2 * REAL_TIME_S
 def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] = ()) -> Chart:
     """Draw accuracy against latency. The area of a marker shows the memory; filled markers are on the Pareto front.
 
-    The numbers refer to the legend and to the table. Vertical lines are the intervals of accuracy. The line of steps joins the
-    pairs for which no other pair is both faster and more accurate.
+    The number next to a marker refers to the legend and to the table. Vertical lines are the confidence intervals of accuracy. The
+    stepped line joins the pairs for which no other pair is both faster and more accurate.
 
     Args:
         candidates: The pairs, in the order of their numbers.
@@ -76,7 +76,7 @@ def _area(memory_gb: float) -> float:
 
 
 def _draw_baselines(axes: Axes, baselines: Sequence[ReportRun]) -> None:
-    """Draw the accuracy of the reference runs as horizontal lines, whose latency would compress the axis."""
+    """Draw the accuracy of the baselines as horizontal lines, because markers at their latencies would stretch the axis."""
     for run in baselines:
         if run.macro is not None:
             level = 100 * run.macro.value

@@ -15,11 +15,11 @@ _ENDS = {
     "nearest": ("nearest", "furthest"), "furthest": ("furthest", "nearest"),
     "most": ("most", "fewest"), "fewest": ("fewest", "most"),
 }  # fmt: skip
-"""The first and the last place of each order, in words."""
+"""The words for the first and the last place of each order."""
 
 
 def in_order(view: View, question: tree.InOrder) -> AnswerText:
-    """Answer with things from left to right, from nearest to furthest and so on, or with kinds by their number."""
+    """List the named things in an order, such as left to right or nearest to furthest, or list kinds of things by count."""
     kinds = [tree.Description((phrase,)) for phrase in question.options.phrases]
     if question.key in {"most", "fewest"}:
         counts = [(len(find(view, kind)), kind) for kind in kinds]

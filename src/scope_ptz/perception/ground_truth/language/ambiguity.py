@@ -71,18 +71,18 @@ def _cost_of_node(node: Any, cache: dict[int, float]) -> float:
         case tree.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5
         case tree.Which(options=tree.Description(phrases=(_,))):
-            total += 24.0  # "who is nearest the van" does not ask about the van
+            total += 24.0  # one option is no choice: in "who is nearest the van", the van is the reference, not an option
         case tree.Order(reference=reference):
             total += 3.0 if reference is not None else 0.0
         case tree.Ask(attribute=words):
             total += 3.0 if nouns_in(words) else 0.0
         case _:
             pass
-    return total + 0.1 * _misplaced(node)
+    return total + 0.1 * _misplaced_clothing(node)
 
 
-def _misplaced(node: Any) -> float:
-    """Return the cost of clothes on something other than a person.
+def _misplaced_clothing(node: Any) -> float:
+    """Return the cost of a phrase in which something other than a person wears clothes.
 
     In "the worker next to the van wearing a helmet", the helmet belongs to the worker.
     """

@@ -28,8 +28,8 @@ _COMMON_IN_DESCRIPTIONS = frozenset(
 """Terminals that often occur in descriptions, and therefore have a lower cost there than other terminals."""
 
 MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
-MAX_LEXEMES = 120  # the same for lexemes
-MAX_CONDITIONS = 12  # the same for conditions, each of which multiplies the readings
+MAX_LEXEMES = 120  # maximum number of lexemes in a text that is parsed
+MAX_CONDITIONS = 12  # maximum number of conditions in a text that is parsed; each one multiplies the number of readings
 _CONDITIONS = frozenset({"IF", "IFSO", "UNLESS", "OTHERWISE", "UNTIL", "WHILE"})
 
 
@@ -67,7 +67,7 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. Never raises, whatever the text."""
+    """Return the steps of an instruction. No text raises an exception."""
     from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
     lexemes = Lexer(presets).lexemes(text) if len(text) <= MAX_CHARS else []
@@ -79,10 +79,10 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
         if tree is None:
             return Parsed(text, None)
         steps = StepBuilder(text, lexemes[first:last]).extend(tree, steps)
-    return Parsed(text, tuple(_with_setting_first(steps)))
+    return Parsed(text, tuple(_with_preset_first(steps)))
 
 
-def _with_setting_first(steps: list[Step]) -> list[Step]:
+def _with_preset_first(steps: list[Step]) -> list[Step]:
     """Move a preset that is named after its question to the front: "how many are there? Use the yard preset."."""
     *before, last = steps
     if isinstance(last, GoToPreset) and last.how == "use" and before and all(isinstance(s, Count | Ask | Read) for s in before):
@@ -91,7 +91,7 @@ def _with_setting_first(steps: list[Step]) -> list[Step]:
 
 
 def is_too_complex(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes are too many to be parsed in a fraction of a second, or have too many conditions."""
+    """Return whether there are too many lexemes or conditions to parse in a fraction of a second."""
     conditions = sum(bool(lexeme.kinds & _CONDITIONS) for lexeme in lexemes)
     return len(lexemes) > MAX_LEXEMES or conditions > MAX_CONDITIONS
 

@@ -34,6 +34,7 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node, TreeVisitor
 
 SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
+# Lexeme kinds of words that can name an object, besides unknown words.
 _NOUNS = frozenset({"CAMERA", "PICTURE", "WHO", "PRESETWORD", "CIRCLE", "SURROUND", "LEVEL", "STEPS", "HOME", "WIDE"})
 _SCOPE_WORDS = frozenset({"FULLSCOPE", "NOWSCOPE"})
 # Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped.
@@ -65,12 +66,12 @@ class SceneBuilder(TreeVisitor):
     # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
         parts = node.branches("words", "relative")
-        determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
+        definite = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
         leaves = parts[0].all_leaves()
         not_an_object = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
         text = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
         bare = _ARTICLE_IN_PHRASE.sub("", text)  # in "the site office", "the site" is one lexeme
-        return Thing(bare, definite=determiner or bare != text, not_an_object=not_an_object)
+        return Thing(bare, definite=definite or bare != text, not_an_object=not_an_object)
 
     def thing(self, node: Node) -> Thing:
         result: Thing = self.visit(node.branches()[0])
@@ -101,7 +102,10 @@ class SceneBuilder(TreeVisitor):
         return ZoomTo(self._thing(node))
 
     def also(self, node: Node) -> Step:
-        """Build "zoom in on the bench, then on the bin": the second part takes the verb of the first."""
+        """Build the second part of "zoom in on the bench, then on the bin", which has no verb.
+
+        The resolver applies the verb of the previous step.
+        """
         leaves = node.branches("free_name")[0].all_leaves()
         return GoToPreset(PresetRef(self._free_name(node), has_article=leaves[0].kind == "DET"), "bare")
 

@@ -208,6 +208,6 @@ def _text(report: RunReport) -> str:
         f"{number}. {step.tool} {step.arguments.untrusted_picture_text}: {step.report.untrusted_picture_text}"
         for number, step in enumerate(report.steps, 1)
     ]
-    if said := report.answer.untrusted_picture_text:
-        lines.append(f"Answer: {said}")
+    if answer := report.answer.untrusted_picture_text:
+        lines.append(f"Answer: {answer}")
     return f"{head}\n{between_markers(chr(10).join(lines[-MAX_LINES:]))}" if lines else head

@@ -29,11 +29,11 @@ def question(kind: Kind) -> Question:
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
     """Return a draft for every countable kind at a place, and drafts for absent kinds, each paired with a present one."""
     truth = place.truth
-    present = [_number(place, kind, n) for kind, n in countable(truth)]
-    twins = list(present)
+    about_present = [_draft(place, kind, n) for kind, n in countable(truth)]
+    twins = list(about_present)
     rng.shuffle(twins)
     missing = scene_kinds_first(place, absent_kinds(truth, nouns), rng)
-    none = [
+    about_absent = [
         TaskDraft(
             category="counting",
             question_type="none",
@@ -49,12 +49,13 @@ def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[
         )
         for kind, twin in zip(missing, twins, strict=False)
     ]
-    return [*present, *none]
+    return [*about_present, *about_absent]
 
 
-def _number(place: TaskPlace, kind: Kind, number: int) -> TaskDraft:
+def _draft(place: TaskPlace, kind: Kind, count: int) -> TaskDraft:
+    """Return a draft that asks for the number of objects of a kind that is present."""
     things = place.truth.all_of(kind) or ()
-    expected = Number(value=number, unit=unit_of(kind))
+    expected = Number(value=count, unit=unit_of(kind))
     return TaskDraft(
         category="counting",
         question_type="all-around" if place.swept else "coloured" if kind.colour else "in-state" if kind.attribute else "count",
@@ -65,6 +66,6 @@ def _number(place: TaskPlace, kind: Kind, number: int) -> TaskDraft:
         evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
         perception_calls=(count_call(many_of(kind), place),),
         tags=(scope_of(place),),
-        weight=number,
-        answer_key=str(number),
+        weight=count,
+        answer_key=str(count),
     )
