@@ -106,7 +106,7 @@ def test_the_end_of_the_input_loses_nothing(scope: Scope, tasks: Path, tmp_path:
     done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"))
     assert done.code == 0
     assert "There is no preset 'nowhere'" in done.out and "a yard (seen by a person)" in done.out
-    assert "No run is recorded." in done.out
+    assert "No runs were recorded." in done.out
     assert list((tmp_path / "human").iterdir()) == []
 
 

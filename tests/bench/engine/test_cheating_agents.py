@@ -81,6 +81,7 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
     return run
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("source", "mode", "wins"),
     [

@@ -22,6 +22,9 @@ from tests.cli.conftest import Scope
 COUNT, TURN = f"scope1-{SCENE}-counting-001#1", f"scope1-{SCENE}-single-call-001#1"
 
 
+pytestmark = pytest.mark.full
+
+
 def verified(scope: Scope, log: Path) -> tuple[int, dict[str, Any]]:
     done = scope("bench", "verify", str(log), "--json")
     return done.code, json.loads(done.out)[str(log)]

@@ -25,6 +25,7 @@ from tests.cli.conftest import Scope
 
 __all__ = ["a_log", "evaluated", "one_search_for_packages", "scenes", "scope", "tasks_file"]
 pytestmark = [
+    pytest.mark.full,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

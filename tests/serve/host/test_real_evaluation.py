@@ -105,6 +105,7 @@ async def test_an_evaluation_over_http(tmp_path: Path, settings: EvaluationSetti
         check_secrecy(hosted.received, also=(SCENE, hosted.tokens["anna"]))
 
 
+@pytest.mark.full
 async def test_an_evaluation_over_mcp(tmp_path: Path, settings: EvaluationSettings) -> None:
     async with hosting(tmp_path / "host", run_worker, settings) as hosted, hosted.mcp() as client:
         frames: list[bytes] = []
@@ -126,6 +127,7 @@ async def test_an_evaluation_over_mcp(tmp_path: Path, settings: EvaluationSettin
         check_secrecy(hosted.received)
 
 
+@pytest.mark.full
 async def test_an_agent_that_gives_up_fails_and_counts(tmp_path: Path, settings: EvaluationSettings) -> None:
     short = settings.model_copy(update={"step_s": 1.0})
     async with hosting(tmp_path / "host", run_worker, short) as hosted, hosted.agent() as agent:

@@ -319,7 +319,7 @@ def evidence_lines(task: Task | None) -> tuple[str, ...]:
     for view in task.evidence if task else ():
         aim = view.aim
         items = ", ".join(f"{i.instance}{'' if i.value is None else f' = {i.value}'}" for i in view.items) or "no items"
-        whole = "; everything in this view counts" if view.whole else ""
+        whole = "; the answer depends on everything in this view" if view.whole else ""
         lines.append(
             f"{aim.viewpoint}, pan {aim.pan_deg:g}°, tilt {aim.tilt_deg:g}°, zoom {aim.zoom:g}x, {view.scope}: {items}{whole}"
         )

@@ -171,7 +171,7 @@ def import_tasks(
     from scope_ptz.bench.tasks.imported import dump_imported
     from scope_ptz.taskgen.importing.import_report import import_file, report_lines
 
-    imported = import_file(file, places_in(scenes, mapping))
+    imported = import_file(file, known_scenes(scenes, mapping))
     target = out or Path(f"{file.stem}.imported.jsonl")
     report = target.with_name(target.name.removesuffix(".jsonl") + ".report.json")
     dump_imported(imported.tasks, target)
@@ -192,14 +192,14 @@ def import_tasks(
     if not imported.tasks and not content["rows"]:
         print_error(f"{file} contains a header but no rows, so there is nothing to import.")
     elif not imported.tasks:
-        known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
+        known = ", ".join(sorted(known_scenes(scenes, mapping).scenes)) or "none"
         print_error(
             f"no row can be run. Known scenes: {known}. Give the scenes of the file with --scenes, or map their names with --map."
         )
     return 0 if imported.tasks else FAILED
 
 
-def places_in(folder: Path | None, mapping: Path | None) -> SceneNames:
+def known_scenes(folder: Path | None, mapping: Path | None) -> SceneNames:
     """Return the scenes of a folder and the installed ones, with a mapping of their names.
 
     Raises:

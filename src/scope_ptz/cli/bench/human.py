@@ -113,7 +113,7 @@ class _Session:
 
         result = self._result()
         if not result.trials:
-            put("No run is recorded.")
+            put("No runs were recorded.")
             return
         correct = sum(trial.headline == "correct" for trial in result.trials)
         put(f"\n{len(result.trials)} of {result.wanted} tasks done, {correct} correct; {write_result(result, self.out)}")

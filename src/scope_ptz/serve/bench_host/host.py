@@ -186,7 +186,7 @@ def _load_state(folder: Path, settings: EvaluationSettings) -> _State:
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from error
     except ValidationError:
-        raise InputError(f"{path} is damaged. Restore it from a copy, or choose another folder with --out.") from None
+        raise InputError(f"{path} is damaged. Restore it from a backup, or choose another folder with --out.") from None
     if (state.settings, state.tasks_sha256) != (settings, digest):
         raise InputError(f"{folder} belongs to a host with other tasks or settings. Use its options, or choose another folder.")
     return state

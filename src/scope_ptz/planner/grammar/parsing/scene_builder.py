@@ -112,7 +112,7 @@ class SceneBuilder(TreeVisitor):
     def track(self, node: Node) -> Step:
         durations = [self.visit(b) for b in node.branches() if b.name in _DURATIONS]
         if durations and not 0 < durations[0] <= 600:
-            return Unclear("I can follow something for at most 600 seconds. For how long shall I follow it?")
+            return Unclear("I can follow something for at most 600 seconds. How long should I follow it?")
         return Track(self._thing(node), durations[0] if durations else 10.0)
 
     track_after = track
@@ -141,7 +141,7 @@ class SceneBuilder(TreeVisitor):
 
     def picture_of(self, node: Node) -> Step:
         if node.has("SNAP") and any("PICTURE" in self.lexemes[leaf.index].kinds for leaf in node.all_leaves()[1:]):
-            return Unclear("Of what shall I take pictures, and how many?")
+            return Unclear("What should I take pictures of, and how many?")
         return Snap(1, self._thing(node))
 
     # Places ------------------------------------------------------------------------------------------------------------
