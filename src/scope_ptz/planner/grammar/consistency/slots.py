@@ -12,7 +12,7 @@ _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
     r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
-    r"|\b(?:are|is|were|was) there\b.*",
+    r"|\b(?:are|is|were|was) there (?:at|by|from)\b.*",
     re.IGNORECASE,
 )
 _JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
