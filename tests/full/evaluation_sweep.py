@@ -1,4 +1,4 @@
-"""A sweep of two tiny planners with a tiny vision model over the lite split, killed and resumed, and judged by a tiny judge."""
+"""A sweep of two tiny planners with a tiny vision model over the first lite split: killed, resumed, and judged by a tiny judge."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ FINISHED_BEFORE_THE_KILL = 4
 PATIENCE_S = 400.0
 
 TURNING, COUNTING = turning(1, 20.0), counting(1, "ball", 3)
-LITE = load_split("lite")
+LITE = load_split("lite1")  # the tiny models are trained for these tasks
 TASKS = (TURNING, COUNTING, *LITE)
 SHORT = tuple(t for t in LITE if t.category in COMMANDS and len(t.reference) < 3 and t.reference[0].tool != "zoom_to_object")
 """Commands that need no perception."""
