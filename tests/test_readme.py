@@ -67,6 +67,7 @@ def test_benchmark_commands_run_one_after_the_other(tmp_path: Path) -> None:
     assert (tmp_path / "report" / "index.html").is_file()
 
 
+@pytest.mark.full
 def test_transcript_shows_what_the_command_prints(tmp_path: Path) -> None:
     [transcript] = TRANSCRIPTS
     command, printed = transcript.removeprefix("$ ").split("\n", 1)

@@ -29,7 +29,7 @@ FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py",
 HOSTED = ("hosted_agent.py", "hosted_agent_mcp.py")
 """Programs that connect to a host of an evaluation: see ``tests/full/test_hosting_recipe.py``."""
 
-SLOW = {"evaluate.py", "batch_over_views.py", "own_planner.py"}  # 6 to 10 s each
+SLOW = {"ask.py", "evaluate.py", "batch_over_views.py", "own_planner.py", "train_search.py"}  # 1 to 10 s each
 
 
 def test_every_example_is_run() -> None:

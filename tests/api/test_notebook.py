@@ -39,6 +39,7 @@ def test_a_frame_shows_its_pose(analytic_scene: Scene) -> None:
     with opened(analytic_scene) as scope:
         scope.move_to(pan_deg=12)
         frame = scope.frame()
+    assert repr(frame).startswith("<Frame ") and len(repr(frame)) < 120, "the pixels are not printed"
     html = frame._repr_html_()
     assert "pan +12.0°" in html
     (picture,) = pictures_in(html)

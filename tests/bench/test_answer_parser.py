@@ -150,7 +150,7 @@ def test_any_number_plate(plate: str, seed: int) -> None:
 
 
 @given(st.text(max_size=200))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 def test_no_text_breaks_the_parser(text: str) -> None:
     for expected in ANSWERED.values():
         assert isinstance(parse_answer(expected, text), ParsedValue | Declined | Unreadable)

@@ -179,7 +179,7 @@ def test_the_short_card_fits_a_screen(scope: Scope, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("COLUMNS", "80")
     done = scope("scene", "show", name, "--contact-sheet", "sheet.png")
     assert done.code == 0
-    assert len(done.out.splitlines()) <= 40
+    assert len(done.out.splitlines()) <= 26
     assert "--all" in done.out
 
 

@@ -73,7 +73,7 @@ PLACES = (
 
 @pytest.mark.parametrize(
     ("place", "presses"),
-    [(place, 1) for place in PLACES]
+    [pytest.param(place, 1, marks=pytest.mark.full if "slug" in place or "settings" in place else ()) for place in PLACES]
     + [pytest.param(place, 2, marks=() if "save_frame" in place else pytest.mark.full) for place in PLACES],
 )
 def test_ctrl_c_at_any_time_leaves_no_incomplete_run_folder(
@@ -157,6 +157,25 @@ def test_a_pipe_instead_of_a_file_is_an_immediate_error(environment: dict[str, s
     path.unlink()
     os.mkfifo(path)
     done = run(environment, *SCOPE, "ask", "count the balls", "--scene", SCENE)
+    assert done.returncode == 2
+    assert str(path) in done.stderr and "not a regular file" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("replay",),
+        ("bench", "run", "--no-pictures", "--tasks"),
+        pytest.param(("bench", "verify"), marks=pytest.mark.full),
+        pytest.param(("bench", "submission", "validate"), marks=pytest.mark.full),
+    ],
+)
+def test_a_pipe_instead_of_an_argument_is_an_immediate_error(
+    environment: dict[str, str], tmp_path: Path, command: tuple[str, ...]
+) -> None:
+    path = tmp_path / "pipe.eval"
+    os.mkfifo(path)
+    done = run(environment, *SCOPE, *command, str(path))
     assert done.returncode == 2
     assert str(path) in done.stderr and "not a regular file" in done.stderr
 

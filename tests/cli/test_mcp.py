@@ -43,6 +43,7 @@ def documented() -> list[list[str]]:
     return [[entry["command"], *entry["args"]] for entry in entries if "command" in entry]
 
 
+@pytest.mark.full
 @pytest.mark.anyio
 async def test_the_documented_configuration_works(tmp_path: Path) -> None:
     commands = documented()

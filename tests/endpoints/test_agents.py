@@ -169,7 +169,7 @@ async def test_answers_in_any_language_are_answers(text: str, tmp_path: Path) ->
     assert (told.ended.outcome, told.ended.text) == ("answered", text)
 
 
-@pytest.mark.parametrize("tool", [COUNT, ASK], ids=["count", "question"])
+@pytest.mark.parametrize("tool", [pytest.param(COUNT, id="count"), pytest.param(ASK, id="question", marks=pytest.mark.full)])
 @pytest.mark.parametrize(
     ("backend", "fault"),
     [(backend, f) for f in FAULTS for backend in ("moondream", "openai_vision") if backend != "moondream" or not f.chat_only],

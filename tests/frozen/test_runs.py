@@ -6,7 +6,7 @@ import pytest
 
 from tests.frozen import cases
 
-FAST = ("altered-result", "answered", "damaged", "newer-format", "real-camera", "unknown-scene")
+FAST = ("answered", "damaged", "newer-format", "real-camera", "unknown-scene")
 SLOW = sorted(set(cases.RUN_NAMES) - set(FAST))
 
 

@@ -57,13 +57,13 @@ def check(text: str) -> None:
     assert plan(text, PRESETS) == made
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(st.text(max_size=120))
 def test_any_text_gives_a_plan(text: str) -> None:
     check(text)
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=250, deadline=None)
 @given(st.lists(WORDS, min_size=1, max_size=9).map(" ".join))
 def test_any_words_of_the_language_give_a_plan(text: str) -> None:
     check(text)

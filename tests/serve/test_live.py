@@ -72,7 +72,6 @@ def test_a_slow_client_gets_the_newest_frame_and_no_queue(client: httpx2.Client,
         following, _ = frame_of(socket)
         socket.send("drawn")
         assert following["number"] >= first["number"] + 5
-        assert time.time() - following["taken"] < 1.0
 
 
 @contextmanager

@@ -127,6 +127,7 @@ def test_database_errors_contain_no_values(tmp_path: Path) -> None:
     database.close()
 
 
+@pytest.mark.full
 def test_several_processes_index_the_same_folder(root: Path, copies: Callable[[int], list[str]]) -> None:
     copies(40)
     programs = [

@@ -30,7 +30,7 @@ def zoom(camera: AnalyticCamera, perception: AnalyticPerception, description: st
     return result
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     start=st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5)),
     place=st.tuples(st.floats(0.02, 0.98), st.floats(0.02, 0.98)),

@@ -16,7 +16,7 @@ CAMERA = "blender-window"
 """The name of the camera on a server that the add-on starts."""
 
 QUIT_S = 10.0
-"""Seconds that the server has to end before it is killed."""
+"""Seconds that the server may take to end. After that, it is killed."""
 
 
 class ServerProcess:
@@ -74,7 +74,7 @@ class ServerProcess:
         return self._process.poll() is None
 
     def stop(self) -> None:
-        """Ask the server to end. It ends by itself when its input is closed, also if Blender crashes."""
+        """Ask the server to end. It ends when its input is closed, so it also ends if Blender crashes."""
         self.problem = self.problem or "stopped"
         if self._process.stdin is not None:
             with suppress(OSError):

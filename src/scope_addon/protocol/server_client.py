@@ -23,7 +23,7 @@ SILENCE_S = 40.0
 MAX_REPLY_BYTES = 64 * 1024 * 1024
 
 
-class Event(NamedTuple):
+class ServerEvent(NamedTuple):
     """A server-sent event."""
 
     name: str
@@ -82,7 +82,7 @@ class ServerClient:
             self.close()
             raise self._unreachable(error) from error
 
-    def events(self, path: str) -> Iterator[Event | None]:
+    def events(self, path: str) -> Iterator[ServerEvent | None]:
         """Yield server-sent events, and None for each comment, until the server ends the stream.
 
         Raises:
@@ -149,14 +149,14 @@ def quote_part(name: str) -> str:
     return quote(name, safe="")
 
 
-def _events(reply: http.client.HTTPResponse) -> Iterator[Event | None]:
+def _events(reply: http.client.HTTPResponse) -> Iterator[ServerEvent | None]:
     name, data = "message", list[str]()
     while line := reply.readline(MAX_REPLY_BYTES):
         text = line.decode("utf-8", "replace").rstrip("\r\n")
         field, _, value = text.partition(":")
         if not text:
             if data:
-                yield Event(name, _parse_json("\n".join(data).encode()))
+                yield ServerEvent(name, _parse_json("\n".join(data).encode()))
             name, data = "message", list[str]()
         elif not field:
             yield None

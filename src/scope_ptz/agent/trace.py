@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import FORMAT_VERSION, RECORD, Called, Decided, Ended, Started
 from scope_ptz.errors import OutputError, TraceError
+from scope_ptz.regular_files import NotARegularFileError, read_regular_file
 
 FILE_NAME = "trace.jsonl"
 
@@ -99,7 +100,9 @@ def read_trace(run: Path) -> Trace:
     """
     path = run / FILE_NAME if run.is_dir() else run
     try:
-        lines = path.read_bytes().decode("utf-8", errors="replace").split("\n")
+        lines = read_regular_file(path).decode("utf-8", errors="replace").split("\n")
+    except NotARegularFileError as error:
+        raise TraceError(f"{path} is not a regular file, so it is not the trace of a run.") from error
     except OSError as error:
         raise TraceError(f"There is no trace at {path} ({error.strerror}).") from error
     last_line = lines.pop()  # the text after the last newline: empty, or an incomplete line

@@ -232,7 +232,8 @@ class Run:
         return self.answer
 
     def __repr__(self) -> str:
-        return f"<Run {self.outcome} after {len(self.calls)} calls: {self.answer!r}>"
+        calls = f"{len(self.calls)} call{'' if len(self.calls) == 1 else 's'}"
+        return f"<Run {self.outcome} after {calls}: {self.answer!r}>"
 
     def _repr_html_(self) -> str:
         from scope_ptz.api.notebook import run_html

@@ -106,6 +106,10 @@ class Frame:
     def height(self) -> int:
         return int(self.image.shape[0])
 
+    def __repr__(self) -> str:
+        pose = ", ".join(f"{name}={value:g}" for name, value in self.pose.as_dict().items())
+        return f"<Frame {self.width}x{self.height}, {pose}, hfov_deg={self.hfov_deg:g}, time_s={self.time_s:g}>"
+
     def _repr_html_(self) -> str:
         """Return the HTML that a notebook displays: the picture, with pose and field of view below."""
         from scope_ptz.camera.notebook import figure_html

@@ -46,7 +46,8 @@ class StartFlags:
         typer.Option(
             "--camera",
             metavar="SPEC",
-            help="Camera: sim:SCENE, blender:SCENE, blender:FILE.blend, or a plug-in's camera (default: sim:highway-works).",
+            help="Camera: a name in scope.yaml, sim:SCENE, axis://USER@HOST, onvif://USER@HOST, blender:SCENE, blender:FILE.blend, "
+            "or a plug-in's camera (default: sim:highway-works).",
             rich_help_panel=CAMERA_PANEL,
         ),
     ] = None

@@ -26,7 +26,7 @@ from scope_ptz.simulator.card import capture_summary, card, folder_bytes, markdo
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene, find_scenes
 
-MAX_NAMED = 16  # maximum number of names in each list of the short card; the rest is only counted
+MAX_NAMED = 8  # maximum number of names in each list of the short card; the rest is only counted
 
 
 def list_scenes(*, as_json: bool) -> int:

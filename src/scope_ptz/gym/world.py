@@ -26,7 +26,7 @@ from scope_ptz.simulator.views import picture
 
 MIN_FRAME_PX, MAX_FRAME_PX = 16, 4096  # width and height of the frames that an agent receives
 MAX_SCENES = 2
-"""Number of scenes that a world keeps open. A scene takes up to 400 MB, and opening it again about a second."""
+"""Number of scenes that a world keeps open. A scene takes up to 400 MB, and reopening it takes about a second."""
 
 _T = TypeVar("_T")
 
@@ -141,7 +141,7 @@ class World:
         return Frame(image=image, pose=pose, hfov_deg=view.hfov_deg, time_s=self.time_s, projection=view, origin=origin)
 
     def close(self) -> None:
-        """Close perception, end the thread and let go of the scenes. Calling it again has no effect."""
+        """Close perception, end the thread and release the scenes. Calling it again has no effect."""
         loop, self._loop = self._loop, None
         if loop is not None:
             loop.stop()

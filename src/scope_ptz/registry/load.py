@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -103,17 +104,22 @@ def load_registry(user_file: Path | None = None) -> Registry:
     Raises:
         ConfigError: The user's file is unreadable or invalid. The message names the file and the field.
     """
-    packaged = files("scope_ptz").joinpath("data", PACKAGED_FILE).read_text(encoding="utf-8")
-    servers, models, pairs = _parse(packaged, PACKAGED_FILE)
+    servers, models, pairs = _packaged()
     if user_file is not None:
         try:
             user_text = user_file.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"The models file {user_file} cannot be read: {error}.") from error
         user_servers, user_models, user_pairs = _parse(user_text, str(user_file))
-        servers, models, pairs = servers | user_servers, models | user_models, pairs | user_pairs
+        servers, models, pairs = {**servers, **user_servers}, {**models, **user_models}, {**pairs, **user_pairs}
         _check(Registry(servers, models, pairs), user_file)
     return Registry(servers, models, pairs)
+
+
+@cache
+def _packaged() -> tuple[Mapping[str, Server], Mapping[str, Model], Mapping[str, Pair]]:
+    """Return the packaged entries. They are parsed once per process."""
+    return _parse(files("scope_ptz").joinpath("data", PACKAGED_FILE).read_text(encoding="utf-8"), PACKAGED_FILE)
 
 
 def _parse(text: str, source: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:

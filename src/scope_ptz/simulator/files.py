@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import os
-import stat
 from pathlib import Path
 
+from scope_ptz import regular_files
 from scope_ptz.errors import PackError
 
 
 def read_regular_file(path: Path) -> bytes:
-    """Return a file's content. Only regular files are read, because opening a pipe would block the program.
+    """Return the content of a file of a pack.
 
     Raises:
         OSError: The file is missing or cannot be read.
         PackError: The path is not a regular file.
     """
-    if not stat.S_ISREG(path.stat().st_mode):
-        raise PackError(f"{path} is not a regular file. Restore the pack or bake it again.")
-    # O_NONBLOCK: do not wait if the file was replaced with a pipe after the check.
-    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
-        return file.read()
+    try:
+        return regular_files.read_regular_file(path)
+    except regular_files.NotARegularFileError as error:
+        raise PackError(f"{path} is not a regular file. Restore the pack or bake it again.") from error

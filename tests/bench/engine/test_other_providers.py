@@ -14,7 +14,7 @@ from scope_ptz.bench.judging.judge import ATTEMPTS
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.factory.inspect_plugin import bench
 from tests.bench.engine.making import counting, turning
-from tests.bench.engine.test_going_on import turner
+from tests.bench.engine.test_resuming import turner
 from tests.support.misbehaving import Misbehaving, Request, Say, good, status
 
 pytestmark = pytest.mark.anyio

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from scope_ptz.bench.leaderboard.entries import LeaderboardEntry, Refused, TaskSet
 from scope_ptz.bench.leaderboard.page import BASELINE, leaderboard_html, leaderboard_tables, ranks, write_leaderboard
-from scope_ptz.bench.reports.submission import submission_lines
 from scope_ptz.bench.reports.tables import unmarked
 from scope_ptz.bench.signatures.provenance import Evaluated, Provenance
+from scope_ptz.bench.submissions.submission import submission_lines
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import OutputError
 from tests.bench.reports.making import evaluation, facts

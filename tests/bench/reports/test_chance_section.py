@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from scope_ptz.bench.reports.assemble import build_report
-from scope_ptz.bench.reports.chance_section import consistent_outcomes
+from scope_ptz.bench.reports.details.chance_section import consistent_outcomes
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.bench.tasks.expected import NoneThere

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
-from scope_ptz.bench.reports.difficulty import MIN_PAIRS, class_steps, item_class, item_shares, verdict
+from scope_ptz.bench.reports.details.difficulty import MIN_PAIRS, class_steps, item_class, item_shares, verdict
 from scope_ptz.bench.reports.report_runs import report_runs
 from scope_ptz.bench.reports.tables import unmarked
 from scope_ptz.bench.scoring.trials import Evaluation

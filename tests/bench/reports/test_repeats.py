@@ -96,7 +96,7 @@ def test_equal_best_values_are_all_marked() -> None:
 
 
 def test_the_best_value_does_not_depend_on_rounding() -> None:
-    from scope_ptz.bench.reports.accuracy import _is_best
+    from scope_ptz.bench.reports.details.accuracy import _is_best
 
     values = [0.9999999999999999, 1.0, 1.0000000000000002]
     assert not any(_is_best(value, values) for value in values), "nothing is the best of equal values"

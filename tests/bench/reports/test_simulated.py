@@ -11,7 +11,7 @@ import pytest
 
 from scope_ptz.bench.human_runs import read_result
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
-from scope_ptz.bench.reports.paper import load_paper
+from scope_ptz.bench.reports.details.paper import load_paper
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, report_runs
 from scope_ptz.bench.reports.tables import unmarked
 from scope_ptz.bench.reports.terminal import terminal_lines

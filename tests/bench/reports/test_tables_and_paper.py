@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.bench.reports.paper import load_paper
+from scope_ptz.bench.reports.details.paper import load_paper
 from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable, as_csv, as_markdown, cell_text, escape
 from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.registry import load_registry

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.camera.base import Camera
@@ -64,6 +64,7 @@ def test_the_nearest_permitted_pose_is_permitted(region: Region, pan_deg: float,
         assert limits.clamp(outside)[1] == ()
 
 
+@settings(max_examples=50)
 @given(regions, angles, st.floats(-60, 30), st.sampled_from([1.0, 2.0, 5.0]))
 def test_no_frame_shows_a_pixel_of_a_hidden_region(region: Region, pan_deg: float, tilt_deg: float, zoom: float) -> None:
     from scope_ptz.camera.base import Frame

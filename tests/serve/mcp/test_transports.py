@@ -53,7 +53,7 @@ async def test_over_streamable_http(free: Served, version: str) -> None:
 
 
 @pytest.mark.anyio
-@pytest.mark.parametrize("version", [PRESENT, OLDER])
+@pytest.mark.parametrize("version", [PRESENT, pytest.param(OLDER, marks=pytest.mark.full)])
 async def test_over_stdio(scenes: None, tmp_path: Path, version: str) -> None:
     program = StdioServerParameters(command=sys.executable, args=command(tmp_path), env=dict(os.environ))
     async with Client(program, mode=MODES[version], read_timeout_seconds=120.0) as client:
@@ -216,6 +216,7 @@ def test_stdout_carries_only_messages_and_the_program_ends_with_its_input(scenes
     assert "Traceback" not in (tmp_path / "errors").read_text()
 
 
+@pytest.mark.full
 def test_a_signal_ends_the_program_although_its_input_is_open(scenes: None, tmp_path: Path) -> None:
     with started(tmp_path, "--role", "viewer") as program:
         exchange(program, INITIALIZE)

@@ -32,6 +32,7 @@ def test_build_writes_tasks_and_reports_the_shortfall(scope: Scope, tmp_path: Pa
     assert (done.code == 1) == ("too few" in done.err)
 
 
+@pytest.mark.full
 def test_validate_prints_counts_and_passes(scope: Scope, few: Path) -> None:
     done = scope("bench", "validate", "--tasks", str(few))
     assert done.code == 0, done.out

@@ -76,6 +76,7 @@ def says(*drafts: Any) -> m.Behaviour:
     return m.good(m.Say(json.dumps({"drafts": drafts})))
 
 
+@pytest.mark.full
 def test_good_drafts_are_kept_and_no_request_is_repeated(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made"
     more = [draft("Look at the yard preset: is there a ball?", "descriptor", "exists", "yes")]

@@ -25,7 +25,7 @@ from pathlib import Path
 
 CHECK_S = 0.2  # seconds between two checks of memory and processes
 TERMINATE_S = 1.0  # seconds between SIGTERM and SIGKILL
-GIVE_UP_S = 10.0  # seconds after which processes that cannot be killed are left
+GIVE_UP_S = 10.0  # seconds after which processes that cannot be killed are abandoned
 TAIL_BYTES = 4_000  # the end of stderr that is reported
 RESERVED_MB = 512  # headroom of the kernel's limit: it also counts memory that is reserved but not used, such as stacks
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
@@ -55,7 +55,7 @@ class Orders:
 
 
 class Keeper:
-    """A program in progress."""
+    """A running program."""
 
     def __init__(self, orders: Orders) -> None:
         self.orders = orders
@@ -70,13 +70,13 @@ class Keeper:
         signal.signal(signal.SIGCHLD, lambda *_: None)
         self.pid = self._start(writer)
         os.close(writer)
-        # Only the agent may hold the pipes to the host: their end of file says that it has gone.
+        # Only the agent may hold the pipes to the host, so that they reach their end when the agent ends.
         nothing = os.open(os.devnull, os.O_RDWR)
         for descriptor in (0, 1, 2):
             os.dup2(nothing, descriptor)
 
     def _start(self, stderr: int) -> int:
-        import resource  # not on every system on which this module is imported
+        import resource  # not available on every system
 
         pid = os.fork()
         if pid:
@@ -198,7 +198,7 @@ def descendants(root: int) -> list[int]:
 
 def exceeds_memory(pids: list[int], limit_bytes: int) -> bool:
     """Return whether processes together use more memory than a limit. Pages that several of them share are counted once."""
-    # The exact sum takes long for large processes, and is never above the simple one.
+    # The exact sum is slow for large processes, and it is never larger than the simple one.
     return simple_memory_bytes(pids) > limit_bytes and exact_memory_bytes(pids) > limit_bytes
 
 

@@ -18,6 +18,7 @@ from scope_ptz.bench.engine.recording.picture_store import jpeg_of
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.errors import TraceError
+from scope_ptz.regular_files import check_regular_file
 
 if sys.version_info < (3, 14):
     import zipfile_zstd  # type: ignore[import-untyped,unused-ignore]  # noqa: F401 - lets zipfile read logs, which use Zstandard
@@ -77,6 +78,7 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
 def reading(path: Path) -> Iterator[None]:
     """Return a context manager that turns an error while a log is read into a ``TraceError`` with the path of the log."""
     try:
+        check_regular_file(path)
         yield
     except TraceError:
         raise

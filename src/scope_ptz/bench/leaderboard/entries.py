@@ -12,18 +12,18 @@ import numpy as np
 from pydantic import ValidationError
 
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES
-from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, tasks_digest
-from scope_ptz.bench.reports.submission_checks import check_submission
 from scope_ptz.bench.signatures.detached import signature_path
 from scope_ptz.bench.signatures.provenance import Provenance, provenance_of
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, proportion
+from scope_ptz.bench.submissions.submission import LINE, Header, TrialLine, tasks_digest
+from scope_ptz.bench.submissions.submission_checks import check_submission
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import InputError
 
 SUBMISSION_PATTERN = "*.jsonl"
 MAX_BROKEN_FRACTION = 0.02
-"""An entry with a larger fraction of trials that infrastructure broke is not ranked."""
+"""An entry is not ranked if infrastructure failed in a larger fraction of its trials."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class LeaderboardEntry:
 
     @property
     def broken(self) -> int:
-        """Number of trials that infrastructure broke."""
+        """Number of trials in which infrastructure failed."""
         return sum(line.headline == "infrastructure" for line in self.lines)
 
     @property

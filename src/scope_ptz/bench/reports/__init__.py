@@ -1,1 +1,1 @@
-"""Create reports on evaluations, with tables, charts and pages of failed tasks, and create and check submissions."""
+"""Create reports on evaluations, with tables, charts and pages of failed tasks."""

@@ -7,20 +7,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from scope_ptz.bench.reports.accuracy import accuracy_section
-from scope_ptz.bench.reports.chance_section import chance_lines, chance_section, run_chance
 from scope_ptz.bench.reports.choice.problems import problems
 from scope_ptz.bench.reports.choice.section import choice_section
 from scope_ptz.bench.reports.choice.ties import distinguish, leaders, listed
-from scope_ptz.bench.reports.conditions import conditions_section
-from scope_ptz.bench.reports.difficulty import difficulty_section
+from scope_ptz.bench.reports.details.accuracy import accuracy_section
+from scope_ptz.bench.reports.details.chance_section import chance_lines, chance_section, run_chance
+from scope_ptz.bench.reports.details.conditions import conditions_section
+from scope_ptz.bench.reports.details.difficulty import difficulty_section
+from scope_ptz.bench.reports.details.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
+from scope_ptz.bench.reports.details.latency import latency_section
+from scope_ptz.bench.reports.details.paper import paper_section
+from scope_ptz.bench.reports.details.recommendations import architecture_section, design_section, scope_section, spread_section
+from scope_ptz.bench.reports.details.review import audit_section, conduct_section, costs_section
+from scope_ptz.bench.reports.details.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
 from scope_ptz.bench.reports.display_names import served_instead
-from scope_ptz.bench.reports.error_analysis import MODE_TITLES, error_section, modes_by_rules, oracle_section
-from scope_ptz.bench.reports.latency import latency_section
 from scope_ptz.bench.reports.log_findings import finding_lines, stored_verdict_lines
 from scope_ptz.bench.reports.paired_comparison import comparison_section
-from scope_ptz.bench.reports.paper import paper_section
-from scope_ptz.bench.reports.recommendations import architecture_section, design_section, scope_section, spread_section
 from scope_ptz.bench.reports.report_runs import (
     CATEGORY_TITLES,
     ReportRun,
@@ -30,9 +32,7 @@ from scope_ptz.bench.reports.report_runs import (
     pairs_of,
     report_runs,
 )
-from scope_ptz.bench.reports.review import audit_section, conduct_section, costs_section
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
 from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation

@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, FAINT, PAPER = "#010203", "#040506", "#070809"
-"""Placeholder colours, which ``as_chart`` replaces with the CSS colours of the page."""
+"""Placeholder colours, which ``_inline_svg`` replaces with the CSS colours of the page."""
 HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
 """The colour-blind-safe palette of Okabe and Ito (2008)."""
 GREY = "#8a8f98"
@@ -46,21 +47,37 @@ def canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
 @contextmanager
 def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure, Sequence[Axes]]]:
     """Open a figure with several axes side by side, which share the y axis."""
-    import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph")  # Missing glyphs affect only estimated widths; the browser draws them.
+    with _style():
         figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
         FigureCanvasSVG(figure)
         yield figure, list(figure.subplots(1, number, sharey=True, squeeze=False)[0])
 
 
-def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
-    """Convert a figure to inline SVG with unique ids and the page's colours and fonts."""
+@contextmanager
+def _style() -> Iterator[None]:
+    """Apply the style while a figure is created or drawn."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # Missing glyphs affect only estimated widths; the browser draws them.
+        yield
+
+
+def as_chart(key: str, title: str, alt: str, figure: Figure, prepare: Callable[[], None] | None = None) -> Chart:
+    """Return a figure as a chart. ``prepare`` completes the figure before it is drawn, which is slow and often not needed."""
+    return Chart(key, title, alt, round(figure.get_figwidth() * PX), partial(_inline_svg, key, figure, prepare))
+
+
+def _inline_svg(key: str, figure: Figure, prepare: Callable[[], None] | None) -> str:
+    """Draw a figure as inline SVG with unique ids and the page's colours and fonts."""
     out = io.StringIO()
-    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    with _style():
+        if prepare is not None:
+            prepare()
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
@@ -68,8 +85,7 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{key}-", svg)
     svg = svg.replace(INK, "var(--ink)").replace(FAINT, "var(--line)").replace(PAPER, "var(--paper)")
     svg = re.sub(r"font: ([\d.]+px) [^;\"]+", r"font: \1 system-ui, 'DejaVu Sans', sans-serif", svg)
-    svg = svg.replace("<svg ", '<svg aria-hidden="true" focusable="false" ', 1)
-    return Chart(key, title, alt, svg, round(figure.get_figwidth() * PX))
+    return svg.replace("<svg ", '<svg aria-hidden="true" focusable="false" ', 1)
 
 
 _FILE_STYLE = (

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from scope_ptz.bench.reports.tables import ReportTable
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Chart:
-    """A chart as inline SVG. ``alt`` is its text alternative. A window that is narrower than ``width_px`` scrolls the chart."""
+    """A chart, which is drawn on first use.
+
+    Attributes:
+        key: Key of the chart.
+        title: Title of the chart.
+        alt: The text alternative.
+        width_px: Width of the chart. A window that is narrower scrolls it.
+        draw: Draws the chart as inline SVG.
+    """
 
     key: str
     title: str
     alt: str
-    svg: str
     width_px: int
+    draw: Callable[[], str] = field(repr=False, compare=False)
+
+    @cached_property
+    def svg(self) -> str:
+        """The chart as inline SVG."""
+        return self.draw()
 
 
 @dataclass(frozen=True, slots=True)

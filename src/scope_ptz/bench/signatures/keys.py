@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 PUBLIC_SUFFIX = ".pub"
 """Suffix of the file of a public key. It is appended to the name of the private key's file."""
 RAW_KEY_BYTES = 32  # size of a public key
-MAX_KEY_FILE_BYTES = 10_000  # a larger file is no key
+MAX_KEY_FILE_BYTES = 10_000  # a larger file is not a key
 _OTHERS = 0o077  # permissions of other users
 
 
@@ -92,7 +92,7 @@ def trusted_keys(paths: Iterable[Path]) -> dict[bytes, str]:
     """Return the public keys that an operator trusts, as raw bytes with the names of their files.
 
     Args:
-        paths: Files of public keys, and folders. Of a folder, all files that end in ``.pub`` are read.
+        paths: Files of public keys, and folders, in which all files that end in ``.pub`` are read.
 
     Raises:
         ConfigError: A file is not a public key.

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from scope_ptz.bench.tasks.task import TASK, Task
 from scope_ptz.errors import InputError
+from scope_ptz.regular_files import check_regular_file
 
 
 def digest_of(tasks: Iterable[Task]) -> str:
@@ -28,6 +29,7 @@ def load_tasks(path: Path) -> tuple[Task, ...]:
         InputError: The file cannot be read or a task is invalid. The message names the file and the task.
     """
     try:
+        check_regular_file(path)
         text = path.read_text("utf-8")
         content = (
             yaml.safe_load(text) if path.suffix in (".yaml", ".yml") else [json.loads(row) for row in text.splitlines() if row]

@@ -13,6 +13,7 @@ from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import RequiredCall
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import InputError, OutputError
+from scope_ptz.regular_files import check_regular_file
 
 Policy = Literal["all", "exact", "any", "none"]
 """How the expected calls are checked.
@@ -53,6 +54,7 @@ class ImportedTask(BaseModel):
 def is_imported_file(path: Path) -> bool:
     """Return whether the first line of a file is an imported task."""
     try:
+        check_regular_file(path)
         with path.open(encoding="utf-8") as file:
             first = json.loads(file.readline(2**20))
     except (OSError, ValueError, RecursionError):

@@ -19,9 +19,9 @@ from scope_ptz.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from scope_ptz.bench.reports.submission import Header, TrialLine
     from scope_ptz.bench.reports.task_pages import OpenedRun
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
+    from scope_ptz.bench.submissions.submission import Header, TrialLine
     from scope_ptz.bench.tasks.task import Task
 
 submission_app = typer.Typer(help="Write and check the file for a public leaderboard.", no_args_is_help=True)
@@ -133,7 +133,7 @@ def submission_make(
     A log that does not cover its split is rejected.
     """
     require_report_packages()
-    from scope_ptz.bench.reports.submission import submission_lines, write_submission
+    from scope_ptz.bench.submissions.submission import submission_lines, write_submission
     from scope_ptz.bench.tasks.splits import SPLITS
 
     evaluation = _read(log)
@@ -173,8 +173,8 @@ def submission_validate(
 
     The exit code is 1 on any fault.
     """
-    from scope_ptz.bench.reports.submission_checks import check_submission
     from scope_ptz.bench.signatures.keys import trusted_keys
+    from scope_ptz.bench.submissions.submission_checks import check_submission
 
     result = check_submission(file, _split(tasks), trusted_keys(host_key or ()))
     verified = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
@@ -194,15 +194,15 @@ def submission_validate(
 
 def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
     from scope_ptz.bench.engine.traces.log_runs import runs_of_log
-    from scope_ptz.bench.reports.submission import submission_lines
-    from scope_ptz.bench.reports.submission_traces import public_runs
+    from scope_ptz.bench.submissions.submission import submission_lines
+    from scope_ptz.bench.submissions.submission_traces import public_runs
 
     public = public_runs(evaluation, runs_of_log(log))
     return submission_lines(public.evaluation, public.runs, public.places)
 
 
 def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
-    from scope_ptz.bench.reports.submission_checks import coverage
+    from scope_ptz.bench.submissions.submission_checks import coverage
 
     return coverage(header, lines, _split(tasks))
 

@@ -28,7 +28,7 @@ PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the column with the n
 
 
 @dataclass(frozen=True, kw_only=True)
-class ServerFlags(ModelFlags):
+class SweepServerFlags(ModelFlags):
     """Options for model servers that apply to all pairs.
 
     The options of ``ModelFlags`` that name models are removed, because the pairs name them.
@@ -45,7 +45,7 @@ class ServerFlags(ModelFlags):
 def sweep(
     selection: SelectionFlags,
     running: EvaluationFlags,
-    servers: ServerFlags,
+    servers: SweepServerFlags,
     pairs: Annotated[
         str | None,
         typer.Option("--pairs", help="Pairs to run, separated by commas: PLANNER+PERCEPTION, or one model that does both."),

@@ -18,7 +18,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
 
 if TYPE_CHECKING:
-    from scope_ptz.perception.ground_truth.answers import AnswerText
+    from scope_ptz.perception.ground_truth.answers import TruthAnswer
     from scope_ptz.perception.ground_truth.view import Thing, View
 
 GROUND_TRUTH_VERSION = 1
@@ -99,13 +99,13 @@ class GroundTruthPerception(Perception):
         """Return the ground truth as the backend perceives it. This backend perceives everything; subclasses add errors."""
         return truth
 
-    def _describe(self, frame: Frame) -> AnswerText:
+    def _describe(self, frame: Frame) -> TruthAnswer:
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.language.question_tree import Describe
 
         return answer(self.view(frame, ""), Describe())
 
-    def _answer(self, frame: Frame, question: str) -> AnswerText:
+    def _answer(self, frame: Frame, question: str) -> TruthAnswer:
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.language import parse_question
 

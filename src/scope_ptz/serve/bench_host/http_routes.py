@@ -24,7 +24,7 @@ HEALTH_PATH = "/api/v1/health"
 
 
 def http_routes(host: Host, access: Access) -> list[Route]:
-    """Return the routes of the HTTP channel, to be mounted behind a ``AccessMiddleware``."""
+    """Return the routes of the HTTP channel, to be mounted behind an ``AccessMiddleware``."""
 
     async def messages(request: Request) -> Response:
         evaluation = _evaluation(request, "command")

@@ -190,8 +190,8 @@ async def _number_of_runs(options: EvaluationOptions) -> int:
 def _write_submission(log: Path, out: Path) -> Path:
     from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.engine.traces.log_runs import runs_of_log
-    from scope_ptz.bench.reports.submission import submission_lines, write_submission
-    from scope_ptz.bench.reports.submission_traces import public_runs
+    from scope_ptz.bench.submissions.submission import submission_lines, write_submission
+    from scope_ptz.bench.submissions.submission_traces import public_runs
 
     public = public_runs(read_evaluation(log), runs_of_log(log))
     header, lines = submission_lines(public.evaluation, public.runs, public.places)

@@ -1,4 +1,4 @@
-"""Read the state and the records of runs, both of those in progress and of stored ones."""
+"""Read the state and the records of runs in progress and of stored runs."""
 
 from __future__ import annotations
 

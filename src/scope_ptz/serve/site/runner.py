@@ -37,8 +37,8 @@ logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """The work of a run.
+class RunSpec:
+    """The specification of a run.
 
     Attributes:
         instruction: The instruction, or the text of a tool call.
@@ -57,8 +57,8 @@ class Task:
     snapshots: bool = True
 
     @classmethod
-    def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> Task:
-        """Return the task of calling one tool."""
+    def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> RunSpec:
+        """Return the specification of a run that calls one tool."""
         text = call_text(name, arguments)[:MAX_INSTRUCTION_CHARS]
         return cls(text, pair, kind="tool", planner=SingleCallPlanner(name, arguments), snapshots=False)
 
@@ -80,7 +80,7 @@ class Runner:
         """Return a run that is in progress or ended recently; None for others."""
         return self._handles.get(run_id)
 
-    async def start(self, station: Station, task: Task, client: Client) -> RunHandle:
+    async def start(self, station: Station, spec: RunSpec, client: Client) -> RunHandle:
         """Start a run, and return it after its first record.
 
         Raises:
@@ -89,13 +89,13 @@ class Runner:
             ScopeError: The run failed before its first step.
         """
         camera = await station.require_control(client)
-        request = RunRequest(kind=task.kind, camera=station.name, conversation=task.conversation, actor=client.name)
-        folder = RunFolder.create(self._journal.root, task.instruction)
-        handle = RunHandle(folder.path.name, task.instruction, request)
+        request = RunRequest(kind=spec.kind, camera=station.name, conversation=spec.conversation, actor=client.name)
+        folder = RunFolder.create(self._journal.root, spec.instruction)
+        handle = RunHandle(folder.path.name, spec.instruction, request)
         # The station is busy from here to the end of `_execute`. There must be no `await` between the check above and this line.
         station.running = handle
         self._remember(handle)
-        work = asyncio.create_task(self._execute(station, camera, task, folder, handle))
+        work = asyncio.create_task(self._execute(station, camera, spec, folder, handle))
         self._tasks.add(work)
         work.add_done_callback(self._tasks.discard)
         try:
@@ -118,11 +118,11 @@ class Runner:
         for key in ended[: max(0, len(ended) - MAX_FINISHED)]:
             del self._handles[key]
 
-    async def _execute(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:
+    async def _execute(self, station: Station, camera: Camera, spec: RunSpec, folder: RunFolder, handle: RunHandle) -> None:
         failure: Exception | None = None
         try:
             with handle.scope:
-                await self._run(station, camera, task, folder, handle)
+                await self._run(station, camera, spec, folder, handle)
         except ScopeError as error:
             failure = error
         except Exception as error:  # a bug must not leave the camera busy forever
@@ -139,27 +139,27 @@ class Runner:
             await station.control.run_ended()
             handle.finish(failure)
 
-    async def _run(self, station: Station, camera: Camera, task: Task, folder: RunFolder, handle: RunHandle) -> None:
-        models = await station.models(task.pair)
-        if task.kind == "dry_run":
+    async def _run(self, station: Station, camera: Camera, spec: RunSpec, folder: RunFolder, handle: RunHandle) -> None:
+        models = await station.models(spec.pair)
+        if spec.kind == "dry_run":
             camera = DryRunCamera(camera, handle.preview.append)
         else:
             await station.remember()
-            (await station.opened()).record_instruction(f"{handle.request.actor}: {task.instruction}")
+            (await station.opened()).record_instruction(f"{handle.request.actor}: {spec.instruction}")
         conversation: tuple[PastTurn, ...] = ()
-        if task.conversation is not None:
-            conversation = await self._journal.turns(task.conversation)
+        if spec.conversation is not None:
+            conversation = await self._journal.turns(spec.conversation)
         handle.request.write(folder.path)
-        note = dry_run_note(models.note) if task.kind == "dry_run" else models.note
+        note = dry_run_note(models.note) if spec.kind == "dry_run" else models.note
         labels = RunLabels(perception_note=note, seed=0)
         agent = Agent(
-            task.planner or models.planner,
+            spec.planner or models.planner,
             camera,
             models.perception,
             folder,
             budgets=self._budgets,
             labels=labels,
-            snapshots=task.snapshots,
+            snapshots=spec.snapshots,
             run_tool=_recording_errors(handle),
         )
         with TraceWriter(folder.trace) as trace:
@@ -170,9 +170,9 @@ class Runner:
                 if len(handle.records) == 1:
                     self._journal.index_soon(handle.id)
 
-            result = await agent.run(task.instruction, conversation=conversation, listener=listen)
-        if task.conversation is not None and task.kind == "instruction":
-            await self._journal.add_turn(task.conversation, result.past_turn())
+            result = await agent.run(spec.instruction, conversation=conversation, listener=listen)
+        if spec.conversation is not None and spec.kind == "instruction":
+            await self._journal.add_turn(spec.conversation, result.past_turn())
 
 
 def _recording_errors(handle: RunHandle) -> RunTool:

@@ -9,7 +9,7 @@ from scope_ptz.agent.records import Called
 from scope_ptz.errors import InputError, ScopeError
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.run_handle import RunHandle
-from scope_ptz.serve.site.runner import Task
+from scope_ptz.serve.site.runner import RunSpec
 from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.station import Station
 from scope_ptz.store.conversations import load_conversation
@@ -53,8 +53,8 @@ async def start_instruction(
         chosen = chosen or stored.pair
     # If a conversation's pair is no longer configured, the default pair is used instead.
     name = site.pairs.check(chosen if chosen in site.pairs.names or pair is not None else None)
-    task = Task(instruction, name, conversation, "dry_run" if dry_run else "instruction")
-    return await site.runner.start(station, task, client)
+    spec = RunSpec(instruction, name, conversation, "dry_run" if dry_run else "instruction")
+    return await site.runner.start(station, spec, client)
 
 
 async def start_tool_call(
@@ -76,7 +76,7 @@ async def start_tool_call(
         BusyError: A run is in progress on the camera.
         ScopeError: The run failed before its first step.
     """
-    return await site.runner.start(station, Task.tool_call(tool, arguments, site.pairs.check(pair)), client)
+    return await site.runner.start(station, RunSpec.tool_call(tool, arguments, site.pairs.check(pair)), client)
 
 
 def finished_call(handle: RunHandle) -> Called:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 MAX_LISTED = 40  # maximum number of faults that are listed of each kind
+_PAIRS_WHOLE = "right-hand numbers: paired tasks count only if both tasks of the pair pass"
 
 
 def report_lines(report: ValidationReport) -> Iterator[str]:
@@ -24,12 +25,12 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     for name, row in content["cheats"].items():
         yield f"  {name:<22}{row['passed']:>5} of {row['of']}  ({row['share_of_all']:.1%} of all tasks)"
     if content["looked_and_guessed"]:
-        yield "core tasks that fixed answers pass (right-hand numbers: paired tasks count only if both tasks of the pair pass)"
+        yield f"core tasks that fixed answers pass ({_PAIRS_WHOLE})"
     for name, row in content["looked_and_guessed"].items():
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     if report.adaptive:
-        yield "core tasks that answers adapted to the form of the question pass (right-hand numbers: with pairs counted whole)"
+        yield f"core tasks that answers adapted to the form of the question pass ({_PAIRS_WHOLE})"
     for name, row in report.adaptive_as_dict().items():
         agent = name.removeprefix("adaptive: ")
         yield f"  {agent:<28}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"

@@ -9,7 +9,7 @@ from statistics import NormalDist, fmean
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.bench.reports.paper import PaperAccuracy, load_paper
+from scope_ptz.bench.reports.details.paper import PaperAccuracy, load_paper
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES
 from tests.bench.reports.simulated.items import Item, viewpoints_of
 

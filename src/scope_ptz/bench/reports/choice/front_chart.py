@@ -62,9 +62,12 @@ def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] 
             )
         _style(axes)
         _legends(figure, keys, labels)
-        figure.canvas.draw()  # Fixes the layout, which the labels' places depend on.
-        place_labels(axes, [(str(number), _position(c), sqrt(_area(c.memory_gb or 0.0)) / 2) for number, c in complete])
-        return as_chart("chart-front", _title(complete, has_bar), _alt(complete, baselines), figure)
+
+        def place() -> None:
+            figure.canvas.draw()  # Fixes the layout, which the labels' places depend on.
+            place_labels(axes, [(str(number), _position(c), sqrt(_area(c.memory_gb or 0.0)) / 2) for number, c in complete])
+
+        return as_chart("chart-front", _title(complete, has_bar), _alt(complete, baselines), figure, place)
 
 
 def _position(candidate: Candidate) -> tuple[float, float]:

@@ -15,16 +15,16 @@ from scope_ptz.perception.ground_truth.answers.legible_text import read, text_ex
 from scope_ptz.perception.ground_truth.answers.locations import identify, what, where
 from scope_ptz.perception.ground_truth.answers.ordered_things import in_order, quarter
 from scope_ptz.perception.ground_truth.answers.scene import describe, happening
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown
 from scope_ptz.perception.ground_truth.answers.values import ask
 from scope_ptz.perception.ground_truth.answers.verdicts import is_a, yes_no
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.view import View
 
-__all__ = ["AnswerText", "answer"]
+__all__ = ["TruthAnswer", "answer"]
 
 
-def answer(view: View, question: tree.Question | None) -> AnswerText:
+def answer(view: View, question: tree.Question | None) -> TruthAnswer:
     """Return the answer to a parsed question. The question is None if the parser did not understand it."""
     match question:
         case tree.Exists():

@@ -6,7 +6,7 @@ from collections import Counter
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, definite, none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, metres, name, place, reply, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, metres, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import value_of
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import rank_key
@@ -18,7 +18,7 @@ _EQUALITY_TOLERANCE = 0.02
 """Maximum relative difference between values that are reported as equal."""
 
 
-def which(view: View, question: tree.Which) -> AnswerText:
+def which(view: View, question: tree.Which) -> TruthAnswer:
     """Answer which of several things ranks first in a comparison."""
     options = question.options.phrases
     if len(options) == 1:
@@ -51,7 +51,7 @@ def _equal(key: tree.OrderKey, a: Thing, b: Thing) -> bool:
     return abs(x - y) <= _EQUALITY_TOLERANCE * max(x, y, 1e-9)
 
 
-def compare(view: View, question: tree.Compare) -> AnswerText:
+def compare(view: View, question: tree.Compare) -> TruthAnswer:
     """Answer whether the first thing ranks before the second in a comparison, as in "is the van nearer than the bus?"."""
     for description in (question.first, question.second):
         if not find(view, description):
@@ -66,7 +66,7 @@ def compare(view: View, question: tree.Compare) -> AnswerText:
     return reply(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
 
 
-def how_far(view: View, question: tree.HowFar) -> AnswerText:
+def how_far(view: View, question: tree.HowFar) -> TruthAnswer:
     """Answer how far a thing is from the camera, or from another thing, in metres."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
@@ -85,7 +85,7 @@ def how_far(view: View, question: tree.HowFar) -> AnswerText:
     return reply(f"the {name(first[0])} is about {metres(gap)} from {definite(view, question.other)}")
 
 
-def compare_count(view: View, question: tree.CompareCount) -> AnswerText:
+def compare_count(view: View, question: tree.CompareCount) -> TruthAnswer:
     """Answer which of two kinds is more or less frequent, or whether a stated comparison of their numbers is true."""
     if not question.second.phrases:
         return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
@@ -104,7 +104,7 @@ def compare_count(view: View, question: tree.CompareCount) -> AnswerText:
     return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
 
 
-def _most_of(view: View, question: tree.CompareCount) -> AnswerText:
+def _most_of(view: View, question: tree.CompareCount) -> TruthAnswer:
     """Answer "which are there most of: cars, vans or lorries?"."""
     kinds = [tree.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
     counts = [len(find(view, kind)) for kind in kinds]
@@ -116,7 +116,7 @@ def _most_of(view: View, question: tree.CompareCount) -> AnswerText:
     return reply(f"{verdict}: {listed}")
 
 
-def count_kinds(view: View, question: tree.CountKinds) -> AnswerText:
+def count_kinds(view: View, question: tree.CountKinds) -> TruthAnswer:
     """Answer how many different colours or kinds there are among things."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
@@ -131,7 +131,7 @@ def _kind(thing: Thing, colour: bool) -> str | None:
     return colour_of(thing) if colour else str(thing.attributes.get("kind", thing.category))
 
 
-def most_common(view: View, question: tree.MostCommon) -> AnswerText:
+def most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
     """Answer with the most or least frequent colour or kind."""
     matches = find(view, question.what)
     if not matches:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import is_unmodelled_background, none_of, noun, predicate_words
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, name, reply, things_with_places, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, name, reply, things_with_places, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import has_item
 from scope_ptz.perception.ground_truth.thing_search import find, things_named
@@ -25,7 +25,7 @@ def with_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> t
     )
 
 
-def exists(view: View, question: tree.Exists) -> AnswerText:
+def exists(view: View, question: tree.Exists) -> TruthAnswer:
     """Answer whether anything in view matches the description."""
     if is_unmodelled_background(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
@@ -67,7 +67,7 @@ def there_are(view: View, what: tree.Description, matches: list[Thing]) -> str:
     return f"{statement}{', on' if worn else ':'} {things_with_places(matches)}" if len(matches) <= MAX_LISTED else statement
 
 
-def count(view: View, question: tree.Count) -> AnswerText:
+def count(view: View, question: tree.Count) -> TruthAnswer:
     """Answer how many things match the description and the tests."""
     if is_unmodelled_background(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")

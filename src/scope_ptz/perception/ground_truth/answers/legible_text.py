@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import definite, none_of, plural
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, reply, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
 
 
-def read(view: View, question: tree.Read) -> AnswerText:
+def read(view: View, question: tree.Read) -> TruthAnswer:
     """Answer with the text on a thing, its number plate, or all text in view."""
     if question.what is None:
         return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
@@ -56,14 +56,14 @@ def _is_limit(view: View, text: TextSighting) -> bool:
     return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(owner)
 
 
-def _read(view: View, what: tree.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:
+def _read(view: View, what: tree.Description | None, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
     subject = definite(view, what, plural(what)) if what else "the picture"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
         quoted = english.listing([f'"{t}"' for t in legible])
         if plate:
-            return AnswerText(english.sentence(f"the number plate reads {quoted}"))
-        return AnswerText(
+            return TruthAnswer(english.sentence(f"the number plate reads {quoted}"))
+        return TruthAnswer(
             english.sentence(
                 f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
             )
@@ -84,7 +84,7 @@ def illegibility(texts: Sequence[TextSighting]) -> str:
     return "too oblique" if best.angle_deg > MAX_READING_ANGLE_DEG else "too much hidden or cut off"
 
 
-def text_exists(view: View, question: tree.TextExists) -> AnswerText:
+def text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
     """Answer whether there is text on a thing or in view, and quote it."""
     if question.what is None:
         texts: Sequence[TextSighting] = view.texts
@@ -103,10 +103,10 @@ def text_exists(view: View, question: tree.TextExists) -> AnswerText:
     return reply(f"no, there is no text {where}")
 
 
-def fact_on_signs(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
+def fact_on_signs(view: View, signs: Sequence[Thing], fact: str) -> TruthAnswer | None:
     """Answer with a fact that is written on signs, such as the speed limit; None if the signs have no text."""
     texts = _texts(view, signs, plate=False)
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:
-        return AnswerText(english.sentence(f"the {fact} reads {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
+        return TruthAnswer(english.sentence(f"the {fact} reads {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
     return _read(view, None, texts, plate=False) if texts else None

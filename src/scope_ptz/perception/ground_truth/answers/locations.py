@@ -8,7 +8,7 @@ from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
 from scope_ptz.perception.ground_truth.answers.restating import after_noun, none_of, noun, predicate_words
 from scope_ptz.perception.ground_truth.answers.thing_names import (
-    AnswerText,
+    TruthAnswer,
     metres,
     name,
     names,
@@ -29,7 +29,7 @@ MAX_PLACED = 3
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
-def where(view: View, question: tree.Where) -> AnswerText:
+def where(view: View, question: tree.Where) -> TruthAnswer:
     """Answer where the things that match a description are."""
     matches = find(view, question.what)
     if not matches:
@@ -71,7 +71,7 @@ def _depth_side(view: View, thing: Thing, other: Thing) -> str:
     return "in front of" if relation_holds(view, thing, "front", other) else ""
 
 
-def what(view: View, question: tree.What) -> AnswerText:
+def what(view: View, question: tree.What) -> TruthAnswer:
     """Answer with the names of all things that match."""
     if _is_a_list(question.what):
         return _listed_in_question(view, question)
@@ -91,7 +91,7 @@ def _is_a_list(description: tree.Description) -> bool:
     return bool(words) and words <= {"following", "these", "those", "them"}
 
 
-def _listed_in_question(view: View, question: tree.What) -> AnswerText:
+def _listed_in_question(view: View, question: tree.What) -> TruthAnswer:
     """Answer which of the things that the question lists are in view."""
     tests = [test for asked in question.tests for test in (asked.tests if isinstance(asked, tree.Any) else (asked,))]
     listed = tuple(tree.Phrase(test.words) for test in tests if isinstance(test, tree.Is))
@@ -101,7 +101,7 @@ def _listed_in_question(view: View, question: tree.What) -> AnswerText:
     return reply(f"I can see {names(matches)}" if matches else none_of(view, tree.Description(listed)))
 
 
-def _no_match(view: View, question: tree.What, description: tree.Description) -> AnswerText:
+def _no_match(view: View, question: tree.What, description: tree.Description) -> TruthAnswer:
     """Answer if no thing matches: with a fact that the scene states ("which lane is closed?"), otherwise that nothing matches."""
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
@@ -117,7 +117,7 @@ def _by_nearness(view: View, tests: tuple[tree.Test, ...], matches: list[Thing])
     return sorted(matches, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else matches
 
 
-def things_in_words(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> AnswerText:
+def things_in_words(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> TruthAnswer:
     """Answer with things and their places: "a white van and 2 traffic cones are behind the barrier"."""
     rest = tuple(t for t in tests if not isinstance(t, tree.Order))
     if len(rest) < len(tests):
@@ -128,7 +128,7 @@ def things_in_words(view: View, tests: tuple[tree.Test, ...], matches: list[Thin
     return reply(f"{names(matches)} {predicate_words(view, rest, len(matches))}{location}")
 
 
-def identify(view: View, question: tree.Identify) -> AnswerText:
+def identify(view: View, question: tree.Identify) -> TruthAnswer:
     """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
     phrase = question.what.phrases[0]
     fact = fact_in_view(view, phrase.words)

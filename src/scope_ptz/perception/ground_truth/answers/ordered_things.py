@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import definite, none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, reply, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, name, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_search import find
@@ -18,7 +18,7 @@ _ENDS = {
 """The words for the first and the last place of each order."""
 
 
-def in_order(view: View, question: tree.InOrder) -> AnswerText:
+def in_order(view: View, question: tree.InOrder) -> TruthAnswer:
     """List the named things in an order, such as left to right or nearest to furthest, or list kinds of things by count."""
     kinds = [tree.Description((phrase,)) for phrase in question.options.phrases]
     if question.key in {"most", "fewest"}:
@@ -38,7 +38,7 @@ def in_order(view: View, question: tree.InOrder) -> AnswerText:
     return reply(f"from {first} to {last}: {english.listing(listed)}")
 
 
-def quarter(view: View, question: tree.Quarter) -> AnswerText:
+def quarter(view: View, question: tree.Quarter) -> TruthAnswer:
     """Answer in which quarter of the frame the centre of each thing is."""
     things = find(view, question.what)
     if not things:

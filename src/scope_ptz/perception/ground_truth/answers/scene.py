@@ -9,7 +9,7 @@ from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
 from scope_ptz.perception.ground_truth.answers.locations import what
 from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, metres, name, names, place, reply
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, metres, name, names, place, reply
 from scope_ptz.perception.ground_truth.answers.values import pose_of
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import BACKDROP
@@ -25,7 +25,7 @@ STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing",
 """States that are not activities."""
 
 
-def describe(view: View, question: tree.Describe) -> AnswerText:
+def describe(view: View, question: tree.Describe) -> TruthAnswer:
     """Describe the view, largest things first, with the legible texts."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
@@ -40,7 +40,7 @@ def describe(view: View, question: tree.Describe) -> AnswerText:
     return reply(f"I can see {parts}{readable}")
 
 
-def _load_of(view: View, tests: tuple[tree.Test, ...]) -> AnswerText | None:
+def _load_of(view: View, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
     """Answer "what is on the trailer?" with the load that the scene states; None if the scene does not state it."""
     match tests:
         case (tree.Relation(kind="on", other=other),):
@@ -51,14 +51,14 @@ def _load_of(view: View, tests: tuple[tree.Test, ...]) -> AnswerText | None:
     return None
 
 
-def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText:
+def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer:
     """Describe individual things with all facts that the scene states about them."""
     matches = find(view, with_tests(what, tests))
     if not matches:
         return reply(none_of(view, what))
     if len(matches) > MAX_TEXTS:
         return reply(f"there are {len(matches)} {noun(view, what, many=True)}: {names(matches)}")
-    return AnswerText(" ".join(english.sentence(_with_details(t)) for t in matches))
+    return TruthAnswer(" ".join(english.sentence(_with_details(t)) for t in matches))
 
 
 def _with_details(thing: Thing) -> str:
@@ -90,11 +90,11 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     return parts
 
 
-def happening(view: View) -> AnswerText:
+def happening(view: View) -> TruthAnswer:
     """Answer which things are moving or active; if there are none, describe the view."""
     activities = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not activities:
-        return AnswerText(f"Nothing is moving. {describe(view, tree.Describe()).text}")
+        return TruthAnswer(f"Nothing is moving. {describe(view, tree.Describe()).text}")
     parts = [
         f"{english.article(k) if n == 1 else english.counted(n, k)} {is_or_are(n)} {doing}" for (k, doing), n in activities.items()
     ]

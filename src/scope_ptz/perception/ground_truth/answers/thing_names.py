@@ -15,21 +15,21 @@ MAX_NAMED = 8
 """Maximum number of names in a list of things."""
 
 
-class AnswerText(NamedTuple):
+class TruthAnswer(NamedTuple):
     """An answer in words. ``known`` is False if the question cannot be answered."""
 
     text: str
     known: bool = True
 
 
-def reply(text: str) -> AnswerText:
+def reply(text: str) -> TruthAnswer:
     """Return a known answer."""
-    return AnswerText(english.sentence(text))
+    return TruthAnswer(english.sentence(text))
 
 
-def unknown(text: str) -> AnswerText:
+def unknown(text: str) -> TruthAnswer:
     """Return an answer that states why the question cannot be answered."""
-    return AnswerText(english.sentence(text), known=False)
+    return TruthAnswer(english.sentence(text), known=False)
 
 
 def name(thing: Thing) -> str:

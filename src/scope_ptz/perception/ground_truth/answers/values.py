@@ -9,7 +9,7 @@ from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import singular_phrase
 from scope_ptz.perception.ground_truth.answers.legible_text import fact_on_signs
 from scope_ptz.perception.ground_truth.answers.restating import as_asked, definite, none_of, noun, plural
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, is_or_are, place, reply, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, place, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import (
     ABSENT_VALUES,
@@ -43,7 +43,7 @@ _KEY_SYNONYMS = {
 }
 
 
-def ask(view: View, question: tree.Ask) -> AnswerText:
+def ask(view: View, question: tree.Ask) -> TruthAnswer:
     """Answer with the value of an attribute of one or more things."""
     if question.what is None:
         return fact_in_view(view, question.attribute)
@@ -144,7 +144,7 @@ def _clothes(thing: Thing) -> str | None:
     return english.listing(worn) if worn else None
 
 
-def _answer_about_part(view: View, question: tree.Ask) -> AnswerText | None:
+def _answer_about_part(view: View, question: tree.Ask) -> TruthAnswer | None:
     """Answer about a part that the scene states as a fact about its owner ("the worker's helmet colour")."""
     if question.what is None:
         return None
@@ -178,7 +178,7 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
     return None
 
 
-def fact_in_view(view: View, attribute: Sequence[str]) -> AnswerText:
+def fact_in_view(view: View, attribute: Sequence[str]) -> TruthAnswer:
     """Answer with a fact about a thing in view ("which lane is closed?"), or the text on a sign ("what is the speed limit?")."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
         return unknown("I cannot tell that from the picture")
@@ -200,7 +200,7 @@ def _states(thing: Thing, attribute: Sequence[str]) -> bool:
     return any(requested <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 
 
-def absent(view: View, subject: tree.Description) -> AnswerText:
+def absent(view: View, subject: tree.Description) -> TruthAnswer:
     """Answer a question about something that is not in view."""
     if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
         return unknown("I cannot tell that from the picture")

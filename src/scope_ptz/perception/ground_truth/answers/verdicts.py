@@ -17,7 +17,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     plural,
     predicate_words,
 )
-from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, place, reply, unknown
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import absent, part_values
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import canonical, colour_of, fact_words, fits_noun, opposite
@@ -28,7 +28,7 @@ _ANYBODY = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "s
 _EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
 
 
-def yes_no(view: View, question: tree.YesNo) -> AnswerText:
+def yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     """Answer whether the tests hold for the subject."""
     subject, tests = _parts(view, question)
     if not tests:
@@ -51,7 +51,7 @@ def yes_no(view: View, question: tree.YesNo) -> AnswerText:
     return _verdict(view, question.scope, subject, tests, things, [t for t, ok in zip(things, answers, strict=True) if ok])
 
 
-def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText | None:
+def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
     """Answer "is Brampton on the sign?" as a question about text, if "Brampton" is not the name of a thing."""
     phrase = subject.phrases[0]
     if len(tests) != 1 or not isinstance(tests[0], tree.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
@@ -65,7 +65,7 @@ def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]
     return reply(f"{'yes' if yes else 'no'}, {as_asked(view, tests[0].other)} reads {quoted}")
 
 
-def _answer_about_part(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> AnswerText | None:
+def _answer_about_part(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
     """Answer "is the cabin door open?" if the scene states the door as a fact about the cabin."""
     values = part_values(view, subject)
     if not values or len(tests) != 1 or not isinstance(tests[0], tree.Is):
@@ -126,7 +126,7 @@ def _every(answers: Sequence[bool | None]) -> bool | None:
     return False if False in answers else None if None in answers else True
 
 
-def _choice(view: View, tests: Sequence[tree.Test], things: list[Thing]) -> AnswerText | None:
+def _choice(view: View, tests: Sequence[tree.Test], things: list[Thing]) -> TruthAnswer | None:
     """Answer "red or white?" by naming the alternative that holds; None if none is known to hold."""
     if len(tests) != 1 or not isinstance(tests[0], tree.Any):
         return None
@@ -143,7 +143,7 @@ def _choice(view: View, tests: Sequence[tree.Test], things: list[Thing]) -> Answ
 
 def _verdict(
     view: View, scope: str, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], yes: list[Thing]
-) -> AnswerText:
+) -> TruthAnswer:
     """Answer yes or no.
 
     Args:
@@ -175,7 +175,7 @@ def _verdict(
 
 def _none_of_them(
     view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], *, some: bool
-) -> AnswerText:
+) -> TruthAnswer:
     """Answer no, and state the actual value if it is known. ``some`` is True if the question is about any of the things."""
     total, union = len(things), len(subject.phrases) > 1
     fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not union else None
@@ -208,7 +208,7 @@ def _actual_value(view: View, test: tree.Test, things: list[Thing]) -> str | Non
     return None
 
 
-def is_a(view: View, question: tree.IsA) -> AnswerText:
+def is_a(view: View, question: tree.IsA) -> TruthAnswer:
     """Answer whether a thing is of a kind."""
     things = find(view, question.subject)
     if not things:

@@ -17,7 +17,7 @@ from scope_ptz.taskgen.facts.kinds import Kind
 
 
 def drafts(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield the draft about the absent object of every pair, with that about the present object as its twin."""
+    """Yield a draft for each pair: the task about the absent object, with the task about the present object as its twin."""
     yield from _in_half_pairs(place, nouns, rng)
     yield from _where_if_there(place, named, nouns, rng)
 

@@ -14,14 +14,15 @@ from pydantic import ValidationError
 
 from scope_ptz.bench.engine.traces.named_models import card_contradictions, models_of
 from scope_ptz.bench.engine.traces.verification import RunToVerify
-from scope_ptz.bench.reports.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
-from scope_ptz.bench.reports.submission_traces import copied_traces, runs_in, trace_line_faults
-from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.signatures.provenance import Provenance, provenance_of
+from scope_ptz.bench.submissions.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
+from scope_ptz.bench.submissions.submission_traces import copied_traces, runs_in, trace_line_faults
+from scope_ptz.bench.submissions.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import EARLIER_VERSIONS, SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import InputError
+from scope_ptz.regular_files import check_regular_file
 from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
@@ -162,6 +163,7 @@ def _read_rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[s
     try:
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB, so it is not a submission.")
+        check_regular_file(path)
         content = path.read_text("utf-8")
     except OSError as error:
         raise InputError(f"The submission {path} cannot be read: {error.strerror}.") from error

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from rich.console import Console
 
 from scope_ptz.bench.engine.failure_summary import failure_summary
@@ -66,6 +67,7 @@ def test_unavailable_perception_is_reported_by_the_command(scope: Scope, tmp_pat
     assert again["server_events"]["refused"] and any(AWAY in line for line in again["failure_summary"])
 
 
+@pytest.mark.full
 def test_a_sweep_reports_unavailable_servers(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(many(1), tmp_path / "tasks.jsonl")
     where = (

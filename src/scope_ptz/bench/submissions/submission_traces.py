@@ -16,8 +16,8 @@ from scope_ptz.bench.engine.stored_run import StoredRun, sample_name
 from scope_ptz.bench.engine.token_costs import cost_usd
 from scope_ptz.bench.engine.traces.scored_trials import entry_of_published, published_run, scored_trial
 from scope_ptz.bench.engine.traces.verification import RunToVerify
-from scope_ptz.bench.reports.submission import Header, Places, Run, TrialLine, public_settings, trial_line, without_secrets
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.submissions.submission import Header, Places, Run, TrialLine, public_settings, trial_line, without_secrets
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.builtin_names import GROUND_TRUTH, NOISY_SOURCE

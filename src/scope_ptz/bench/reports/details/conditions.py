@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from scope_ptz.bench.reports.accuracy import KIND_TITLES
-from scope_ptz.bench.reports.difficulty import CLASSES
+from scope_ptz.bench.reports.details.accuracy import KIND_TITLES
+from scope_ptz.bench.reports.details.difficulty import CLASSES
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, is_mixture, of_main_set
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable

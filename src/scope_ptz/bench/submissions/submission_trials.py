@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from scope_ptz.agent.records import OUTCOMES
 from scope_ptz.bench.answers import ParsedValue, agrees, parse_answer
-from scope_ptz.bench.reports.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
 from scope_ptz.bench.scoring.trials import RunCard
 from scope_ptz.bench.scoring.verdict import MOVING_TOOLS
+from scope_ptz.bench.submissions.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.tools.registry import TOOLS as REGISTRY

@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports.error_analysis import MODE_TITLES
+from scope_ptz.bench.reports.details.error_analysis import MODE_TITLES
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.accuracy import fraction_correct
+from scope_ptz.bench.reports.details.accuracy import fraction_correct
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
 from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section

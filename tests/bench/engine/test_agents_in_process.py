@@ -95,6 +95,7 @@ class Agent:
 """
 
 
+@pytest.mark.full
 def test_changed_source_is_a_different_evaluation(
     scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -155,9 +156,9 @@ def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
 
-def guest(run: Callable[[Any, AgentSession], Any]) -> ChannelPlanner:
+def external(run: Callable[[Any, AgentSession], Any]) -> ChannelPlanner:
     """Return an agent in the scorer's process."""
-    return ChannelPlanner(InProcessChannel(type("Agent", (), {"run": run}), "guest"))
+    return ChannelPlanner(InProcessChannel(type("Agent", (), {"run": run}), "external"))
 
 
 async def test_calls_that_are_awaited_together_are_one_step() -> None:
@@ -165,7 +166,7 @@ async def test_calls_that_are_awaited_together_are_one_step() -> None:
         one, two = await asyncio.gather(session.call("count_objects", {"description": "a"}), session.call("take_image"))
         return AgentReply(f"{one['count']} {two['file']}", "clarification")
 
-    planner = guest(run)
+    planner = external(run)
     decision = await planner.step(STATE)
     assert isinstance(decision, CallTools)
     assert [c.name for c in decision.calls] == ["count_objects", "take_image"]
@@ -179,7 +180,7 @@ async def test_a_failing_agent_is_not_an_infrastructure_failure() -> None:
         raise ZeroDivisionError("oops")
 
     with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
-        await guest(run).step(STATE)
+        await external(run).step(STATE)
     assert failed.value.kind == "agent-error" and failed.value.kind in AGENT_FAILURES
 
 
@@ -188,7 +189,7 @@ async def test_an_agent_without_an_answer() -> None:
         return " "
 
     with pytest.raises(PlannerError, match="without an answer"):
-        await guest(run).step(STATE)
+        await external(run).step(STATE)
 
 
 async def test_an_agent_that_is_stopped_ends() -> None:
@@ -201,7 +202,7 @@ async def test_an_agent_that_is_stopped_ends() -> None:
             ended.set()
         return "never"
 
-    planner = guest(run)
+    planner = external(run)
     await planner.step(STATE)
     await planner.close()
     assert ended.is_set()

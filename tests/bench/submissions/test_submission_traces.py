@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.reports.submission import submission_schema, without_secrets
-from scope_ptz.bench.reports.submission_checks import check_submission
-from scope_ptz.bench.reports.submission_traces import MAX_TRACE_BYTES, packed, public_trace, unpacked
 from scope_ptz.bench.signatures.detached import sign
 from scope_ptz.bench.signatures.keys import generate_key, load_private_key, raw_bytes
+from scope_ptz.bench.submissions.submission import submission_schema, without_secrets
+from scope_ptz.bench.submissions.submission_checks import check_submission
+from scope_ptz.bench.submissions.submission_traces import MAX_TRACE_BYTES, packed, public_trace, unpacked
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
 from tests.bench.engine.conftest import a_log, evaluated, one_search_for_packages, scenes, scope, tasks_file

@@ -15,12 +15,12 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import scope_ptz
-from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
-from scope_ptz.bench.reports.submission_checks import check_submission
-from scope_ptz.bench.reports.submission_trials import checks_of
 from scope_ptz.bench.scoring.checks import run_checks
 from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Trial
 from scope_ptz.bench.scoring.verdict import score_episode
+from scope_ptz.bench.submissions.submission import secrets_in, submission_lines, submission_schema, write_submission
+from scope_ptz.bench.submissions.submission_checks import check_submission
+from scope_ptz.bench.submissions.submission_trials import checks_of
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_facts import TaskFacts
@@ -357,6 +357,6 @@ def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
 
 
 def test_validating_does_not_need_the_extra() -> None:
-    code = "import sys, scope_ptz.bench.reports.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
+    code = "import sys, scope_ptz.bench.submissions.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "scope_ptz" in loaded and not {"inspect_ai", "jinja2", "matplotlib", "pandas", "scipy", "statsmodels"} & set(loaded)

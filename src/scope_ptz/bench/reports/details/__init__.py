@@ -1,0 +1,1 @@
+"""The sections of a report below its first screen, one module each."""

@@ -1,0 +1,1 @@
+"""Write and validate submissions to a public leaderboard."""
