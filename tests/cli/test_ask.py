@@ -233,3 +233,14 @@ def test_a_look_that_works_after_one_that_failed_is_an_answer(scope: Scope, monk
     first, second = calls(("count_objects", {"description": "gizmotrons"})), calls(("count_objects", {"description": "balls"}))
     follow(monkeypatch, first, second, answer("There are three balls."))
     assert scope("ask", COUNT, "--scene", SCENE, "--json").code == 0
+
+
+def test_the_answer_names_the_rule_that_held_a_move_back(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    rules = "{keep_out: [{name: windows, pan_deg: [15, 45], tilt_deg: [-60, 30]}]}"
+    (tmp_path / "scope.yaml").write_text(f"cameras: {{yard: {{camera: 'sim:{SCENE}?width=160&height=90', rules: {rules}}}}}")
+    done = scope("ask", "pan right 30", "--camera", "yard", "--json").json
+    (call,) = done["tool_calls"]
+    assert call["result"]["held_back_by"] == "the keep-out region 'windows'"
+    assert "The move was held back by the keep-out region 'windows'." in done["answer"]
+    assert "limit" not in done["answer"]

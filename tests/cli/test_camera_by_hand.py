@@ -50,6 +50,19 @@ def test_a_dry_run_says_what_it_would_do_and_does_nothing(scope: Scope, tmp_path
     assert [json.loads(line)["event"] for line in (tmp_path / "audit.jsonl").read_text().splitlines()] == ["move", "arrived"]
 
 
+def test_a_dry_snapshot_writes_no_file(scope: Scope, tmp_path: Path) -> None:
+    file = tmp_path / "all.jpg"
+    done = scope("camera", "snapshot", CAMERA, "--full", "--out", str(file), "--dry-run")
+    assert done.code == 0, done.err
+    assert done.err.count("would move to") > 2
+    assert f"would write {file}" in done.err
+    assert scope("camera", "snapshot", CAMERA, "--out", str(file), "--dry-run", "--json").json == {
+        "file": str(file),
+        "dry_run": True,
+    }
+    assert not file.exists()
+
+
 def test_presets_are_listed_and_saved(scope: Scope) -> None:
     listed = scope("camera", "presets", CAMERA, "--json").json
     assert {preset["name"] for preset in scope("camera", "presets", CAMERA, "--save", "spot", "--json").json} == {

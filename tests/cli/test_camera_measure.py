@@ -94,3 +94,16 @@ def test_discover_asks_at_an_interface(scope: Scope) -> None:
     wrong = scope("camera", "discover", "--interface", "eth0", "--wait", "0.1")
     assert wrong.code == 2
     assert "IPv4" in wrong.err
+
+
+def test_a_dry_run_prints_the_moves_and_stores_nothing(scope: Scope, served_camera: ServedCamera, tmp_path: Path) -> None:
+    before = served_camera.device.pose()
+    done = scope("camera", "calibrate", served_camera.spec("axis"), "--zooms", "3", "--dry-run")
+    assert done.code == 0, done.err
+    assert "would move it to pan" in done.out
+    assert "zoom to 1.00x, 2.24x, 5.00x" in done.out
+    plan = scope("camera", "calibrate", served_camera.spec("onvif"), "--dry-run", "--json").json
+    assert plan["zooms"] == sorted(plan["zooms"])
+    assert len(plan["zooms"]) == 6
+    assert served_camera.device.pose() == before
+    assert not (tmp_path / "profiles").exists()

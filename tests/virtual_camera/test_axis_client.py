@@ -13,10 +13,12 @@ import pytest
 from axis.device import AxisDevice
 from axis.models.configuration import Configuration
 from axis.models.ptz_cgi import PtzMove, PtzQuery
+from axis.rtsp import Signal
 
 from scope_ptz.geometry import Pose
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import serve
+from tests.virtual_camera.rtsp.serving import serving, until
 
 pytestmark = pytest.mark.anyio
 
@@ -135,3 +137,22 @@ async def test_a_viewer_cannot_move_the_camera(served_device: VirtualDevice) -> 
         with pytest.raises(axis.errors.Forbidden):
             await client.vapix.request("post", "/axis-cgi/com/ptzconfig.cgi", data={"setserverpresetname": "mine"})
     assert (await arrive(served_device)).pan_deg == 10
+
+
+async def test_the_stream_of_events_plays(served_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Home Assistant shows a camera as unavailable if this stream, which the library expects at port 554, does not play."""
+    states: list[Signal] = []
+    async with serving(served_device) as served:
+        monkeypatch.setattr("axis.rtsp.RTSP_PORT", served.port)
+        monkeypatch.setattr("axis.rtsp.TIME_OUT_LIMIT", 30)
+        async with httpx.AsyncClient() as session:
+            client = AxisDevice(Configuration(session, "127.0.0.1", username="root", password="pass word"))
+            client.stream.connection_status_callback.append(states.append)
+            client.enable_events()
+            client.stream.start()
+            await until(lambda: bool(states))
+            assert served.server.sessions == 1
+            assert served.server.encoders == 0
+            client.stream.stop()
+        await served.until_left()
+    assert states == [Signal.PLAYING]

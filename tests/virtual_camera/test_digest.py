@@ -52,14 +52,14 @@ def server(time: _Time) -> DigestAuthenticator:
     return DigestAuthenticator(Accounts([OPERATOR]), "AXIS_1", now_s=time)
 
 
-@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize("which", [0, 1, 2])
 def test_both_algorithms_are_offered_and_accepted(server: DigestAuthenticator, which: int) -> None:
     challenges = server.challenges()
-    assert ["SHA-256" in challenges[0], "algorithm=MD5" in challenges[1]] == [True, True]
+    assert [name in challenge for name, challenge in zip(("=MD5", "=SHA-256", "=MD5"), challenges, strict=True)] == [True] * 3
     assert server.check(_answer(challenges[which]), "GET", "/a?b=1").account is OPERATOR
 
 
-@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize("which", [0, 1, 2])
 def test_an_independent_client_signs_in(server: DigestAuthenticator, which: int) -> None:
     """The flow of httpx2's digest client, without a network."""
     request = httpx2.Request("POST", "http://camera/axis-cgi/com/ptz.cgi?query=position")
@@ -136,7 +136,7 @@ def test_any_header_is_an_answer_or_a_refusal(text: str, nonce: str) -> None:
 @given(st.integers(0, 60), st.data())
 def test_a_changed_character_in_an_answer_is_noticed(where: int, data: st.DataObject) -> None:
     server = DigestAuthenticator(Accounts([OPERATOR]), "AXIS_1")
-    answer = _answer(server.challenges()[0])
+    answer = _answer(server.challenges()[1])
     start = answer.rindex('response="') + len('response="')
     index = start + where
     other = data.draw(st.sampled_from([c for c in "0123456789abcdef" if c != answer[index]]))

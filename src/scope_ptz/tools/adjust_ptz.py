@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.tools.arguments import Arguments, Degrees
-from scope_ptz.tools.context import ToolContext, pose_text
-from scope_ptz.tools.results import MoveResult, PoseData
+from scope_ptz.tools.context import ToolContext, move_result
+from scope_ptz.tools.results import MoveResult
 from scope_ptz.tools.tool import Tool
 
 MAX_REQUESTED_ZOOM = 1e6
@@ -54,7 +54,7 @@ async def adjust_ptz(context: ToolContext, arguments: AdjustPtz) -> MoveResult:
     start = await context.camera.pose()
     arrival = await context.camera.move(requested_pose(start, arguments, context.camera.info.limits))
     verb = "Moved" if arrival.pose != start else "The camera did not move"
-    return MoveResult(message=f"{verb}; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
+    return move_result(context.camera, verb, arrival)
 
 
 ADJUST_PTZ = Tool("adjust_ptz", AdjustPtz, adjust_ptz, "Turn and zoom", moves=True)

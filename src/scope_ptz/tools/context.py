@@ -7,6 +7,7 @@ from typing import Protocol
 
 from scope_ptz.camera.base import Arrival, Camera, Frame
 from scope_ptz.perception.base import Perception
+from scope_ptz.tools.results import MoveResult, PoseData
 
 
 class ImageStore(Protocol):
@@ -28,6 +29,23 @@ class ToolContext:
     camera: Camera
     perception: Perception
     images: ImageStore
+
+
+def move_result(camera: Camera, what: str, arrival: Arrival, preset: str | None = None) -> MoveResult:
+    """Return the result of a move.
+
+    Args:
+        camera: The camera.
+        what: What the camera did, at the beginning of a sentence.
+        arrival: Where it arrived.
+        preset: The preset that it went to.
+    """
+    # In a dry run, every move is held back, which its answer states once.
+    held_back_by = None if camera.info.dry_run else arrival.limited_by or None
+    return MoveResult(
+        message=f"{what}; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped, preset=preset,
+        held_back_by=held_back_by,
+    )  # fmt: skip
 
 
 def pose_text(arrival: Arrival) -> str:

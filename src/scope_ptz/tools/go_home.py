@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from scope_ptz.tools.arguments import Arguments
-from scope_ptz.tools.context import ToolContext, pose_text
-from scope_ptz.tools.results import MoveResult, PoseData
+from scope_ptz.tools.context import ToolContext, move_result
+from scope_ptz.tools.results import MoveResult
 from scope_ptz.tools.tool import Tool
 
 
@@ -15,7 +15,7 @@ class GoHome(Arguments):
 async def go_home(context: ToolContext, arguments: GoHome) -> MoveResult:  # noqa: ARG001 - tools share one signature
     """Move to the home pose."""
     arrival = await context.camera.go_home()
-    return MoveResult(message=f"At home; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
+    return move_result(context.camera, "At home", arrival)
 
 
 GO_HOME = Tool("go_home", GoHome, go_home, "Go home", repeatable=True, moves=True)

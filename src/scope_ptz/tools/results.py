@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, model_serializer
 
 from scope_ptz.geometry import Axis, Pose
 from scope_ptz.tools.arguments import View
@@ -44,9 +46,18 @@ class MoveResult(Result):
 
     Attributes:
         preset: The preset that the camera went to; None for other moves.
+        held_back_by: The rule of the site that held the move back, in words; None if there is none. It is then not serialized.
     """
 
     preset: str | None = None
+    held_back_by: str | None = None
+
+    @model_serializer(mode="wrap")
+    def _omit_missing_rule(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = handler(self)
+        if data.get("held_back_by") is None:
+            data.pop("held_back_by", None)
+        return data
 
 
 class PerceptionResult(Result):

@@ -23,6 +23,12 @@ from scope_ptz.virtual_camera.accounts import Account, Accounts
 from scope_ptz.virtual_camera.faults import Faults
 from scope_ptz.virtual_camera.lens import VirtualLens
 
+REBOOT_S = 10.0
+"""Default number of seconds for which a rebooting camera is off the network."""
+
+REPLY_S = 0.3
+"""Seconds that a request for a reboot has for its reply, before the camera leaves the network."""
+
 MAX_PRESETS = 256
 """Number of presets that the device can store, as on the AXIS M5075-G."""
 
@@ -106,6 +112,7 @@ class VirtualDevice:
         self._last_stop_sent_s = -np.inf
         self._faults, self._faults_since_s = Faults(), 0.0
         self._frozen: Exposure | None = None
+        self._reboot_s = (-np.inf, -np.inf)  # start and end of the last reboot, on the clock of ``time.monotonic``
         self.observers: list[Callable[[Exposure], None]] = []
 
     @property
@@ -115,6 +122,12 @@ class VirtualDevice:
     @faults.setter
     def faults(self, faults: Faults) -> None:
         self._faults, self._faults_since_s, self._frozen = faults, self.now_s(), None
+
+    @property
+    def down(self) -> bool:
+        """Whether the camera is off the network, because of the fault ``down`` or a reboot."""
+        start_s, end_s = self._reboot_s
+        return self._faults.down or start_s <= monotonic() < end_s
 
     def now_s(self) -> float:
         """Return the motors' time in seconds, which runs ``time_scale`` times as fast as the wall clock."""
@@ -203,11 +216,17 @@ class VirtualDevice:
         else:
             self._motion.brake(now_s)
 
-    def reboot(self) -> None:
+    def reboot(self, down_s: float = 0.0, *, after_s: float = 0.0) -> None:
         """Return to the home position immediately, as after a reboot. Presets are kept; focus and iris become automatic.
 
         Earlier stop commands no longer cause ``drive`` commands to be dropped.
+
+        Args:
+            down_s: Seconds for which the camera is off the network.
+            after_s: Seconds until it leaves the network, so that the client that requested the reboot still gets a reply.
         """
+        start_s = monotonic() + after_s
+        self._reboot_s = (start_s, start_s + down_s)
         self._motion.jump_to(self.home, self.now_s())
         self.lens = VirtualLens(self.now_s)
         self._last_stop_sent_s = -np.inf

@@ -19,8 +19,13 @@ NONCE_LIFETIME_S = 300.0
 """How long a nonce is accepted, in seconds. After that, a correct response gets a new challenge that is marked stale."""
 
 _ALGORITHMS: dict[str, Callable[[bytes], hashlib._Hash]] = {"SHA-256": hashlib.sha256, "MD5": hashlib.md5}
-# Challenges are sent in this order. Some clients read only the first challenge, and these support SHA-256. Others, such as FFmpeg,
-# read only the last one, and these need MD5.
+
+_OFFERS = ("MD5", "SHA-256", "MD5")
+"""The algorithms of the challenges in a reply, in order.
+
+Some clients read only the first challenge, such as Python's ``urllib``, and others only the last one, such as older versions of
+FFmpeg. Both kinds need MD5.
+"""
 
 _PARAMETER = re.compile(r'([\w*-]+)\s*=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s,"]+))\s*(?:,|$)')
 _NONCE = Struct("!d12s")  # the content of a nonce: its time of issue and random bytes; a signature follows
@@ -50,6 +55,7 @@ class DigestAuthenticator:
         accounts: The accounts that may sign in.
         realm: The authentication realm, which clients show to their users.
         qop: Whether ``qop=auth``, which detects replayed requests, is offered and required. Many RTSP clients do not support it.
+            Without it, challenges always state whether the nonce was stale, as those of the RTSP servers of AXIS cameras do.
         nonce_lifetime_s: Seconds for which a nonce is accepted.
         now_s: Returns the current time in seconds, to determine the age of nonces.
     """
@@ -69,10 +75,10 @@ class DigestAuthenticator:
         self._used: dict[str, _NonceCounts] = {}
 
     def challenges(self, *, stale: bool = False) -> list[str]:
-        """Return the values of the ``WWW-Authenticate`` headers of a 401 reply, one for each algorithm."""
+        """Return the values of the ``WWW-Authenticate`` headers of a 401 reply."""
         nonce = self._new_nonce()
-        ending = (', qop="auth"' if self._qop else "") + (", stale=true" if stale else "")
-        return [f'Digest realm="{self.realm}", nonce="{nonce}", algorithm={name}{ending}' for name in _ALGORITHMS]
+        ending = (', qop="auth"' + (", stale=true" if stale else "")) if self._qop else f", stale={str(stale).upper()}"
+        return [f'Digest realm="{self.realm}", nonce="{nonce}", algorithm={name}{ending}' for name in _OFFERS]
 
     def check(self, authorization: str | None, method: str, uri: str | None = None) -> Verdict:
         """Check the ``Authorization`` header of a request.

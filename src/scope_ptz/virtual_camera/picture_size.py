@@ -25,7 +25,8 @@ def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
         raise InputError(f"resolution: expected WIDTHxHEIGHT, got {text[:60]!r}")
     width, height = (int(side) for side in sides)
     if not (MIN_SIDE_PX <= width <= device.width and MIN_SIDE_PX <= height <= device.height):
-        raise InputError(f"resolution: at most {device.width}x{device.height}, got {text[:60]}")
+        smallest, largest = f"{MIN_SIDE_PX}x{MIN_SIDE_PX}", f"{device.width}x{device.height}"
+        raise InputError(f"resolution: expected {smallest} to {largest}, got {text[:60]}")
     return width, height
 
 

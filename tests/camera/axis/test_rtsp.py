@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 from collections.abc import AsyncIterator
 from contextlib import aclosing, asynccontextmanager
@@ -12,7 +13,7 @@ import pytest
 from scope_ptz.camera.axis.camera import AxisCamera
 from scope_ptz.camera.network import rtsp
 from scope_ptz.camera.network.credentials import Credentials
-from scope_ptz.camera.network.errors import CameraUnreachableError
+from scope_ptz.camera.network.errors import CameraSignInError, CameraUnreachableError, ForeignAddressError
 from scope_ptz.errors import ConfigError
 from scope_ptz.factory.cameras.virtual import VirtualCameraOptions, serve_virtual_cameras
 from scope_ptz.geometry import Pose
@@ -77,3 +78,38 @@ async def test_without_pyav_the_message_names_the_package(monkeypatch: pytest.Mo
     monkeypatch.setitem(sys.modules, "av", None)
     with pytest.raises(ConfigError, match=r"scope-ptz\[camera\]"):
         rtsp.RtspStream("rtsp://127.0.0.1/x", None, width=1, height=1)
+
+
+async def test_a_wrong_password_is_reported_at_once(analytic_scene: Scene) -> None:
+    device = VirtualDevice(analytic_scene, accounts=[Account(USER, PASSWORD, Role.VIEWER)], width=320, height=180)
+    async with serve_virtual_cameras([device], VirtualCameraOptions(scenes=(analytic_scene.name,))) as (served,):
+        url = f"rtsp://127.0.0.1:{served.unit.rtsp_port}/axis-media/media.amp"
+        stream = rtsp.RtspStream(url, Credentials(USER, "wrong"), width=320, height=180, give_up_s=600)
+        with anyio.fail_after(30), pytest.raises(CameraSignInError, match="refuses the user name or the password"):
+            await stream.next()
+        await stream.close()
+
+
+async def test_a_redirect_is_not_followed() -> None:
+    """FFmpeg would follow it, and send the password in clear text to a host that asks for it."""
+    visitors = []
+
+    async def elsewhere(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        visitors.append(await reader.read(4096))
+        writer.close()
+
+    async def redirect(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        await reader.readuntil(b"\r\n\r\n")
+        writer.write(f"RTSP/1.0 302 Moved\r\nCSeq: 1\r\nLocation: rtsp://127.0.0.1:{other_port}/x\r\n\r\n".encode())
+        await writer.drain()
+        writer.close()
+
+    async with await asyncio.start_server(elsewhere, "127.0.0.1", 0) as other:
+        other_port = other.sockets[0].getsockname()[1]
+        async with await asyncio.start_server(redirect, "127.0.0.1", 0) as camera:
+            url = f"rtsp://127.0.0.1:{camera.sockets[0].getsockname()[1]}/x"
+            stream = rtsp.RtspStream(url, Credentials(USER, PASSWORD), width=320, height=180, give_up_s=600)
+            with anyio.fail_after(30), pytest.raises(ForeignAddressError, match="no credentials were sent there"):
+                await stream.next()
+            await stream.close()
+    assert visitors == []

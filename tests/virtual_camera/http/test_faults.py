@@ -118,9 +118,21 @@ async def test_a_reboot(served_device: VirtualDevice) -> None:
     async with camera_and_client(served_device) as (_, session):
         await session.get(PTZ, params={"pan": "77"})
         assert (await session.post("/virtual/reboot", content="down_s=0.3")).json() == {"down_s": 0.3}
-        await until(lambda: served_device.faults.down)
+        assert served_device.down
         with pytest.raises(httpx2.TransportError):
             await session.get(PTZ, params={"query": "position"})
-        await until(lambda: not served_device.faults.down)
+        await until(lambda: not served_device.down)
         assert served_device.pose() == served_device.home
         assert (await session.get(PTZ, params={"query": "position"})).status_code == 200
+
+
+async def test_a_client_restarts_the_camera(served_device: VirtualDevice, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.virtual_camera.http.vapix_routes.REBOOT_S", 0.3)
+    async with camera_and_client(served_device) as (_, session):
+        await session.get(PTZ, params={"pan": "77"})
+        assert (await session.get("/axis-cgi/restart.cgi")).status_code == 200
+        await until(lambda: served_device.down)
+        with pytest.raises(httpx2.TransportError):
+            await session.get(PTZ, params={"query": "position"})
+        await until(lambda: not served_device.down)
+        assert served_device.pose() == served_device.home

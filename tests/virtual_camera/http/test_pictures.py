@@ -39,6 +39,9 @@ async def test_snapshots(served_device: VirtualDevice) -> None:
         for wrong in ("4000x3000", "8x8", "big", "1x", "-1x5"):
             assert (await session.get(IMAGE, params={"resolution": wrong})).status_code == 400
         assert (await session.get(IMAGE, params={"compression": "101"})).status_code == 400
+        for path in (IMAGE, VIDEO):
+            assert (await session.get(path, params={"camera": "2"})).status_code == 400
+        assert (await session.get(IMAGE, params={"camera": "1"})).status_code == 200
 
 
 async def test_several_browsers_watch_and_one_vanishes(served_device: VirtualDevice) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from urllib.request import HTTPDigestAuthHandler, HTTPPasswordMgrWithDefaultRealm, ProxyHandler, build_opener
+
 import httpx2
 import pytest
+from anyio import to_thread
 
 from scope_ptz.geometry import Pose
 from scope_ptz.virtual_camera.device import VirtualDevice
@@ -49,8 +52,22 @@ async def test_basic_is_refused_and_never_asked_for(served_device: VirtualDevice
             reply = await basic.get(IMAGE)
         assert reply.status_code == 401
         challenges = reply.headers.get_list("www-authenticate")
-        assert len(challenges) == 2
+        assert len(challenges) == 3
         assert all(challenge.startswith("Digest ") for challenge in challenges)
+
+
+async def test_the_standard_library_signs_in(served_device: VirtualDevice) -> None:
+    """It reads only the first challenge and does not know SHA-256."""
+
+    def read(url: str) -> int:
+        passwords = HTTPPasswordMgrWithDefaultRealm()
+        passwords.add_password(None, url, "root", "pass word")
+        opener = build_opener(ProxyHandler({}), HTTPDigestAuthHandler(passwords))
+        with opener.open(url + IMAGE, timeout=20) as reply:
+            return len(reply.read())
+
+    async with serve([served_device]) as (camera,):
+        assert await to_thread.run_sync(read, camera.url) > 1000
 
 
 @pytest.mark.parametrize(

@@ -78,6 +78,9 @@ async def test_media_profile_stream_and_snapshot(client: Any, media: Any, device
     assert stream.Uri == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
     stream = await media.GetStreamUri({"StreamSetup": setup, "ProfileToken": small.token})
     assert stream.Uri == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp?resolution=160x90"
+    setup = {"Stream": "RTP-Unicast", "Transport": {"Protocol": "HTTP"}}
+    stream = await media.GetStreamUri({"StreamSetup": setup, "ProfileToken": profile.token})
+    assert stream.Uri == f"http://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
     configuration = {"ConfigurationToken": small.VideoEncoderConfiguration.token}
     assert (await media.GetVideoEncoderConfiguration(configuration)).Resolution.Width == device.width // 2
     assert len(await media.GetVideoEncoderConfigurations()) == 2
@@ -269,6 +272,23 @@ async def test_roles_limit_what_an_account_may_do(served: ServedCamera, device: 
     time.pass_(60)
     assert await refused("operator", "SetPreset", PresetName="gate")
     assert not await refused("admin", "SetPreset", PresetName="gate")
+
+
+async def test_an_administrator_reboots_the_device(served: ServedCamera, device: VirtualDevice, time: HandClock) -> None:
+    device.move(Pose(40.0, -10.0, 2.0))
+    time.pass_(60)
+    async with connect(served, "operator") as client:
+        with pytest.raises(Fault):
+            await (await client.create_devicemgmt_service()).SystemReboot()
+    assert device.pose() != device.home
+    async with connect(served, "admin") as client:
+        assert "10 seconds" in await (await client.create_devicemgmt_service()).SystemReboot()
+    assert device.pose() == device.home
+    assert not device.down  # the reply is delivered first
+    time.pass_(1)
+    assert device.down
+    time.pass_(10)
+    assert not device.down
 
 
 @pytest.mark.parametrize("skew_s", [3600.0, -7200.0])

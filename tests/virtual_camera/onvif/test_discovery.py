@@ -12,11 +12,13 @@ from uuid import uuid4
 import pytest
 from lxml import etree
 
+from scope_ptz.camera.network.interfaces import local_addresses
 from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults
 from scope_ptz.virtual_camera.identity import device_uuid
-from scope_ptz.virtual_camera.onvif.discovery import GROUP, DiscoverableCamera, serve_discovery
+from scope_ptz.virtual_camera.onvif import discovery
+from scope_ptz.virtual_camera.onvif.discovery import GROUP, DiscoverableCamera, _Responder, serve_discovery
 from scope_ptz.virtual_camera.onvif.discovery_messages import parse_query
 
 pytestmark = pytest.mark.anyio
@@ -122,6 +124,32 @@ async def test_a_device_is_resolved_by_its_identity(port: int, searcher: socket.
     answer = await ask(searcher, port, question(f"<d:Resolve>{address}</d:Resolve>"))
     xaddr = answer.findtext(".//d:ResolveMatches/d:ResolveMatch/d:XAddrs", namespaces=NAMES)
     assert xaddr == f"http://127.0.0.1:{HTTP_PORT}/onvif/device_service"
+
+
+async def test_a_probe_through_another_interface_of_this_machine_is_answered(port: int, device: VirtualDevice) -> None:
+    """Many clients probe through the interface of the default route and cannot choose another one."""
+    others = [address for address in local_addresses() if address != "127.0.0.1"]
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as searcher:
+        searcher.setblocking(False)
+        for address in others:
+            searcher.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(address))
+            answer = await ask(searcher, port, PROBE)
+            xaddr = answer.findtext(".//d:ProbeMatch/d:XAddrs", namespaces=NAMES)
+            assert xaddr == f"http://127.0.0.1:{HTTP_PORT}/onvif/device_service"
+
+
+@pytest.mark.parametrize(("host", "answers"), [("127.0.0.1", 0), ("0.0.0.0", 1)])  # noqa: S104 - nothing is bound to it
+async def test_other_machines_get_answers_only_from_cameras_on_the_network(
+    device: VirtualDevice, monkeypatch: pytest.MonkeyPatch, host: str, answers: int
+) -> None:
+    routes = {"203.0.113.7": "192.0.2.1", "192.0.2.1": "192.0.2.1"}
+    monkeypatch.setattr(discovery, "source_address", lambda address: routes[address[0]])
+    responder, sent = _Responder([DiscoverableCamera(device, HTTP_PORT)], host), list[Any]()
+    monkeypatch.setattr(responder, "_send", lambda data, address: sent.append((data, address)))
+    responder.datagram_received(PROBE, ("203.0.113.7", 40_000))
+    assert len(sent) == answers
+    responder.datagram_received(PROBE, ("192.0.2.1", 40_000))
+    assert len(sent) == answers + 1
 
 
 async def test_a_device_that_is_down_is_silent(port: int, searcher: socket.socket, device: VirtualDevice) -> None:

@@ -75,7 +75,7 @@ async def test_other_soap_versions_and_mandatory_headers_are_refused(served: Ser
 
 async def test_unknown_operations_paths_and_methods(served: ServedCamera) -> None:
     assert (await post(served.url, envelope('<Sing xmlns="urn:x"/>'))).codes == ["Sender", "ActionNotSupported"]
-    offered = envelope(f'<SystemReboot xmlns="{DEVICE}"/>')
+    offered = envelope(f'<GetRelayOutputs xmlns="{DEVICE}"/>')
     assert (await post(served.url, offered)).codes == ["Receiver", "ActionNotSupported"]
     assert (await post(served.url, b"", path="/onvif/elsewhere")).status == 404
     async with httpx2.AsyncClient(base_url=served.url) as client:

@@ -55,6 +55,8 @@ async def test_addresses_and_options(served: ServedCamera) -> None:
     profile = "<ProfileToken>profile-1</ProfileToken>"
     stream = await ask(served, "GetStreamUri", f"<Protocol>RtspUnicast</Protocol>{profile}")
     assert text(stream, ".//m:Uri") == f"rtsp://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
+    tunnelled = await ask(served, "GetStreamUri", f"<Protocol>RtspOverHttp</Protocol>{profile}")
+    assert text(tunnelled, ".//m:Uri") == f"http://127.0.0.1:{RTSP_PORT}/axis-media/media.amp"
     snapshot = await ask(served, "GetSnapshotUri", profile)
     assert text(snapshot, ".//m:Uri").startswith(f"{served.url}/axis-cgi/jpg/image.cgi")
     multicast = await ask(served, "GetStreamUri", f"<Protocol>RtspMulticast</Protocol>{profile}")

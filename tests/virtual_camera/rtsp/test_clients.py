@@ -1,4 +1,4 @@
-"""Independent clients: FFmpeg through PyAV and through OpenCV's VideoCapture, over TCP and UDP."""
+"""Independent clients: FFmpeg through PyAV and through OpenCV's VideoCapture, over TCP, UDP and HTTP."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def settled(device: VirtualDevice, pose: Pose) -> NDArray[np.uint8]:
     return device.expose().image
 
 
-@pytest.mark.parametrize("transport", ["tcp", "udp"])
+@pytest.mark.parametrize("transport", ["tcp", "udp", "http"])
 @pytest.mark.parametrize("name", CLIENTS)
 async def test_frames_show_the_picture_of_the_pose(open_device: VirtualDevice, name: str, transport: str) -> None:
     expected = [settled(open_device, pose) for pose in POSES]

@@ -17,13 +17,14 @@ from scope_ptz.virtual_camera.rtsp.messages import (
     RefusedError,
     Reply,
     Request,
+    TunnelRequest,
     read_message,
 )
 from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
 
 
-def read(content: bytes) -> Request | Interleaved | None:
-    async def run() -> Request | Interleaved | None:
+def read(content: bytes) -> Request | TunnelRequest | Interleaved | None:
+    async def run() -> Request | TunnelRequest | Interleaved | None:
         reader = asyncio.StreamReader(limit=MAX_LINE_BYTES)
         reader.feed_data(content)
         reader.feed_eof()
@@ -54,7 +55,7 @@ def test_packets_between_requests() -> None:
 @pytest.mark.parametrize(
     ("content", "status"),
     [
-        (b"GET / HTTP/1.1\r\nHost: camera\r\n\r\n", 505),
+        (b"PUT / HTTP/1.1\r\nHost: camera\r\n\r\n", 505),
         (b"OPTIONS * RTSP/2.0\r\nCSeq: 1\r\n\r\n", 505),
         (b"OPTIONS *\r\n\r\n", 400),
         (b"options * RTSP/1.0\r\nCSeq: 1\r\n\r\n", 400),
@@ -85,7 +86,7 @@ def test_what_is_no_request_is_refused(content: bytes, status: int) -> None:
 )
 def test_any_bytes_are_a_message_a_refusal_or_unfinished(content: bytes, start: bytes) -> None:
     with suppress(MalformedError, asyncio.IncompleteReadError):
-        assert isinstance(read(start + content), Request | Interleaved | None)
+        assert isinstance(read(start + content), Request | TunnelRequest | Interleaved | None)
 
 
 def test_a_reply_repeats_the_sequence_number_and_headers() -> None:
@@ -128,3 +129,9 @@ def test_other_transports_are_refused(header: str) -> None:
     with pytest.raises(RefusedError) as caught:
         choose_transport(header)
     assert caught.value.status == 461
+
+
+def test_heads_of_tunnels_are_http_requests() -> None:
+    head = b"POST /axis-media/media.amp HTTP/1.0\r\nx-sessioncookie: abc\r\n\r\nbody"
+    assert read(head) == TunnelRequest("POST", {"x-sessioncookie": "abc"})
+    assert read(b"GET / HTTP/1.1\r\n\r\n") == TunnelRequest("GET", {})

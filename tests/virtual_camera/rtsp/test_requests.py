@@ -114,7 +114,7 @@ async def test_requests_that_are_refused_leave_the_connection_open(open_device: 
 
 
 @pytest.mark.parametrize(
-    "content", [b"\x00" * 100, b"GET / HTTP/1.1\r\n\r\n", b"OPTIONS * RTSP/1.0\r\nCSeq: 1\r\nX: " + b"a" * 100_000]
+    "content", [b"\x00" * 100, b"PUT / HTTP/1.1\r\n\r\n", b"OPTIONS * RTSP/1.0\r\nCSeq: 1\r\nX: " + b"a" * 100_000]
 )
 async def test_what_is_no_request_ends_the_connection_and_nothing_else(open_device: VirtualDevice, content: bytes) -> None:
     async with serving(open_device) as served, RtspClient(served.port) as good:

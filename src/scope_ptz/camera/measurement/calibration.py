@@ -13,6 +13,15 @@ from typing import TYPE_CHECKING
 from anyio import to_thread
 
 from scope_ptz.camera.measurement import registration as r
+from scope_ptz.camera.measurement.calibration_plan import (
+    LARGE_TURN,
+    PAN_OFFSETS_DEG,
+    SMALL_TURN,
+    TIMED_TURN_DEG,
+    base_pose,
+    vertical_turn_deg,
+    zoom_levels,
+)
 from scope_ptz.camera.measurement.registration import Matches, RegistrationError
 from scope_ptz.camera.network.settling import moving_fraction
 from scope_ptz.errors import CameraError
@@ -31,10 +40,6 @@ FIELD_TOLERANCE = 0.05
 TILT_ZERO_TOLERANCE_DEG = 3.0
 """Maximum difference, in degrees, between the horizon in the pictures and a reported tilt of 0."""
 
-PAN_OFFSETS_DEG = (0.0, 60.0, -60.0, 120.0)
-"""Pan offsets from the start pose, tried in order until one shows enough detail."""
-
-_SMALL_TURN, _LARGE_TURN = 0.12, 0.35  # fractions of the field of view; a small turn shows the sign, a large one the focal length
 _TIMED_PICTURES, _TIMED_MOVES = 5, 3  # numbers of pictures and moves that are timed
 
 Progress = Callable[[str], None]
@@ -130,7 +135,7 @@ async def _calibrate(camera: Camera, start: Pose, zooms: int, assumed: tuple[str
     snapshot_s = await _snapshot_s(camera)
     failure = RegistrationError("The camera has no room to turn.")
     for offset_deg in PAN_OFFSETS_DEG:
-        base = _base(camera, start, offset_deg)
+        base = base_pose(camera.info.limits, start, offset_deg)
         progress(f"Looking for detail at pan {base.pan_deg:.0f}.")
         try:
             with camera.hold_time():
@@ -169,13 +174,16 @@ async def _response(camera: Camera, base: Pose, progress: Progress) -> _Response
     centre, here = await _move_and_take(camera, base)
     focal = r.focal_px(stated, centre.shape[1])
     rough = []
-    for pan_deg, tilt_deg in ((_SMALL_TURN * stated, 0.0), (0.0, _vertical(camera, base, _SMALL_TURN * stated / 2))):
+    for pan_deg, tilt_deg in (
+        (SMALL_TURN * stated, 0.0),
+        (0.0, vertical_turn_deg(camera.info.limits, base, SMALL_TURN * stated / 2)),
+    ):
         pair, turned = await _turn_and_match(camera, base, centre, here, pan_deg, tilt_deg)
         found = r.rotation(pair, focal)
         rough.append(found.angle_deg / (abs(turned) or 1.0))
     # The second turns are chosen so that the pictures overlap well however far the camera really turns per commanded degree.
-    pan_deg = min(_LARGE_TURN * stated / max(rough[0], 0.05), 3 * _LARGE_TURN * stated)
-    tilt_deg = _vertical(camera, base, min(_LARGE_TURN * stated * 0.5 / max(rough[1], 0.05), 60.0))
+    pan_deg = min(LARGE_TURN * stated / max(rough[0], 0.05), 3 * LARGE_TURN * stated)
+    tilt_deg = vertical_turn_deg(camera.info.limits, base, min(LARGE_TURN * stated * 0.5 / max(rough[1], 0.05), 60.0))
     pairs = [
         await _turn_and_match(camera, base, centre, here, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))
     ]
@@ -196,12 +204,8 @@ async def _fields(camera: Camera, base: Pose, response: _Response, zooms: int, p
     limits, optics = camera.info.limits, camera.info.optics
     width = camera.info.frame_width
     fields = [FieldOfView(limits.min_zoom, 0.0, optics.hfov_deg(limits.min_zoom), r.hfov_deg(response.focal_px, width))]
-    ratio = limits.max_zoom / limits.min_zoom
-    if ratio < 1.01:
-        return tuple(fields)
     correction = fields[0].measured_deg / fields[0].stated_deg
-    for step in range(1, zooms):
-        zoom = limits.min_zoom * ratio ** (step / (zooms - 1)) if step < zooms - 1 else limits.max_zoom
+    for zoom in zoom_levels(limits, zooms)[1:]:
         stated = optics.hfov_deg(zoom)
         expected = min(stated * correction, fields[-1].measured_deg)
         at = Pose(base.pan_deg, base.tilt_deg, zoom)
@@ -235,7 +239,7 @@ async def _settling(camera: Camera, base: Pose) -> tuple[float, float]:
     moves, settlings = [], []
     for run in range(_TIMED_MOVES):
         started_s = camera.clock.now_s()
-        await camera.move(Pose(base.pan_deg + (20.0 if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
+        await camera.move(Pose(base.pan_deg + (TIMED_TURN_DEG if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
         arrived_s = camera.clock.now_s()
         moves.append(arrived_s - started_s)
         last_motion_s, before = arrived_s, (await camera.frame()).image
@@ -264,24 +268,6 @@ async def _turn_and_match(
     if abs(turned) < 0.2 * abs(pan_deg or tilt_deg):
         raise CameraError(f"{camera.info.name} was commanded to turn but reports that it did not. Its motor may be blocked.")
     return await to_thread.run_sync(r.match, centre, image), turned
-
-
-def _base(camera: Camera, start: Pose, turn_deg: float) -> Pose:
-    """Return a pose with room to turn in all directions, at the widest zoom and near the horizon."""
-    limits = camera.info.limits
-    room = min(40.0, (limits.max_pan_deg - limits.min_pan_deg) / 4)
-    pan = wrap_pan_deg(start.pan_deg + turn_deg)
-    if not limits.pan_endless:
-        pan = min(max(pan, limits.min_pan_deg + room), limits.max_pan_deg - room)
-    lowest, highest = max(-35.0, limits.min_tilt_deg), min(15.0, limits.max_tilt_deg)
-    tilt = min(max(start.tilt_deg, lowest), highest) if lowest < highest else start.tilt_deg
-    return Pose(pan, tilt, limits.min_zoom)
-
-
-def _vertical(camera: Camera, base: Pose, size_deg: float) -> float:
-    """Return a tilt change towards the side with more room."""
-    up, down = camera.info.limits.max_tilt_deg - base.tilt_deg, base.tilt_deg - camera.info.limits.min_tilt_deg
-    return min(size_deg, up) if up > down else -min(size_deg, down)
 
 
 def _contradictions(

@@ -90,6 +90,11 @@ class DeviceHttp:
     def __repr__(self) -> str:
         return f"DeviceHttp({self.address})"
 
+    @property
+    def tls_context(self) -> ssl.SSLContext | None:
+        """The TLS context that verifies the device's certificate; None if the system's authorities do."""
+        return self._verify if isinstance(self._verify, ssl.SSLContext) else None
+
     def described(self) -> dict[str, object]:
         """Return the values that another process needs to create an equal client. They contain the password."""
         address, account = self.address, self.credentials
@@ -213,7 +218,8 @@ def connection_errors(address: DeviceAddress) -> Iterator[None]:
         text = str(error).lower()
         if "certificate" in text or "ssl" in text:
             failure = CameraUnreachableError(
-                f"The TLS connection to {address} failed. Its certificate is not trusted, or it does not speak TLS at this port."
+                f"The TLS connection to {address} failed. Its certificate is not trusted, or it does not speak TLS at this port. "
+                "If the certificate is self-signed, configure its fingerprint in scope.yaml."
             )
         else:
             failure = CameraUnreachableError(_nobody(address, "the connection was refused or the name is unknown"))

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from collections.abc import Iterator
 from contextlib import suppress
 from time import monotonic
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote, urlsplit, urlunsplit
+from urllib.parse import urlsplit
 
 from anyio import to_thread
 
-from scope_ptz.camera.network.errors import CameraUnreachableError, PictureError
+from scope_ptz.camera.network.errors import CameraSignInError, CameraUnreachableError, ForeignAddressError, PictureError
+from scope_ptz.camera.network.rtsp_relay import RtspRelay
 from scope_ptz.camera.network.streams import GIVE_UP_S, STALLED_S, LivePicture, LiveStream
 from scope_ptz.errors import CameraError, ConfigError
 
 if TYPE_CHECKING:
+    import ssl
+
     from scope_ptz.camera.network.credentials import Credentials
 
 
@@ -40,9 +44,9 @@ class RtspStream(LiveStream):
         credentials: The account; None if the stream needs none.
         width: Expected width in pixels.
         height: Expected height in pixels.
-        transport: ``tcp`` or ``udp``.
         stalled_s: Seconds without a picture after which the stream is opened again.
         give_up_s: Seconds without a picture after which the stream is lost.
+        tls: Verifies the certificate of an ``rtsps`` server; by default, with the authorities that the system trusts.
 
     Raises:
         ConfigError: PyAV is not installed.
@@ -55,14 +59,14 @@ class RtspStream(LiveStream):
         *,
         width: int,
         height: int,
-        transport: str = "tcp",
         stalled_s: float = STALLED_S,
         give_up_s: float = GIVE_UP_S,
+        tls: ssl.SSLContext | None = None,
     ) -> None:
         self._av = import_av()
+        self._url, self._credentials, self._tls = url, credentials, tls
         self._place = urlsplit(url).netloc
-        self._url = _with_credentials(url, credentials)
-        self._size, self._transport = (width, height), transport
+        self._size = (width, height)
         self._stalled_s, self._give_up_s = stalled_s, give_up_s
         self._newest: LivePicture | None = None
         self._failure: CameraError | None = None
@@ -97,21 +101,23 @@ class RtspStream(LiveStream):
         last_s, pause_s = monotonic(), 0.1
         while not self._closing.is_set():
             before_s = last_s
-            # FFmpeg's errors contain the address with the password, so they are dropped.
-            with suppress(self._av.FFmpegError, OSError, ValueError):
-                for picture in self._pictures():
+            relay = RtspRelay(self._url, self._credentials, timeout_s=self._stalled_s, tls=self._tls)
+            with suppress(self._av.FFmpegError, OSError, ValueError), relay as url:
+                for picture in self._pictures(url):
                     last_s = picture.arrived_s
                     self._hand_over(picture, None)
-            if monotonic() - last_s > self._give_up_s:
+            lasting = isinstance(relay.failure, CameraSignInError | ForeignAddressError)
+            if lasting or monotonic() - last_s > self._give_up_s:
                 message = f"The RTSP stream at {self._place} cannot be read. Check the account and the port, or use ?stream=mjpeg."
-                self._hand_over(None, CameraUnreachableError(message))
+                self._hand_over(None, relay.failure or CameraUnreachableError(message))
                 return
             pause_s = 0.1 if last_s > before_s else min(2 * pause_s, 2.0)
             self._closing.wait(pause_s)
 
-    def _pictures(self) -> Any:
-        options = {"rtsp_transport": self._transport, "fflags": "nobuffer", "flags": "low_delay"}
-        with self._av.open(self._url, options=options, timeout=self._stalled_s) as container:
+    def _pictures(self, url: str) -> Iterator[LivePicture]:
+        # Without ``fpsprobesize``, FFmpeg reads for a second longer to determine the frame rate, which is not used.
+        options = {"rtsp_transport": "tcp", "fflags": "nobuffer", "flags": "low_delay", "fpsprobesize": "0"}
+        with self._av.open(url, options=options, timeout=self._stalled_s) as container:
             for frame in container.decode(video=0):
                 if self._closing.is_set():
                     return
@@ -124,12 +130,3 @@ class RtspStream(LiveStream):
         self._failure = failure
         with suppress(RuntimeError):  # the event loop has ended, so no consumer waits
             self._loop.call_soon_threadsafe(self._changed.set)
-
-
-def _with_credentials(url: str, credentials: Credentials | None) -> str:
-    """Return the URL with user and password, which is the only way to pass them to FFmpeg."""
-    if credentials is None or not credentials.user:
-        return url
-    parts = urlsplit(url)
-    account = f"{quote(credentials.user, safe='')}:{quote(credentials.password, safe='')}"
-    return urlunsplit((parts.scheme, f"{account}@{parts.netloc}", parts.path, parts.query, ""))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from urllib.parse import unquote, urlsplit
 from uuid import uuid4
 
 import anyio
 
+from scope_ptz.camera.network.interfaces import local_addresses
 from scope_ptz.errors import CameraError, ConfigError, InputError
 
 GROUP, PORT = "239.255.255.250", 3702
@@ -90,17 +90,6 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
         for transport in transports:
             transport.close()
     return sorted(found.values())
-
-
-def local_addresses() -> tuple[str, ...]:
-    """Return IPv4 addresses of this machine: those that its host name resolves to, that of the default route, and loopback."""
-    found = {"127.0.0.1"}
-    with suppress(OSError):  # the machine's own name cannot be resolved
-        found.update(str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET))
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp_socket, suppress(OSError):  # there may be no route
-        udp_socket.connect((GROUP, PORT))  # this sends nothing; it only consults the routing table
-        found.add(str(udp_socket.getsockname()[0]))
-    return tuple(sorted(found - {"0.0.0.0"}))  # noqa: S104 - compared, not bound to
 
 
 def parse_match(data: bytes, sender: str) -> list[FoundDevice]:

@@ -103,7 +103,7 @@ class OnvifPictures(DevicePictures):
 
     def _open_video(self) -> LiveStream:
         width, height = self._stream_size
-        return RtspStream(self.stream_url, self._credentials, width=width, height=height)
+        return RtspStream(self.stream_url, self._credentials, width=width, height=height, tls=self._http.tls_context)
 
 
 async def open_pictures(

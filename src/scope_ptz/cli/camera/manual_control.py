@@ -31,6 +31,7 @@ def snapshot(
     camera: CameraSpecArgument,
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write (.jpg or .png).")] = Path("snapshot.jpg"),
     full: Annotated[bool, typer.Option("--full", help="Sweep the camera's whole range, and save one panorama.")] = False,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Save a picture of the camera's current view, or a panorama of its whole range."""
@@ -38,14 +39,17 @@ def snapshot(
     from scope_ptz.tools.sweep import sweep
 
     async def work() -> None:
-        async with open_for_command(camera) as opened:
+        async with open_for_command(camera, dry_run=dry_run) as opened:
             frame = await (sweep(opened) if full else opened.frame())
+        if dry_run:
+            put_json({"file": str(out), "dry_run": True}) if as_json else print_error(f"would write {out}")
+            return
         _write_picture(frame, out)
         facts = {"file": str(out), "width": frame.width, "height": frame.height, **frame.pose.as_dict()}
         if as_json:
             put_json({**facts, "hfov_deg": round(frame.hfov_deg, 2)})
         else:
-            put(f"{out}: {frame.width}x{frame.height}, {_pose_text(facts)}, {frame.hfov_deg:.1f} degrees wide")
+            put(f"{out}: {frame.width}x{frame.height}, {pose_text(facts)}, {frame.hfov_deg:.1f} degrees wide")
 
     run_async(work)
 
@@ -109,7 +113,7 @@ def move(
             put_json({**pose, "clamped": list(clamped), "limited_by": limited_by})
             return
         note = f"; limited by {limited_by}" if limited_by else f"; stopped by the {' and '.join(clamped)} limit" if clamped else ""
-        put(_pose_text(pose) + note)
+        put(pose_text(pose) + note)
 
     run_async(work)
 
@@ -163,7 +167,7 @@ def watch(
                 if folder is not None:
                     facts["file"] = str(path := folder / f"{number:06d}.jpg")
                     _write_picture(frame, path)
-                put_json(facts) if as_json else put(f"{facts['time_s']:9.3f} s  {_pose_text(facts)}")
+                put_json(facts) if as_json else put(f"{facts['time_s']:9.3f} s  {pose_text(facts)}")
                 sys.stdout.flush()
                 if number == count:
                     break
@@ -202,7 +206,8 @@ def _point(text: str) -> tuple[float, float]:
     return x, y
 
 
-def _pose_text(pose: dict[str, Any]) -> str:
+def pose_text(pose: dict[str, Any]) -> str:
+    """Return a pose in words, such as ``pan 20, tilt -5, zoom 2x``."""
     return f"pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.camera.manual_control import CameraSpecArgument
+from scope_ptz.cli.camera.manual_control import CameraSpecArgument, DryRunOption, pose_text
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json, run_async
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import OutputError
 
 if TYPE_CHECKING:
+    from scope_ptz.camera.measurement.calibration_plan import CalibrationPlan
     from scope_ptz.camera.measurement.profile import CalibrationRecord, ProbeRecord
 
 
@@ -79,6 +81,7 @@ def probe(
 def calibrate(
     camera: CameraSpecArgument,
     zooms: Annotated[int, typer.Option("--zooms", min=2, max=20, help="Number of zoom levels to measure.")] = 6,
+    dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> int:
     """Measure a camera from its own pictures: signs and response of pan and tilt, field of view by zoom, latency, settling time.
@@ -87,6 +90,9 @@ def calibrate(
     """
     from scope_ptz.factory.cameras.profiles import calibrate_camera
 
+    if dry_run:
+        _print_plan(camera, zooms, as_json=as_json)
+        return 0
     results: list[tuple[CalibrationRecord, Path]] = []
     show_progress = sys.stderr.isatty() and not as_json
 
@@ -104,6 +110,27 @@ def calibrate(
     for sentence in record.contradictions:
         print_error(sentence)
     return FAILED if record.contradictions else 0
+
+
+def _print_plan(camera: str, zooms: int, *, as_json: bool) -> None:
+    from scope_ptz.factory.cameras.profiles import plan_camera_calibration
+
+    plans: list[CalibrationPlan] = []
+
+    async def work() -> None:
+        plans.append(await plan_camera_calibration(camera, zooms=zooms))
+
+    run_async(work)
+    plan, where = plans[0], plans[0].base.as_dict()
+    if as_json:
+        put_json({**asdict(plan), "base": where})
+        return
+    vertical = f"{abs(plan.tilt_deg):.0f} degrees {'up' if plan.tilt_deg > 0 else 'down'}"
+    put(f"A calibration of {plan.camera} would move it to {pose_text(where)}. From there, it would")
+    put(f"- turn by up to {plan.pan_deg:.0f} degrees to each side, and {vertical},")
+    put(f"- zoom to {', '.join(f'{zoom:.2f}x' for zoom in plan.zooms)},")
+    put("- and return to its initial pose. If the view shows too little detail, it would try up to three other directions.")
+    put("Dry run: the camera did not move, and nothing was stored.")
 
 
 def _write_report(record: ProbeRecord, camera: str, out: Path | None) -> Path:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.camera.control import ControlLock, user_name
 from scope_ptz.errors import InputError, OutputError
-from scope_ptz.factory.cameras.opening import OpenCamera, open_camera, parse_camera
+from scope_ptz.factory.cameras.opening import OpenCamera, open_camera
+from scope_ptz.factory.cameras.parsing import parse_camera
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:

@@ -8,10 +8,12 @@ from statistics import median
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from scope_ptz.factory.cameras.opening import OpenCamera, open_camera, parse_camera
+from scope_ptz.factory.cameras.opening import OpenCamera, open_camera
+from scope_ptz.factory.cameras.parsing import parse_camera
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
+    from scope_ptz.camera.measurement.calibration_plan import CalibrationPlan
     from scope_ptz.camera.measurement.profile import CalibrationRecord, CameraProfile, ProbeRecord
     from scope_ptz.camera.spec import CameraSpec
 
@@ -56,6 +58,18 @@ async def calibrate_camera(
             calibration, (limits.min_pan_deg, limits.max_pan_deg), (limits.min_tilt_deg, limits.max_tilt_deg), info.assumed
         )  # fmt: skip
     return record, _store(spec, calibration=record)
+
+
+async def plan_camera_calibration(text: str, *, zooms: int = 6) -> CalibrationPlan:
+    """Return the moves that a calibration would make. The camera does not move, and nothing is stored.
+
+    Raises:
+        ScopeError: The camera cannot be opened or fails.
+    """
+    from scope_ptz.camera.measurement.calibration_plan import plan_calibration
+
+    async with await open_camera(parse_camera(text), for_measurement=True) as opened:
+        return plan_calibration(opened.camera.info, await opened.camera.pose(), zooms)
 
 
 def stored_calibration(text: str) -> CalibrationRecord | None:

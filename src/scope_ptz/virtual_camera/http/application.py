@@ -49,7 +49,6 @@ class CameraApplication:
         access = AccessControl(device.accounts, unit.realm)
         vapix = VapixRoutes(unit, source, access, TruthHeaders(truth) if truth is not None else None, self.closing)
         self.jpegs = vapix.jpegs
-        self._virtual = VirtualRoutes(device, access, truth)
 
         async def page(_: Request, __: Client) -> Response:
             return HTMLResponse(PAGE.format(name=escape(device.name)))
@@ -57,7 +56,7 @@ class CameraApplication:
         routes: list[BaseRoute] = [
             Route("/", access.for_role(Role.VIEWER, page)),
             *vapix.routes(),
-            *self._virtual.routes(),
+            *VirtualRoutes(device, access, truth).routes(),
         ]
         if onvif is not None:
             routes.append(Mount("/onvif", onvif))
@@ -67,4 +66,3 @@ class CameraApplication:
     def close(self) -> None:
         """End all streams."""
         self.closing.set()
-        self._virtual.close()

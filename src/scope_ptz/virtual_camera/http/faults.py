@@ -44,7 +44,7 @@ class FaultMiddleware:
         if faults.stall_s:
             with anyio.move_on_after(faults.stall_s):
                 await self._closing.wait()
-        if faults.down or self._random.random() < faults.drop:
+        if self._device.down or self._random.random() < faults.drop:
             await abort_connection(scope, receive)
         elif faults.unauthorized:
             await self._access.refusal()(scope, receive, send)
@@ -53,7 +53,7 @@ class FaultMiddleware:
 
     async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
         async def faulty(message: Message) -> None:
-            if self._device.faults.down:
+            if self._device.down:
                 raise _ConnectionAbortedError
             await send(_corrupt(message) if self._device.faults.garbage else message)
 

@@ -13,12 +13,13 @@ from starlette.routing import Route
 
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
+from scope_ptz.virtual_camera.device import REBOOT_S, REPLY_S
 from scope_ptz.virtual_camera.http.access import AccessControl, Handler, is_local
 from scope_ptz.virtual_camera.http.jpeg import SharedJpegs, picture_format, with_comment
 from scope_ptz.virtual_camera.http.streams import MotionJpeg, StreamOptions
 from scope_ptz.virtual_camera.http.truth_headers import TruthHeaders
 from scope_ptz.virtual_camera.live_source import LiveSource
-from scope_ptz.virtual_camera.vapix.arguments import Arguments
+from scope_ptz.virtual_camera.vapix.arguments import Arguments, check_camera
 from scope_ptz.virtual_camera.vapix.json_apis import api_discovery, basic_device_info
 from scope_ptz.virtual_camera.vapix.parameters import param
 from scope_ptz.virtual_camera.vapix.ptz import ptz, ptz_config, ptz_queue
@@ -60,6 +61,7 @@ class VapixRoutes:
             ("com/ptzqueue.cgi", Role.OPERATOR, _page(lambda arguments, client: ptz_queue(unit, arguments, client))),
             ("param.cgi", Role.VIEWER, _page(lambda arguments, client: param(unit, arguments, client))),
             ("usergroup.cgi", Role.VIEWER, _user_group),
+            ("restart.cgi", Role.ADMINISTRATOR, self._restart),
             ("apidiscovery.cgi", Role.VIEWER, _json(unit, api_discovery)),
             ("basicdeviceinfo.cgi", Role.VIEWER, _json(unit, basic_device_info)),
             ("jpg/image.cgi", Role.VIEWER, self._image),
@@ -67,9 +69,14 @@ class VapixRoutes:
         ]
         return [Route(f"/axis-cgi/{path}", self._access.for_role(role, page), methods=METHODS) for path, role, page in pages]
 
+    async def _restart(self, _: Request, __: Client) -> Response:
+        self._unit.device.reboot(REBOOT_S, after_s=REPLY_S)
+        return PlainTextResponse("Restarting.\n")
+
     async def _image(self, request: Request, _: Client) -> Response:
         arguments = await read_arguments(request)
         try:
+            check_camera(arguments)
             requested = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
         except InputError as problem:
             return PlainTextResponse(f"Error: {problem}\n", 400)
@@ -84,6 +91,7 @@ class VapixRoutes:
     async def _video(self, request: Request, _: Client) -> Response:
         arguments = await read_arguments(request)
         try:
+            check_camera(arguments)
             picture = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
             limits = {name: arguments.number(name, 0, 1e6) for name in ("fps", "nbrofframes", "duration") if name in arguments}
         except InputError as problem:

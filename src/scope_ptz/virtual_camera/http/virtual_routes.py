@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 from collections.abc import Awaitable, Callable
 
@@ -12,15 +11,12 @@ from starlette.routing import Route
 
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.device import REBOOT_S, VirtualDevice
 from scope_ptz.virtual_camera.faults import Faults, validate_faults
 from scope_ptz.virtual_camera.http.access import AccessControl, Handler, is_foreign_page, is_local
 from scope_ptz.virtual_camera.http.vapix_routes import read_arguments, read_body
 from scope_ptz.virtual_camera.truth import TOLERANCE_S, TruthLog, origin_fields
 from scope_ptz.virtual_camera.vapix.replies import Client
-
-DEFAULT_DOWN_S = 10.0
-"""Default number of seconds for which a rebooting camera is off the network."""
 
 MAX_WITHIN_S = 5.0
 """Maximum value of the argument ``within``, the tolerance in seconds between the requested time and the time of an exposure."""
@@ -37,22 +33,16 @@ class VirtualRoutes:
 
     def __init__(self, device: VirtualDevice, access: AccessControl, truth: TruthLog | None) -> None:
         self._device, self._access, self._truth = device, access, truth
-        self._reboot: asyncio.Task[None] | None = None
 
     def routes(self) -> list[Route]:
         """Return the routes."""
         found = [
             Route("/virtual/faults", self._endpoint(self._faults), methods=["GET", "POST", "DELETE"]),
-            Route("/virtual/reboot", self._endpoint(self._start_reboot), methods=["POST"]),
+            Route("/virtual/reboot", self._endpoint(self._reboot), methods=["POST"]),
         ]
         if self._truth is not None:
             found.append(Route("/virtual/truth", self._endpoint(self._origin, Role.VIEWER), methods=["GET"]))
         return found
-
-    def close(self) -> None:
-        """Cancel the task of a reboot in progress. The camera then stays off the network until the fault ``down`` is cleared."""
-        if self._reboot is not None:
-            self._reboot.cancel()
 
     def _endpoint(self, handler: Handler, role: Role = Role.ADMINISTRATOR) -> Callable[[Request], Awaitable[Response]]:
         admitted = self._access.for_role(role, handler)
@@ -74,22 +64,14 @@ class VirtualRoutes:
             self._device.faults = Faults()
         return JSONResponse(self._device.faults.model_dump(mode="json"))
 
-    async def _start_reboot(self, request: Request, _: Client) -> Response:
+    async def _reboot(self, request: Request, _: Client) -> Response:
         try:
             arguments = await read_arguments(request)
-            down_s = arguments.number("down_s", 0, 600) if "down_s" in arguments else DEFAULT_DOWN_S
+            down_s = arguments.number("down_s", 0, 600) if "down_s" in arguments else REBOOT_S
         except InputError as problem:
             return JSONResponse({"error": str(problem)}, 400)
-        self.close()
-        self._reboot = asyncio.create_task(self._be_down(down_s))
+        self._device.reboot(down_s)
         return JSONResponse({"down_s": down_s})
-
-    async def _be_down(self, down_s: float) -> None:
-        device = self._device
-        device.faults = device.faults.model_copy(update={"down": True})
-        device.reboot()
-        await asyncio.sleep(down_s)
-        device.faults = device.faults.model_copy(update={"down": False})
 
     async def _origin(self, request: Request, _: Client) -> Response:
         assert self._truth is not None  # noqa: S101 - otherwise, there is no such route

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote, urlsplit
 
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.device import REBOOT_S, REPLY_S, VirtualDevice
 from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_uuid, hostname, mac_address, serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_datetime
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
@@ -69,6 +69,7 @@ class DeviceService:
             "GetDNS": Operation(lambda _: {"DNSInformation": {"FromDHCP": False}}),
             "GetNTP": Operation(lambda _: {"NTPInformation": {"FromDHCP": False}}),
             "GetUsers": Operation(self._users, Role.ADMINISTRATOR),
+            "SystemReboot": Operation(self._reboot, Role.ADMINISTRATOR),
         }
 
     def _services(self, request: Request) -> Reply:
@@ -146,6 +147,10 @@ class DeviceService:
         address = urlsplit(request.origin)
         ports = {address.scheme.upper(): address.port or 80, "RTSP": self._rtsp_port}
         return {"NetworkProtocols": [{"Name": name, "Enabled": True, "Port": [port]} for name, port in ports.items()]}
+
+    def _reboot(self, _: Request) -> Reply:
+        self._device.reboot(REBOOT_S, after_s=REPLY_S)
+        return {"Message": f"The device is back in about {REBOOT_S:g} seconds."}
 
     def _users(self, _: Request) -> Reply:
         levels = {Role.VIEWER: "User", Role.OPERATOR: "Operator", Role.ADMINISTRATOR: "Administrator"}

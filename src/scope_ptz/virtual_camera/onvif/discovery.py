@@ -6,12 +6,13 @@ import asyncio
 import logging
 import socket
 from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager, closing
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from ipaddress import ip_address
 from time import time
 from typing import cast
 
+from scope_ptz.camera.network.interfaces import local_addresses, source_address
 from scope_ptz.errors import ConfigError
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.identity import device_uuid
@@ -50,6 +51,7 @@ class _Responder(asyncio.DatagramProtocol):
     def __init__(self, cameras: Sequence[DiscoverableCamera], host: str) -> None:
         instance = int(time())
         self._messages = [(camera, DiscoveryMessages(_target(camera, host), instance)) for camera in cameras]
+        self._own_machine_only = ip_address(host).is_loopback
         self._transport: asyncio.DatagramTransport | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -58,15 +60,18 @@ class _Responder(asyncio.DatagramProtocol):
     def announce(self, group: Address, *, leaving: bool = False) -> None:
         """Announce that the devices have appeared, or that they are leaving."""
         for camera, messages in self._messages:
-            if not camera.device.faults.down:
+            if not camera.device.down:
                 self._send(messages.bye() if leaving else messages.hello(), group)
 
     def datagram_received(self, data: bytes, address: Address) -> None:
-        query = parse_query(data) if len(data) <= MAX_DATAGRAM_BYTES else None
+        if len(data) > MAX_DATAGRAM_BYTES or (self._own_machine_only and not _is_own(address)):
+            return
+        query = parse_query(data)
         for camera, messages in self._messages:
-            if query is not None and not camera.device.faults.down and query.matches(messages.target):
-                xaddr = messages.target.xaddr or _xaddr(_own_address(address), camera)
-                self._send(messages.match(query, xaddr), address)
+            if query is not None and not camera.device.down and query.matches(messages.target):
+                with suppress(OSError):  # there is no route to the client
+                    xaddr = messages.target.xaddr or _xaddr(source_address(address), camera)
+                    self._send(messages.match(query, xaddr), address)
 
     def error_received(self, error: Exception) -> None:
         logger.debug("WS-Discovery: %s", error)
@@ -81,6 +86,9 @@ async def serve_discovery(
     cameras: Sequence[DiscoverableCamera], *, host: str = "127.0.0.1", port: int = PORT
 ) -> AsyncIterator[int]:
     """Announce cameras and answer probes while the context is open, and yield the UDP port.
+
+    Cameras on the loopback interface answer probes of programs on this machine. Many clients cannot choose the interface, so probes
+    that such a program sends through another interface are answered too. Other machines get no answer.
 
     Args:
         cameras: The cameras.
@@ -117,14 +125,30 @@ def _listen(interface: str, port: int) -> socket.socket:
             listener.bind((GROUP, port))
         except OSError:
             listener.bind((interface, port))
-        listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + socket.inet_aton(interface))
+        _join(listener, interface)
         listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
         listener.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
         listener.setblocking(False)
     except OSError:
         listener.close()
         raise
+    if ip_address(interface).is_loopback or ip_address(interface).is_unspecified:
+        for other in local_addresses():
+            with suppress(OSError):  # the interface has no multicast, or the group has been joined on it
+                _join(listener, other)
     return listener
+
+
+def _join(listener: socket.socket, interface: str) -> None:
+    listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + socket.inet_aton(interface))
+
+
+def _is_own(client: Address) -> bool:
+    """Return whether a client is on this machine: the route to an own address starts at the same address."""
+    try:
+        return source_address(client) == client[0]
+    except OSError:
+        return False
 
 
 def _target(camera: DiscoverableCamera, host: str) -> Target:
@@ -134,10 +158,3 @@ def _target(camera: DiscoverableCamera, host: str) -> Target:
 
 def _xaddr(host: str, camera: DiscoverableCamera) -> str:
     return f"{'https' if camera.tls else 'http'}://{host}:{camera.http_port}{PATHS[DEVICE]}"
-
-
-def _own_address(client: Address) -> str:
-    """Return this machine's address on the route to a client."""
-    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
-        probe.connect(client)  # only looks up the route; nothing is sent
-        return str(probe.getsockname()[0])

@@ -10,7 +10,7 @@ from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Rep
 from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration
 from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 
-_PROTOCOLS = {"RtspUnicast", "RTSP"}  # RTSP: interleaved over TCP
+_PROTOCOLS = {"RtspUnicast", "RTSP", "RtspOverHttp"}  # RTSP: interleaved over TCP
 
 
 class Media2Service:
@@ -114,7 +114,8 @@ class Media2Service:
         profile = profiles.find_profile(self._device, request.ProfileToken)
         if request.Protocol not in _PROTOCOLS:
             raise invalid_argument("The stream is offered over RTSP, by unicast.", "InvalidStreamSetup")
-        return {"Uri": profiles.stream_uri(request, profile, self._rtsp_port)}
+        over_http = request.Protocol == "RtspOverHttp"
+        return {"Uri": profiles.stream_uri(request, profile, self._rtsp_port, over_http=over_http)}
 
     def _snapshot_uri(self, request: Request) -> Reply:
         profile = profiles.find_profile(self._device, request.ProfileToken)

@@ -133,10 +133,18 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
     }
 
 
-def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int) -> str:
-    """Return the URL of a stream, at the host at which the client reached the device."""
-    port = "" if rtsp_port == 554 else f":{rtsp_port}"
-    return f"rtsp://{request.host}{port}{STREAM_PATH}{profile.query}"
+def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int, *, over_http: bool = False) -> str:
+    """Return the URL of a stream, at the host at which the client reached the device.
+
+    Args:
+        request: The client's request.
+        profile: The profile.
+        rtsp_port: Port of the RTSP server, which also serves RTSP over HTTP.
+        over_http: Whether the client uses RTSP over HTTP.
+    """
+    scheme, standard = ("http", 80) if over_http else ("rtsp", 554)
+    port = "" if rtsp_port == standard else f":{rtsp_port}"
+    return f"{scheme}://{request.host}{port}{STREAM_PATH}{profile.query}"
 
 
 def snapshot_uri(request: Request, profile: MediaProfile) -> str:

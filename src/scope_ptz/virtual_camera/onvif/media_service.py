@@ -121,7 +121,8 @@ class MediaService:
         setup = request.StreamSetup
         if getattr(setup, "Stream", None) == "RTP-Multicast":
             raise invalid_argument("There is no multicast stream.", "InvalidStreamSetup")
-        return {"MediaUri": _media_uri(profiles.stream_uri(request, profile, self._rtsp_port))}
+        over_http = getattr(getattr(setup, "Transport", None), "Protocol", None) == "HTTP"
+        return {"MediaUri": _media_uri(profiles.stream_uri(request, profile, self._rtsp_port, over_http=over_http))}
 
     def _snapshot_uri(self, request: Request) -> Reply:
         profile = profiles.find_profile(self._device, request.ProfileToken)

@@ -15,13 +15,23 @@ from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.digest import DigestAuthenticator
 from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
-from scope_ptz.virtual_camera.rtsp.messages import Interleaved, MalformedError, RefusedError, Reply, Request, read_message
-from scope_ptz.virtual_camera.rtsp.sdp import describe
+from scope_ptz.virtual_camera.rtsp.messages import (
+    REASONS,
+    Interleaved,
+    MalformedError,
+    RefusedError,
+    Reply,
+    Request,
+    TunnelRequest,
+    read_message,
+)
+from scope_ptz.virtual_camera.rtsp.sdp import describe, describe_events
 from scope_ptz.virtual_camera.rtsp.session import Session
 from scope_ptz.virtual_camera.rtsp.sessions import Sessions
 from scope_ptz.virtual_camera.rtsp.sinks import InterleavedSink, limit_send_buffers, open_udp
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl, parse_url, stream_format
 from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
+from scope_ptz.virtual_camera.rtsp.tunnel import GET_REPLY, Tunnels
 
 IDLE_TIMEOUT_S = 60.0
 """Seconds after which a connection without sessions is closed."""
@@ -42,6 +52,7 @@ class RtspConnection:
         device: The camera.
         source: Its live picture.
         sessions: The sessions of the camera, which all its connections share.
+        tunnels: The tunnels of RTSP over HTTP, which all its connections share.
         digest: Authenticates the client.
         rng: Random number generator that decides which requests are dropped.
         reader: The incoming data of the connection.
@@ -53,12 +64,14 @@ class RtspConnection:
         device: VirtualDevice,
         source: LiveSource,
         sessions: Sessions,
+        tunnels: Tunnels,
         digest: DigestAuthenticator,
         rng: random.Random,
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
     ) -> None:
         self._device, self._source, self._sessions, self._digest = device, source, sessions, digest
+        self._tunnels = tunnels
         self._rng = rng
         self._reader, self._writer = reader, writer
         self._local_address: str = writer.get_extra_info("sockname")[0]
@@ -89,6 +102,7 @@ class RtspConnection:
         except (OSError, EOFError, TimeoutError):
             pass  # the client disconnected or is too slow
         finally:
+            self._tunnels.close(self._reader)
             for session in list(self._own.values()):
                 session.connected = False
                 if isinstance(session.sink, InterleavedSink):
@@ -110,11 +124,25 @@ class RtspConnection:
         except MalformedError as error:
             await self._write(Reply(error.status).encode(None))
             return False
+        if isinstance(message, TunnelRequest):
+            return await self._tunnel(message)
         if isinstance(message, Interleaved):
             self._touch(message.channel)
         elif message is not None:
             return await self._respond(message)
         return True
+
+    async def _tunnel(self, request: TunnelRequest) -> bool:
+        """Become one direction of RTSP over HTTP. Return whether the connection stays open."""
+        try:
+            if request.method == "GET":
+                self._reader = self._tunnels.open(request, self._peer)
+                await self._write(GET_REPLY)
+                return True
+            await self._tunnels.receive(request, self._peer, self._reader, self._writer.transport)
+        except RefusedError as refused:
+            await self._write(f"HTTP/1.0 {refused.status} {REASONS[refused.status]}\r\nConnection: close\r\n\r\n".encode())
+        return False
 
     def _touch(self, channel: int) -> None:
         for session in self._own.values():
@@ -125,7 +153,7 @@ class RtspConnection:
         faults = self._device.faults
         if faults.stall_s:
             await asyncio.sleep(faults.stall_s)
-        if self._device.faults.down or self._rng.random() < faults.drop:
+        if self._device.down or self._rng.random() < faults.drop:
             self.abort()
             return False
         if faults.garbage:
@@ -181,9 +209,12 @@ class RtspConnection:
         accepted = request.headers.get("accept", "*/*").lower()
         if not any(each in accepted for each in ("application/sdp", "application/*", "*/*")):
             raise RefusedError(406)
-        requested = self._requested(url)
-        sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
-        body = describe(url, requested, sets, name=self._device.name, host=self._local_address)
+        if url.events_only:
+            body = describe_events(url, name=self._device.name, host=self._local_address)
+        else:
+            requested = self._requested(url)
+            sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
+            body = describe(url, requested, sets, name=self._device.name, host=self._local_address)
         head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
         return Reply(headers=head, body=body)
 
@@ -198,7 +229,7 @@ class RtspConnection:
                 session.sink.close()
                 session.sink = None
         else:
-            session = self._sessions.open(self._requested(url), (self._peer, self._account))
+            session = self._sessions.open(None if url.events_only else self._requested(url), (self._peer, self._account))
         try:
             transport = await (self._set_up_tcp(session, offer) if offer.interleaved else self._set_up_udp(session, offer))
         except RefusedError:

@@ -16,6 +16,7 @@ MAX_BODY_BYTES = 64 * 1024
 _INTERLEAVED = b"$"
 _METHOD = re.compile(r"[A-Z_]{1,32}")
 _VISIBLE = re.compile(r"[\x20-\x7e\t\x80-\xff]*")
+_TUNNEL = re.compile(rb"(GET|POST) \S+ HTTP/1\.[01]")
 _CSEQ = re.compile(r"\d{1,10}")
 
 REASONS = {
@@ -72,6 +73,14 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True)
+class TunnelRequest:
+    """The head of an HTTP request that opens one direction of RTSP over HTTP. Header names are in lower case."""
+
+    method: str
+    headers: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
 class Interleaved:
     """An RTP or RTCP packet that a client sent on a channel of the connection."""
 
@@ -102,7 +111,7 @@ class Reply:
         return ("\r\n".join(head) + "\r\n\r\n").encode("latin-1", "replace") + self.body
 
 
-async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | Interleaved | None:
+async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | TunnelRequest | Interleaved | None:
     """Read the rest of a message.
 
     Args:
@@ -124,6 +133,8 @@ async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | 
     line = (first + await _line(reader, 414)).strip(b"\r\n")
     if not line:
         return None
+    if _TUNNEL.fullmatch(line):
+        return TunnelRequest(line[:4].decode().strip(), await _headers(reader))
     method, uri = _request_line(line)
     headers = await _headers(reader)
     if not _CSEQ.fullmatch(headers.get("cseq", "")):

@@ -19,9 +19,24 @@ def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, na
         name: Name of the camera.
         host: IP address of the camera.
     """
+    sprop = ",".join(b64encode(each).decode() for each in (sets.sps, sets.pps))
+    track = [
+        f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
+        f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
+        f"a=framerate:{requested.fps:.6f}",
+        f"a=framesize:{PAYLOAD_TYPE} {requested.width}-{requested.height}",
+    ]
+    return _description(url, "video", track, name, host)
+
+
+def describe_events(url: StreamUrl, *, name: str, host: str) -> bytes:
+    """Return the description of a stream of events. The arguments are those of ``describe``."""
+    return _description(url, "application", [f"a=rtpmap:{PAYLOAD_TYPE} vnd.onvif.metadata/{CLOCK_HZ}"], name, host)
+
+
+def _description(url: StreamUrl, medium: str, track: list[str], name: str, host: str) -> bytes:
     family = "IP6" if ":" in host else "IP4"
     title = "".join(c if c.isprintable() else " " for c in name) or "camera"
-    sprop = ",".join(b64encode(each).decode() for each in (sets.sps, sets.pps))
     lines = [
         "v=0",
         f"o=- 1 1 IN {family} {host}",
@@ -29,12 +44,9 @@ def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, na
         "t=0 0",
         f"a=control:{url.content_base}",
         "a=range:npt=now-",
-        f"m=video 0 RTP/AVP {PAYLOAD_TYPE}",
+        f"m={medium} 0 RTP/AVP {PAYLOAD_TYPE}",
         f"c=IN {family} {'::' if ':' in host else '0.0.0.0'}",  # noqa: S104 - no address is bound
-        f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
-        f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
-        f"a=framerate:{requested.fps:.6f}",
-        f"a=framesize:{PAYLOAD_TYPE} {requested.width}-{requested.height}",
+        *track,
         f"a=control:{url.track}",
     ]
     return ("\r\n".join(lines) + "\r\n").encode()

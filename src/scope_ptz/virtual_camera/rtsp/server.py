@@ -20,6 +20,7 @@ from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
 from scope_ptz.virtual_camera.rtsp.messages import MAX_LINE_BYTES
 from scope_ptz.virtual_camera.rtsp.playback import StreamStatistics
 from scope_ptz.virtual_camera.rtsp.sessions import Sessions
+from scope_ptz.virtual_camera.rtsp.tunnel import Tunnels
 
 SESSION_TIMEOUT_S = 60.0
 MAX_CONNECTIONS = 64
@@ -39,6 +40,7 @@ class RtspServer:
         self._source = source
         self._realm = realm
         self._sessions = Sessions(source, timeout_s=session_timeout_s)
+        self._tunnels = Tunnels()
         self._rng = random.Random(0)
         self._connections: dict[asyncio.Task[None], RtspConnection] = {}
 
@@ -91,20 +93,20 @@ class RtspServer:
                 await server.wait_closed()
 
     def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
+        if len(self._connections) >= MAX_CONNECTIONS or self.device.down:
             writer.transport.abort()
             return
         # Many RTSP clients do not support qop, and ignore replies to keep-alive requests.
         # So each connection has its own nonce, valid as long as the connection, and an intercepted response is useless on others.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
-        connection = RtspConnection(self.device, self._source, self._sessions, digest, self._rng, reader, writer)
+        connection = RtspConnection(self.device, self._source, self._sessions, self._tunnels, digest, self._rng, reader, writer)
         task = asyncio.create_task(connection.run())
         self._connections[task] = connection
         task.add_done_callback(self._connections.pop)
 
     async def _watch(self) -> None:
         while True:
-            if self.device.faults.down:
+            if self.device.down:
                 self._abort()
                 await self._sessions.end_all()
             await self._sessions.end_expired()

@@ -22,7 +22,7 @@ class Session:
     """One client's stream.
 
     Args:
-        requested: The format of the stream.
+        requested: The format of the stream; None for a stream of events, of which this camera sends none.
         owner: Address and account of the client. Other clients cannot access the session.
         source: The live picture.
         streams: The encoded streams.
@@ -40,7 +40,7 @@ class Session:
 
     def __init__(
         self,
-        requested: StreamFormat,
+        requested: StreamFormat | None,
         owner: tuple[str, str],
         source: LiveSource,
         streams: LiveStreams,
@@ -81,6 +81,8 @@ class Session:
             RefusedError: Too many formats are being played.
         """
         assert self.sink is not None  # noqa: S101 - a session is kept only with a transport
+        if self.requested is None:
+            return self.clock.sequence, self.clock.timestamp(monotonic())
         if self._playback is None:
             playback = Playback(
                 self.sink,
@@ -99,7 +101,7 @@ class Session:
     def pause(self) -> None:
         """Stop sending."""
         playback, self._playback = self._playback, None
-        if playback is not None and self._task is not None:
+        if playback is not None and self._task is not None and self.requested is not None:
             self._streams.leave(self.requested, playback)
             self._task.cancel()
 

@@ -40,8 +40,8 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._sessions)
 
-    def open(self, requested: StreamFormat, owner: tuple[str, str]) -> Session:
-        """Return a new session.
+    def open(self, requested: StreamFormat | None, owner: tuple[str, str]) -> Session:
+        """Return a new session. The arguments are those of ``Session``.
 
         Raises:
             RefusedError: There are too many sessions.

@@ -44,6 +44,12 @@ class StreamUrl:
     query: str
 
     @property
+    def events_only(self) -> bool:
+        """Whether the stream consists of events, without a picture."""
+        options = _options(self)
+        return options.get("video") == "0" and options.get("event", "").lower() == "on"
+
+    @property
     def content_base(self) -> str:
         """The URL of the whole stream, as it appears in replies."""
         return f"{self.base}/{self._suffix}"
@@ -91,7 +97,7 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
         RefusedError: An option has a value that the camera does not support.
     """
     try:
-        options = {name.lower(): value for name, value in parse_qsl(url.query, max_num_fields=MAX_FIELDS)}
+        options = _options(url)
         width, height = parse_resolution(device, options.get("resolution", ""))
         fps = float(options.get("fps", "0"))
     except (ValueError, InputError) as error:
@@ -106,3 +112,15 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
     if options.get("camera", "1") != "1":
         raise RefusedError(404)
     return StreamFormat(width, height, min(fps, rate_hz) if fps else rate_hz)
+
+
+def _options(url: StreamUrl) -> dict[str, str]:
+    """Return the options in the query of a URL. Names are in lower case.
+
+    Raises:
+        RefusedError: There are too many.
+    """
+    try:
+        return {name.lower(): value for name, value in parse_qsl(url.query, max_num_fields=MAX_FIELDS)}
+    except ValueError as error:
+        raise RefusedError(400) from error

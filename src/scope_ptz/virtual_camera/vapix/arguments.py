@@ -63,3 +63,9 @@ class Arguments:
             what = "a number" if count == 1 else f"{count} numbers with commas between them"
             raise InputError(f"{name}: expected {what}, got {text[:MAX_SHOWN_CHARS]!r}")
         return found
+
+
+def check_camera(arguments: Arguments) -> None:
+    """Raise ``InputError`` if a request names a video channel other than the only one."""
+    if "camera" in arguments and arguments.text("camera") not in ("1", "all"):
+        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN_CHARS]!r}")

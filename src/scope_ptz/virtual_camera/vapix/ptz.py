@@ -5,7 +5,7 @@ from __future__ import annotations
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.virtual_camera.identity import PRODUCT
 from scope_ptz.virtual_camera.vapix import lens, moves, replies
-from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
+from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments, check_camera
 from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
 from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
 from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
@@ -61,7 +61,7 @@ query={{ {" | ".join(QUERIES)} }}
 def ptz(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
     """Answer a request to ``ptz.cgi``, which is either a query or contains commands."""
     try:
-        _check_camera(arguments)
+        check_camera(arguments)
         if "query" in arguments:
             return query(unit, arguments)
         if "info" in arguments:
@@ -93,7 +93,7 @@ def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
 def ptz_config(unit: VapixUnit, arguments: Arguments) -> Reply:
     """Answer a request to ``ptzconfig.cgi``, which saves, renames and removes presets."""
     try:
-        _check_camera(arguments)
+        check_camera(arguments)
         _configure(unit, arguments)
     except (InputError, CameraError) as problem:
         return replies.error(str(problem))
@@ -135,18 +135,13 @@ def ptz_queue(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
 
 
 def _queue_status(unit: VapixUnit, arguments: Arguments, client: Client) -> QueueStatus:
-    _check_camera(arguments)
+    check_camera(arguments)
     if "control" not in arguments:
         raise InputError("control: expected request, drop or query")
     if not unit.queue.enabled:
         raise CameraError("control queueing is off (PTZ.Various.V1.CtlQueueing)")
     actions = {"request": unit.queue.request, "drop": unit.queue.drop, "query": unit.queue.status}
     return actions[arguments.choice("control", tuple(actions))](client)
-
-
-def _check_camera(arguments: Arguments) -> None:
-    if "camera" in arguments and arguments.text("camera") not in ("1", "all"):
-        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN_CHARS]!r}")
 
 
 def _preset_name(arguments: Arguments, argument: str) -> str:

@@ -109,8 +109,11 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
     return f"{count_word(times)} move{plural}"
 
 
-def clamped_text(clamped: Sequence[str]) -> str:
-    """Return the sentence that names the limits at which a move was clamped; empty for none."""
+def shortfall_text(result: Mapping[str, Any]) -> str:
+    """Return the sentence that states why a move ended early: a rule of the site, or limits of the camera; empty if it did not."""
+    if held_back_by := result.get("held_back_by"):
+        return f" The move was held back by {held_back_by}."
+    clamped = result.get("clamped", ())
     if not clamped:
         return ""
     return f" The {english.listing(list(clamped))} {'limit' if len(clamped) == 1 else 'limits'} cut the move short."

@@ -59,7 +59,7 @@ class Program(ConditionEvaluation):
             return
         result = yield from self._camera_call("adjust_ptz", **arguments)
         text = f"{phrases.move_text(arguments)}; the camera is at {phrases.pose_text(result['pose'])}"
-        self._note(phrases.sentence(text) + phrases.clamped_text(result.get("clamped", ())))
+        self._note(phrases.sentence(text) + phrases.shortfall_text(result))
 
     def _back(self, step: ast.Back) -> CallGenerator:
         place = self._visited[-1]
@@ -102,15 +102,15 @@ class Program(ConditionEvaluation):
         self._moved_to_object = False
 
     def _home(self, step: ast.Home) -> CallGenerator:
-        yield from self._camera_call("go_home")
+        result = yield from self._camera_call("go_home")
         self._went_home = True
         self._record_position(None, home=True)
-        self._note("I went to the home view")
+        self._note(phrases.sentence("I went to the home view") + phrases.shortfall_text(result))
 
     def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
-        yield from self._camera_call("go_to_preset", name=step.ref.name)
+        result = yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
-        self._note(f"I went to preset {step.ref.name}")
+        self._note(phrases.sentence(f"I went to preset {step.ref.name}") + phrases.shortfall_text(result))
 
     def _gothere(self, step: ast.GoThere) -> CallGenerator:
         if self._best_preset:
