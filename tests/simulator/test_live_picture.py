@@ -13,13 +13,14 @@ from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import AXIS_M5075_G, Perspective
 from scope_ptz.simulator.actors import composited_actors
+from scope_ptz.simulator.clearance import FLAT_M, TOLERANCE_FRACTION, TOLERANCE_M
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.mapping.atlas_map import TILE_GAIN, panorama_density, suitable_scale
 from scope_ptz.simulator.mapping.cells import visible_tiles
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.panorama import panorama_map
 from scope_ptz.simulator.mapping.tiles import Tiles
-from scope_ptz.simulator.occlusion import outlined_depth_part, outlined_depth_view
+from scope_ptz.simulator.occlusion import outlined_depth_part, outlined_depth_view, sharpening_reach_px
 from scope_ptz.simulator.pack import Scene, load_scene
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.prefetch import Prefetch, Prefetches
@@ -197,6 +198,47 @@ def test_shares_of_sprites_add_up(analytic_scene: Scene) -> None:
     assert shares == {1, 2}
 
 
+@given(st.integers(0, 150), st.integers(0, 240), st.floats(1, 4), st.floats(-30, 30), st.floats(3, 40))
+@settings(max_examples=30, deadline=None)
+def test_the_coarse_test_never_overlooks_what_hides_an_actor(
+    analytic_scene: Scene, top: int, left: int, zoom: float, pan: float, far_m: float
+) -> None:
+    view, viewpoint = _view(pan, -8.0, zoom, 640, 360), analytic_scene.viewpoint("mast")
+    part = slice(top, top + 200), slice(left, left + 300)
+    needed = np.full((200, 300), 255, np.uint8)
+    ground_m = -float(viewpoint.position_m[2])
+    rise = Grid(view, 8, part).to_pixels(Grid(view, 8, part).directions()[..., 2])
+
+    doubtful = np.zeros(needed.shape, bool)
+    found = viewpoint.clearance.doubtful(
+        view,
+        part,
+        needed,
+        steepest_rise=float(np.abs(rise).max()),
+        reach_px=sharpening_reach_px(viewpoint, view),
+        far_m=far_m,
+        ground_m=ground_m,
+    )
+    if found is not None:
+        doubtful[found] = True
+    static_m = outlined_depth_part(viewpoint, view, part, needed) * (1 + TOLERANCE_FRACTION) + TOLERANCE_M
+    # Distances come from up to 2.5 texels away, which matters for the heights of distant points.
+    texels = 2.5 * 2 * np.pi / viewpoint.manifest.depth.width
+    on_ground = static_m * rise <= ground_m + FLAT_M + static_m * texels  # what stands on the ground is in front of it
+    assert not ((static_m < far_m) & ~on_ground & ~doubtful).any()
+
+
+def test_occlusion_at_half_resolution_is_that_of_every_second_pixel(analytic_scene: Scene) -> None:
+    view, viewpoint = _view(0.0, -8.0, 2.0, 640, 360), analytic_scene.viewpoint("mast")
+    part = slice(41, 240), slice(0, 331)
+    needed = np.full((199, 331), 255, np.uint8)
+    whole = outlined_depth_part(viewpoint, view, part, needed)[::2, ::2]
+    half = outlined_depth_part(viewpoint, view, part, needed, 2)
+    assert half.shape == whole.shape
+    # Only pixels at outlines may take their distance from another neighbour.
+    assert np.isclose(half, whole, rtol=0.02).mean() > 0.99
+
+
 def test_an_actor_behind_the_camera_adds_nothing(analytic_scene: Scene) -> None:
     viewpoint = analytic_scene.viewpoint("mast")
     (actor,) = composited_actors(analytic_scene, viewpoint, 4.0)
@@ -217,4 +259,4 @@ def test_the_cyclist_on_the_crossing_stays_upright() -> None:
 
 
 def test_the_camera_names_the_version_of_the_rendering(analytic_scene: Scene) -> None:
-    assert SimulatedCamera(analytic_scene).info.rendering == RENDERING_VERSION == 2
+    assert SimulatedCamera(analytic_scene).info.rendering == RENDERING_VERSION == 3

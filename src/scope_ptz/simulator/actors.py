@@ -15,19 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
+from scope_ptz.simulator.clearance import TOLERANCE_FRACTION, TOLERANCE_M
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.tiles import Place, Tiles
 from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
 from scope_ptz.simulator.viewpoint import Viewpoint
-
-TOLERANCE_M = 0.15
-TOLERANCE_FRACTION = 0.01
-"""Tolerance of the occlusion test: an actor is hidden where the static world is nearer by more than this.
-
-It is the sum of a distance in metres and a fraction of the static world's distance.
-"""
 
 Floats = NDArray[np.float64]
 

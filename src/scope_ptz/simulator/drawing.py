@@ -10,18 +10,19 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import Perspective, Projection, angle_between_deg, pan_tilt_deg
+from scope_ptz.geometry import Projection, angle_between_deg, pan_tilt_deg
 from scope_ptz.geometry.sphere import camera_axes
-from scope_ptz.simulator.actors import TOLERANCE_FRACTION, TOLERANCE_M, ActorInView
+from scope_ptz.simulator.actors import ActorInView
+from scope_ptz.simulator.clearance import TOLERANCE_FRACTION, TOLERANCE_M
 from scope_ptz.simulator.mapping.grid import Grid, step_px
 from scope_ptz.simulator.mapping.tiles import OUTLINE, Place, bounds
 from scope_ptz.simulator.models import ActorSheet, Sprite
-from scope_ptz.simulator.occlusion import outlined_depth_part
+from scope_ptz.simulator.occlusion import outlined_depth_part, sharpening_reach_px
 from scope_ptz.simulator.sprites.choice import Aspect, WeightedSprite, warp_matrix
 from scope_ptz.simulator.viewpoint import Viewpoint
 
-LARGE_PX = 120_000
-"""For actors that cover more pixels than this, occlusion is computed at half resolution."""
+LARGE_PX = 16_000
+"""In rectangles of more pixels than this, occlusion is computed at half resolution."""
 
 MIN_SHRINK = 0.75
 """A sprite is shrunk before sampling, to prevent aliasing, if the view's pixel density is below this fraction of the sprite's."""
@@ -30,6 +31,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.uint8]
 
 _BEHIND = 1e-6
+_VISIBLE, _HIDDEN = np.uint8(255), np.uint8(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +53,8 @@ class ActorPatch:
 def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView) -> ActorPatch | None:
     """Return the visible part of an actor in a view, or None if it is not visible."""
     choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
-    if angle_between_deg(actor.offset_m, projection.directions((0.5, 0.5))) > projection.max_off_axis_deg + choice.reach_deg(
-        actor.offset_m
-    ):
+    cosine = float(actor.offset_m @ projection.directions((0.5, 0.5)) / np.linalg.norm(actor.offset_m))
+    if math.degrees(math.acos(max(-1.0, min(1.0, cosine)))) > projection.max_off_axis_deg + choice.reach_deg(actor.offset_m):
         return None
     now = Aspect(actor.offset_m, choice.heading(actor.path_s))
     layers = [_Layer.of(viewpoint, actor, weighted, now) for weighted in choice.choose(now, actor.phase)]
@@ -71,39 +72,63 @@ def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView
         return None
     inner = slice(y, y + height), slice(x, x + width)
     part = slice(place[0].start + y, place[0].start + y + height), slice(place[1].start + x, place[1].start + x + width)
-    masks = _visible_masks(viewpoint, projection, part, actor, layers, alpha[inner])
-    total = np.zeros((height, width, 4), np.uint8)
-    for layer, shows, colour in zip(layers, masks, colours, strict=True):
-        over = cv2.bitwise_and(colour[inner], colour[inner], mask=shows)
-        total = over if len(layers) == 1 else cv2.addWeighted(total, 1.0, over, layer.weight, 0)
+    colours = [colour[inner] for colour in colours]
+    steepest_rise = min(1.0, float(np.abs(rays[..., 2]).max()))
+    _remove_hidden(viewpoint, projection, part, actor, layers, colours, alpha[inner], steepest_rise)
+    total = colours[0] if len(layers) == 1 else cv2.addWeighted(colours[0], layers[0].weight, colours[1], layers[1].weight, 0)
     return ActorPatch(part, np.asarray(total))
+
+
+def _remove_hidden(
+    viewpoint: Viewpoint,
+    projection: Projection,
+    part: Place,
+    actor: ActorInView,
+    layers: Sequence[_Layer],
+    colours: Sequence[NDArray[np.uint8]],
+    alpha: Mask,
+    steepest_rise: float,
+) -> None:
+    """Set the pixels of each layer's colour at which the actor or its shadow is hidden to 0."""
+    doubtful = viewpoint.clearance.doubtful(
+        projection,
+        part,
+        alpha,
+        steepest_rise=steepest_rise,
+        reach_px=sharpening_reach_px(viewpoint, projection),
+        far_m=max(layer.farthest_m(viewpoint) for layer in layers),
+        ground_m=float(actor.offset_m[2]),
+    )
+    if doubtful is None:
+        return
+    alpha = alpha[doubtful]
+    (top, left), (height, width) = (span.start for span in doubtful), alpha.shape
+    inner = slice(part[0].start + top, part[0].start + top + height), slice(part[1].start + left, part[1].start + left + width)
+    masks = _visible_masks(viewpoint, projection, inner, actor, layers, alpha)
+    for mask, colour in zip(masks, colours, strict=True):
+        colour[doubtful] = cv2.multiply(colour[doubtful], cv2.merge([mask] * 4), scale=1 / 255)
 
 
 def _visible_masks(
     viewpoint: Viewpoint, projection: Projection, part: Place, actor: ActorInView, layers: Sequence[_Layer], alpha: Mask
 ) -> list[Mask]:
-    """Return, for each layer, a mask of the pixels in a part of a view where the actor or its shadow is not hidden.
+    """Return, for each layer, a mask of the pixels in a part of a view: 255 where the actor or its shadow is not hidden.
 
-    Large parts are computed at half resolution, so occlusion edges on an actor that fills the view are accurate to two pixels.
+    Large parts are computed at half resolution and interpolated, so occlusion edges in them are soft and accurate to two pixels.
     """
-    height, width = alpha.shape
-    if isinstance(projection, Perspective) and height * width > LARGE_PX and not (projection.width % 2 or projection.height % 2):
-        half = Perspective(
-            projection.pan_deg, projection.tilt_deg, projection.hfov_deg, projection.width // 2, projection.height // 2
-        )
-        rows, columns = (slice(span.start // 2, -(-span.stop // 2)) for span in part)
-        size = columns.stop - columns.start, rows.stop - rows.start
-        y, x = part[0].start - 2 * rows.start, part[1].start - 2 * columns.start
-        small = cv2.resize(alpha, size, interpolation=cv2.INTER_AREA)
-        masks = _visible_masks(viewpoint, half, (rows, columns), actor, layers, small)
-        grown = (cv2.resize(mask, (2 * size[0], 2 * size[1]), interpolation=cv2.INTER_NEAREST) for mask in masks)
-        return [mask[y : y + height, x : x + width] for mask in grown]
     grid = Grid(projection, step_px(projection), part)
-    rays = grid.directions()
-    static_m = outlined_depth_part(viewpoint, projection, part, alpha)
+    rays, stride = grid.directions(), 2 if alpha.size > LARGE_PX else 1
+    every = slice(None, None, stride)
+    static_m = outlined_depth_part(viewpoint, projection, part, alpha, stride)
     cv2.addWeighted(static_m, 1 + TOLERANCE_FRACTION, static_m, 0, TOLERANCE_M, dst=static_m)
-    on_ground = _visible_ground(grid.to_pixels(rays[..., 2]), float(actor.offset_m[2]), static_m)
-    return [layer.visible_mask(viewpoint, grid.to_pixels(layer.positions(rays)), static_m, on_ground) for layer in layers]
+    on_ground = _visible_ground(grid.to_pixels(rays[..., 2])[every, every], float(actor.offset_m[2]), static_m)
+    masks = [
+        layer.visible_mask(viewpoint, grid.to_pixels(layer.positions(rays))[every, every], static_m, on_ground) for layer in layers
+    ]
+    if stride == 1:
+        return masks
+    size = alpha.shape[1], alpha.shape[0]
+    return [np.asarray(cv2.resize(mask, size, interpolation=cv2.INTER_LINEAR)) for mask in masks]
 
 
 def _visible_ground(drop: NDArray[np.float32], height_m: float, static_m: NDArray[np.float32]) -> Mask:
@@ -115,8 +140,8 @@ def _visible_ground(drop: NDArray[np.float32], height_m: float, static_m: NDArra
         static_m: (h, w) distances of the static world.
     """
     # The distance to the ground is height / drop. Both are negative below the horizon, which reverses the comparison.
-    reached = cv2.multiply(static_m, drop)
-    return np.asarray(reached <= height_m if height_m < 0 else reached >= height_m).view(np.uint8)
+    reached = static_m * drop
+    return np.where(reached <= height_m if height_m < 0 else reached >= height_m, _VISIBLE, _HIDDEN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,24 +212,28 @@ class _Layer:
         where = grid.to_pixels(self.positions(rays, (colour.shape[1] / width, colour.shape[0] / height)))
         return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
 
+    def farthest_m(self, viewpoint: Viewpoint) -> float:
+        """Return the distance of the farthest point of the actor, apart from its shadow."""
+        return float(viewpoint.depth_metres[viewpoint.sprites.farthest(self.sheet, self.sprite)]) / self.scale
+
     def visible_mask(
         self, viewpoint: Viewpoint, where: NDArray[np.float32], static_m: NDArray[np.float32], on_ground: Mask
     ) -> Mask:
         """Return a mask of the pixels where the actor or its shadow is not hidden."""
         codes = cv2.remap(viewpoint.sprites.distances(self.sheet, self.sprite), where, None, cv2.INTER_NEAREST, borderValue=0.0)
         before = np.take(viewpoint.depth_metres, codes) <= static_m * np.float32(self.scale)
-        return np.where(codes > 0, before.view(np.uint8), on_ground)
+        return np.where(codes > 0, np.where(before, _VISIBLE, _HIDDEN), on_ground)
 
 
 def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
     """Return the rows and columns of a view that the layers cover; None if all are outside."""
     rays = np.stack([layer.outline() for layer in layers])
-    middles = rays.mean(axis=1)
-    reach_deg = angle_between_deg(rays, middles[:, None]).max(axis=1)
-    near = angle_between_deg(middles, projection.directions((0.5, 0.5))) <= reach_deg + projection.max_off_axis_deg
-    if not near.any():
-        return None
-    outlines = projection.points(rays[near])
+    outlines = projection.points(rays)
+    if np.isnan(outlines).any():  # partly behind the camera
+        middles = rays.mean(axis=1)
+        reach_deg = angle_between_deg(rays, middles[:, None]).max(axis=1)
+        near = angle_between_deg(middles, projection.directions((0.5, 0.5))) <= reach_deg + projection.max_off_axis_deg
+        outlines = outlines[near]
     places = [p for p in bounds(projection, outlines) if p[0].start < p[0].stop and p[1].start < p[1].stop]
     if not places:
         return None

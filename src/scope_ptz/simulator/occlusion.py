@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import cv2
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
 from scope_ptz.simulator.mapping.tiles import Place
-from scope_ptz.simulator.reproject import id_view, view_map
+from scope_ptz.simulator.reproject import view_map
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 SEARCH_RADII_TEXELS = (1.0, 2.0)
@@ -18,6 +19,9 @@ SEARCH_RADII_TEXELS = (1.0, 2.0)
 
 _NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
+
+Numbers = NDArray[np.uint8] | NDArray[np.uint16]
+Positions = NDArray[Any]
 
 
 def outlined_depth_view(
@@ -36,11 +40,12 @@ def outlined_depth_view(
     """
     whole = (slice(0, projection.height), slice(0, projection.width))
     around, inner = _with_margin(viewpoint, projection, part or whole)
-    return _sharpened_depth(viewpoint, projection, around, numbers[around], None)[inner]
+    where, metres = _stored_depth(viewpoint, projection, around)
+    return _sharpened(metres, viewpoint.owner_atlas.sample(where), numbers[around], None, _texel_px(viewpoint, projection))[inner]
 
 
 def outlined_depth_part(
-    viewpoint: Viewpoint, projection: Projection, part: Place, needed: NDArray[np.uint8]
+    viewpoint: Viewpoint, projection: Projection, part: Place, needed: NDArray[np.uint8], stride: int = 1
 ) -> NDArray[np.float32]:
     """Return the distances of ``outlined_depth_view`` for a part of a view. Only pixels in and near the part are read.
 
@@ -49,35 +54,65 @@ def outlined_depth_part(
         projection: The view.
         part: The rows and columns that are needed.
         needed: (rows, columns) mask of the part. Edges are sharpened only where it is not 0.
+        stride: Return only every ``stride``-th row and column of the part. Edges are then accurate to this many pixels.
     """
-    around, inner = _with_margin(viewpoint, projection, part)
-    mask = np.zeros([a.stop - a.start for a in around], bool)
-    mask[inner] = needed
-    return _sharpened_depth(viewpoint, projection, around, id_view(viewpoint, projection, around), mask)[inner]
+    around, inner = _with_margin(viewpoint, projection, part, stride)
+    every = slice(None, None, stride)
+    where, metres = _stored_depth(viewpoint, projection, around, stride)
+    ids = viewpoint.id_atlas
+    # Codes are read faster than numbers. Only small instances share a code.
+    codes = ids.sample_codes(view_map(viewpoint, ids, projection, around)[every, every])
+    mask = np.zeros(metres.shape, bool)
+    mask[inner] = needed[every, every]
+    texel_px = _texel_px(viewpoint, projection) / stride
+    return _sharpened(metres, viewpoint.owner_atlas.sample_codes(where), codes, mask, texel_px)[inner]
 
 
-def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place) -> tuple[Place, Place]:
-    """Return a part of a view enlarged by the margin that edge sharpening reads, and the position of the part inside it."""
-    margin = math.ceil(max(SEARCH_RADII_TEXELS) * _texel_px(viewpoint, projection)) + 1
+def sharpening_reach_px(viewpoint: Viewpoint, projection: Projection) -> int:
+    """Return the radius around a pixel of a view in which edge sharpening reads distances."""
+    return math.ceil(max(SEARCH_RADII_TEXELS) * _texel_px(viewpoint, projection)) + 1
+
+
+def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place, stride: int = 1) -> tuple[Place, Place]:
+    """Return a part of a view enlarged by the margin that edge sharpening reads, and the position of the part inside it.
+
+    The position counts only every ``stride``-th row and column.
+    """
+    steps = -(-sharpening_reach_px(viewpoint, projection) // stride)
+    before = [min(steps, span.start // stride) for span in part]
     rows, columns = (
-        slice(max(0, span.start - margin), min(size, span.stop + margin))
-        for span, size in zip(part, (projection.height, projection.width), strict=True)
+        slice(span.start - stride * skipped, min(size, span.stop + stride * steps))
+        for span, skipped, size in zip(part, before, (projection.height, projection.width), strict=True)
     )
-    inner_rows, inner_columns = (slice(p.start - a.start, p.stop - a.start) for p, a in zip(part, (rows, columns), strict=True))
+    inner_rows, inner_columns = (
+        slice(skipped, skipped - (span.start - span.stop) // stride) for span, skipped in zip(part, before, strict=True)
+    )
     return (rows, columns), (inner_rows, inner_columns)
 
 
-def _sharpened_depth(
-    viewpoint: Viewpoint, projection: Projection, part: Place, numbers: NDArray[np.uint16], needed: NDArray[np.bool_] | None
-) -> NDArray[np.float32]:
-    where = view_map(viewpoint, viewpoint.depth_atlas, projection, part)
-    # Both layers are read at the same positions, which are rounded to whole pixels once.
+def _stored_depth(
+    viewpoint: Viewpoint, projection: Projection, part: Place, stride: int = 1
+) -> tuple[Positions, NDArray[np.float32]]:
+    """Return positions on the sheet of the depth layer, rounded to whole pixels, and the distances there."""
+    where = view_map(viewpoint, viewpoint.depth_atlas, projection, part)[::stride, ::stride]
+    # The owners of the distances are read at the same positions, so positions are rounded only once.
     where, _ = cv2.convertMaps(where, None, cv2.CV_16SC2, nninterpolation=True)
-    metres: NDArray[np.float32] = np.take(
-        viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
-    )
     viewpoint.owner_atlas.ensure(0)
-    owners = viewpoint.owner_atlas.sample(where)
+    return where, np.take(viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST))
+
+
+def _sharpened(
+    metres: NDArray[np.float32], owners: Numbers, numbers: Numbers, needed: NDArray[np.bool_] | None, texel_px: float
+) -> NDArray[np.float32]:
+    """Return distances with edges as sharp as in ``numbers``. All arrays have the same shape.
+
+    Args:
+        metres: Distances.
+        owners: The instances on which they were measured.
+        numbers: The instances that the pixels show.
+        needed: Mask of the pixels to correct; the default is all.
+        texel_px: Size of a texel of the depth layer in pixels.
+    """
     same = owners == numbers
     wrong = ~same if needed is None else needed & ~same
     pixels = np.flatnonzero(wrong)
@@ -85,21 +120,24 @@ def _sharpened_depth(
         return metres
     # Flat indices, because NumPy reads and writes them faster than pairs.
     height, width = metres.shape
-    texel_px = _texel_px(viewpoint, projection)
     refined, found, owner = metres.copy().ravel(), same.ravel(), owners.ravel()
     expected, sources = numbers[wrong], metres.ravel()
     ys, xs = np.divmod(pixels, width)
     for reach in SEARCH_RADII_TEXELS:
-        for dx, dy in _NEIGHBOURS:
+        near = np.empty((len(_NEIGHBOURS), len(pixels)), pixels.dtype)
+        for k, (dx, dy) in enumerate(_NEIGHBOURS):
             y = np.minimum(np.maximum(ys + round(dy * reach * texel_px), 0), height - 1)
             x = np.minimum(np.maximum(xs + round(dx * reach * texel_px), 0), width - 1)
-            near = y * width + x
-            matches = found[near] & (owner[near] == expected)
-            refined[pixels[matches]] = sources[near[matches]]
-            others = np.flatnonzero(~matches)
-            if not len(others):
-                return refined.reshape(height, width)
-            pixels, ys, xs, expected = pixels[others], ys[others], xs[others], expected[others]
+            np.add(y * width, x, out=near[k])
+        matches = found[near] & (owner[near] == expected)
+        first = matches.argmax(axis=0)
+        columns = np.arange(len(pixels))
+        any_match = matches[first, columns]
+        refined[pixels[any_match]] = sources[near[first, columns][any_match]]
+        others = np.flatnonzero(~any_match)
+        if not len(others):
+            break
+        pixels, ys, xs, expected = pixels[others], ys[others], xs[others], expected[others]
     return refined.reshape(height, width)
 
 

@@ -17,6 +17,8 @@ SPRITE_MARGIN = 1.3  # enlarges the views of sprites to include actors at positi
 PAUSE_S = 0.002
 """Pause between pictures in seconds. Without it, this thread would reacquire locks before a waiting view can get them."""
 
+TILES_PER_RELEASE = 8  # after this many tiles, the memory of decoded pictures is returned to the operating system
+
 DENSITY_STEPS = 64  # zoom steps, from the widest to the closest, at which the required scales of tiles are determined
 
 
@@ -78,13 +80,15 @@ class Prefetch:
 
     def _run(self) -> None:
         try:
-            steps = [self._panorama, self._occlusion, self._sprites]
+            # What takes the most memory to decode comes first, when little else is in memory.
+            steps = [self._sprites, self._occlusion, self._panorama]
             if self._viewpoint.colour_atlas.unlimited:
                 steps.append(self._tiles)
             for step in steps:
                 if self._cancelled.is_set():
                     return
                 step()
+                release_free_memory()
             self._viewpoint.tile_blender.clear_cache()
             release_free_memory()
         except BaseException as error:
@@ -103,6 +107,7 @@ class Prefetch:
             return
         for atlas in (viewpoint.id_atlas, viewpoint.depth_atlas, viewpoint.owner_atlas):
             atlas.ensure(0)
+        _ = viewpoint.clearance  # computed now, so that no view has to wait
         sprites = {
             (s.pan_deg, s.tilt_deg): Perspective(
                 s.pan_deg,
@@ -128,9 +133,11 @@ class Prefetch:
         """Read the tiles at all scales that zooming requires. Neighbours are read in succession, because blending uses both."""
         atlas, views = self._viewpoint.colour_atlas, self._viewpoint.tiles.views
         needed = [density for density in self._densities if density > TILE_GAIN * panorama_density(atlas)]
-        for index in sorted(range(len(views)), key=lambda i: views[i].pan_deg):
+        for count, index in enumerate(sorted(range(len(views)), key=lambda i: views[i].pan_deg)):
             if self._cancelled.is_set():
                 return
+            if count % TILES_PER_RELEASE == 0:
+                release_free_memory()
             atlas.ensure_scales(1 + index, sorted({suitable_scale(atlas, views[index].focal_px, d) for d in needed}))
             time.sleep(PAUSE_S)
 

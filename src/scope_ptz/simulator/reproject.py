@@ -17,6 +17,8 @@ from scope_ptz.simulator.mapping.tiles import Place
 from scope_ptz.simulator.sheets.atlas import Atlas
 from scope_ptz.simulator.viewpoint import Viewpoint
 
+STRIP_PX = 256  # rows whose colours are sampled at once
+
 
 def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint8]:
     """Return the static world in a view as (H, W, 3) RGB."""
@@ -26,8 +28,14 @@ def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint
 
 
 def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
-    """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet."""
-    return np.asarray(cv2.remap(atlas.sheet, positions, None, cv2.INTER_LINEAR))
+    """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet, rounded to 1/32 of a pixel of the sheet."""
+    # OpenCV looks up rounded positions in about two thirds of the time that exact ones take. Strips need less memory.
+    image = np.empty((*positions.shape[:2], atlas.sheet.shape[2]), np.uint8)
+    for top in range(0, len(positions), STRIP_PX):
+        strip = slice(top, top + STRIP_PX)
+        pixels, fractions = cv2.convertMaps(positions[strip], None, cv2.CV_16SC2)
+        cv2.remap(atlas.sheet, pixels, fractions, cv2.INTER_LINEAR, dst=image[strip])
+    return image
 
 
 def id_view(viewpoint: Viewpoint, projection: Projection, part: Place | None = None) -> NDArray[np.uint16]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection, angle_between_deg
-from scope_ptz.simulator.actors import TOLERANCE_FRACTION, TOLERANCE_M
+from scope_ptz.simulator.clearance import TOLERANCE_FRACTION, TOLERANCE_M
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import distances_m

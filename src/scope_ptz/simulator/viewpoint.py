@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -17,6 +18,7 @@ from scope_ptz.errors import PackError
 from scope_ptz.geometry import direction
 from scope_ptz.simulator import layers
 from scope_ptz.simulator.blending import TileBlender
+from scope_ptz.simulator.clearance import Clearance
 from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
@@ -72,6 +74,8 @@ class Viewpoint:
         self.name = place.name
         self.sprites = SpriteStore(self.pictures, picture_cache)
         self.still_views = StillViews()
+        self.helper = ThreadPoolExecutor(1, thread_name_prefix=f"views of {place.name}")
+        """A thread that renders the static world while the caller's thread renders the actors. It starts on first use."""
         self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
@@ -175,6 +179,13 @@ class Viewpoint:
         """(65536,) table from distance codes to metres; the sky is infinitely far."""
         depth = self.manifest.depth
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
+
+    @cached_property
+    def clearance(self) -> Clearance:
+        """Coarse bounds of the static world, from the depth layer."""
+        slot = self.depth_atlas.ensure(0)
+        codes = self.depth_atlas.sheet[slot.y : slot.y + slot.height, slot.x : slot.x + slot.width]
+        return Clearance(codes, self.depth_metres, self.manifest.band)
 
     def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
         """Return the object that selects an actor's sprites. It is created once and shared."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,15 +10,18 @@ from scope_ptz.simulator.actors import composited_actors, composited_appearances
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.reproject import colour_view, id_view, sample_colours, view_map
+from scope_ptz.simulator.reproject import colour_view, id_view
 
-RENDERING_VERSION = 2
+RENDERING_VERSION = 3
 """Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
 
 - 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
 - 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and blended.
+- 3: colours are sampled at positions rounded to 1/32 of a stored pixel; edges that hide a part of an actor are soft if the part is
+  large; occlusion is not tested where only ground, or nothing nearer than the actor, is in view, so shadows may fall on objects
+  behind the actor.
 
-The ground truth of a view is the same in both.
+The ground truth of a view is the same in all versions.
 """
 
 
@@ -34,11 +35,11 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))
     else:
-        # Another thread samples the static world while this one renders the actors. OpenCV releases the GIL.
-        with atlas.reading(), ThreadPoolExecutor(1) as pool:
-            static = pool.submit(sample_colours, atlas, view_map(opened, atlas, projection))
-            patches = [actor_patch(opened, projection, actor) for actor in actors]
-            image = still.get(projection, static.result)
+        # Another thread renders the static world while this one renders the actors. OpenCV releases the GIL.
+        opened.tiles.in_view(projection)  # both threads need the result, which is cached
+        static = opened.helper.submit(colour_view, opened, projection)
+        patches = [actor_patch(opened, projection, actor) for actor in actors]
+        image = still.get(projection, static.result)
     for patch in patches:
         if patch is not None:
             patch.draw(image)

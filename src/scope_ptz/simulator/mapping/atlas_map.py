@@ -45,21 +45,19 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
     rest: Place | None = part
     if projection.pixels_per_radian > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
         visible, rest = visible_tiles(tiles.in_view(projection), part)
-    if rest == part:
+    if rest is None:
+        positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
+    else:
+        # The whole part is computed, even if tiles cover some of it, because copying the rest would take longer and more memory.
         slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.pixels_per_radian))
         positions = panorama_map(band, slot, Grid(projection, step).inner(part), part)
-    else:
-        positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
-        if rest is not None:
-            slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.pixels_per_radian))
-            _within(positions, part, rest)[...] = panorama_map(band, slot, Grid(projection, step).inner(rest), rest)
     slots = [
         atlas.ensure(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.pixels_per_radian))
         for index in (tile.showing.tile for tile in visible)
     ]
-    maps = tile_maps(tiles, projection, step, visible, slots)
-    # Start with the least sharp tile, over which the sharper ones are drawn.
-    for tile, slot, where in zip(reversed(visible), reversed(slots), reversed(list(maps)), strict=True):
+    # Start with the least sharp tile, over which the sharper ones are drawn. Only one map is in memory at a time.
+    visible, slots = visible[::-1], slots[::-1]
+    for tile, slot, where in zip(visible, slots, tile_maps(tiles, projection, step, visible, slots), strict=True):
         target = _within(positions, part, tile.place)
         if tile.whole:
             target[...] = where
@@ -80,6 +78,8 @@ def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
 
     The result is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if none is.
     """
+    if len(atlas.scales) == 1:
+        return 0
     enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
     return enough[-1] if enough else 0
 

@@ -84,11 +84,11 @@ class Atlas:
         disk_cache: SheetCache | None = None,
     ) -> None:
         self.scales = tuple(scales)
+        self._tile_bytes = tile_bytes if CAN_RELEASE else None
         self.slots, self._shelves, (width, height) = lay_out(sizes, [scale.size for scale in scales], pans_deg)
         self._load, self._decode = load, decode
         self._ready: set[tuple[int, int]] = set()
         self._lock = RLock()
-        self._tile_bytes = tile_bytes if CAN_RELEASE else None
         self._size = width, height
         rows = self._rows(width, height)
         shape = (rows, width, channels) if channels > 1 else (rows, width)

@@ -14,7 +14,7 @@ MAX_SIDE_PX = 32766
 BORDER_PX = 2
 """Border around every slot in pixels: one for the bilinear neighbour, one for rounding."""
 
-HEIGHT_CLASS_PX = 32
+HEIGHT_CLASS_PX = 8
 """If tiles are ordered by direction, their heights are first rounded up to a multiple of this.
 
 Tiles with the same rounded height and scale can then lie next to their neighbours in the scene.

@@ -115,13 +115,17 @@ class NumberAtlas(Atlas):
 
     def sample(self, positions: NDArray[Any]) -> Numbers:
         """Return the (h, w) numbers of the pixels nearest to (h, w, 2) positions on the sheet."""
-        codes = np.asarray(cv2.remap(self.sheet, positions, None, cv2.INTER_NEAREST), np.uint8)
+        codes = self.sample_codes(positions)
         numbers = self._codes.decode(codes)
         rare = codes == RARE
         if rare.any():
             x, y = np.rint(positions[rare]).astype(np.int64).T  # rounded as in ``cv2.remap``
             numbers[rare] = self._rare.read(y, x)
         return numbers
+
+    def sample_codes(self, positions: NDArray[Any]) -> NDArray[np.uint8]:
+        """Return the (h, w) codes of the numbers of ``sample``. Pixels with different codes have different numbers."""
+        return np.asarray(cv2.remap(self.sheet, positions, None, cv2.INTER_NEAREST), np.uint8)
 
     def at(self, rows: Indices, columns: Indices) -> Numbers:
         """Return the numbers of the pixels in rows and columns of the sheet, which are broadcast."""

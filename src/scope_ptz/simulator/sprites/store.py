@@ -16,13 +16,17 @@ from numpy.typing import NDArray
 from scope_ptz.errors import PackError
 from scope_ptz.simulator.models import ActorSheet, Sprite
 from scope_ptz.simulator.pictures import Pictures
+from scope_ptz.simulator.sheets.memory import release_free_memory
 from scope_ptz.simulator.sheets.picture_cache import PictureCache
 
-EXPANDED_BYTES = 32_000_000
+EXPANDED_BYTES = 16_000_000
 """Limit on the memory of expanded sprites in bytes. Expanding a sprite takes about a millisecond."""
 
-SHRUNK_BYTES = 8_000_000
+SHRUNK_BYTES = 4_000_000
 """Limit on the memory of shrunk sprites in bytes. A distant actor has the same size in many successive frames."""
+
+RELEASE_BYTES = 5_000_000
+"""After expanding this many bytes, free memory is returned to the operating system. Sprites of many sizes leave it fragmented."""
 
 EDGE_PX = 2
 """Search radius in pixels for covered pixels around a half-covered pixel of a sprite."""
@@ -50,8 +54,9 @@ class SpriteStore:
         self._pictures, self._picture_cache = pictures, picture_cache
         self._packed: dict[Key, bytes] = {}
         self._boxes: dict[tuple[int, int, int], tuple[int, int, int, int]] = {}
+        self._farthest: dict[tuple[int, int, int], int] = {}
         self._expanded: OrderedDict[Key, NDArray[Any]] = OrderedDict()
-        self._expanded_bytes = 0
+        self._expanded_bytes = self._bytes_since_release = 0
         self._shrunk: OrderedDict[tuple[Key, int, int], NDArray[np.uint8]] = OrderedDict()
         self._shrunk_bytes = 0
         self._lock = RLock()
@@ -94,6 +99,13 @@ class SpriteStore:
             self._boxes[key] = x, y, width, height
         return self._boxes[key]
 
+    def farthest(self, sheet: ActorSheet, sprite: Sprite) -> int:
+        """Return the largest distance code of a sprite's pixels."""
+        key = (sheet.number, sprite.left, sprite.top)
+        if key not in self._farthest:
+            self._farthest[key] = int(self.distances(sheet, sprite).max())
+        return self._farthest[key]
+
     def load(self, sheets: Iterable[ActorSheet]) -> None:
         """Read the sheets of actors, so that later requests need not wait."""
         for sheet in sheets:
@@ -112,6 +124,10 @@ class SpriteStore:
             expanded.flags.writeable = False
             self._expanded[key] = expanded
             self._expanded_bytes += expanded.nbytes
+            self._bytes_since_release += expanded.nbytes
+            if self._bytes_since_release > RELEASE_BYTES:
+                self._bytes_since_release = 0
+                release_free_memory()
             while self._expanded_bytes > EXPANDED_BYTES and len(self._expanded) > 1:
                 self._expanded_bytes -= self._expanded.popitem(last=False)[1].nbytes
             return expanded
