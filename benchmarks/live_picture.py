@@ -154,6 +154,7 @@ def _tour(name: str, viewpoint: str, cache_mb: int) -> None:
     start, start_cpu = time.perf_counter(), time.process_time()
     Prefetch(scene.viewpoint(viewpoint), WIDTH).wait()
     prefetch_s, prefetch_cpu_s = time.perf_counter() - start, time.process_time() - start_cpu
+    prefetched_mb = _resident_mb()
     times, cpu_times = [], []
     for k in range(TOUR_FRAMES):
         progress = k / TOUR_FRAMES
@@ -162,14 +163,19 @@ def _tour(name: str, viewpoint: str, cache_mb: int) -> None:
         picture(scene, viewpoint, _view(Pose(pan, -12.0 + 10.0 * math.sin(40 * progress), zoom)), k / FRAMES_PER_S)
         times.append((time.perf_counter() - start) * 1e3)
         cpu_times.append((time.process_time() - start_cpu) * 1e3)
-    peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
-    now_mb = int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
+    peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
     stalls = sum(t > STALL_MS for t in times)
     print(
         f"{name:>15} {viewpoint:<10} {f'{cache_mb} MB of tiles' if cache_mb else 'all tiles':>14}: prefetched in "
-        f"{prefetch_s:4.1f} s ({prefetch_cpu_s:4.1f} s of processor time), then {now_mb:4.0f} MB, peak {peak_mb:4.0f} MB; longest "
-        f"of {TOUR_FRAMES} frames {max(times):5.1f} ms ({max(cpu_times):5.1f} ms of processor time), {stalls} above {STALL_MS:g} ms"
+        f"{prefetch_s:4.1f} s ({prefetch_cpu_s:4.1f} s of processor time) with {prefetched_mb:4.0f} MB; after {TOUR_FRAMES} frames "
+        f"{_resident_mb():4.0f} MB, peak {peak_mb:4.0f} MB; longest frame {max(times):5.1f} ms "
+        f"({max(cpu_times):5.1f} ms of processor time), {stalls} above {STALL_MS:g} ms"
     )
+
+
+def _resident_mb() -> float:
+    """Return the resident memory of this process in MB."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 1e6
 
 
 def _report_prefetch(scene: str, viewpoint: str, cache_mb: int) -> None:
