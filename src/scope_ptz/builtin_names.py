@@ -6,6 +6,9 @@ GRAMMAR = "grammar"
 CHAT = "chat"
 """The planner that asks a chat model on an OpenAI-compatible server."""
 
+HYBRID_PREFIX = "hybrid:"
+"""The prefix of hybrid planners: in "hybrid:qwen3.5-4b", the grammar plans what it understands, and the model plans the rest."""
+
 GROUND_TRUTH = "ground-truth"
 """Perception that reads the simulator's ground truth."""
 

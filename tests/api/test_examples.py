@@ -13,7 +13,7 @@ from nbclient import NotebookClient
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 EXPECTED = {
-    "ask.py": "I can see 7 cones now, after two pans of 15 degrees to the right.",
+    "ask.py": "I can see 7 cones after two pans of 15 degrees to the right.",
     "batch_over_views.py": "Most workers are in view at 'overview'.",
     "evaluate.py": "Why runs of the grammar failed:",
     "own_camera.py": "Contract violations: none",

@@ -242,5 +242,5 @@ def test_the_answer_names_the_rule_that_held_a_move_back(scope: Scope, tmp_path:
     done = scope("ask", "pan right 30", "--camera", "yard", "--json").json
     (call,) = done["tool_calls"]
     assert call["result"]["held_back_by"] == "the keep-out region 'windows'"
-    assert "The move was held back by the keep-out region 'windows'." in done["answer"]
+    assert "held back by the keep-out region 'windows'" in done["answer"]
     assert "limit" not in done["answer"]

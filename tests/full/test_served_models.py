@@ -26,17 +26,25 @@ pytestmark = [
 GREETING = "Say hello."
 COUNT = "how many balls are visible?"
 SQUARE = "Is there a square?"
+ODD = "florp the lens right by 20"
+"""An instruction that the grammar does not understand, and whose call stands in it."""
+VAGUE = "florp the lens somewhere nice"
+"""One whose call does not stand in it."""
 TOOL_CALLS: dict[str, tuple[str, dict[str, Any]]] = {
     PICTURE_INSTRUCTION: ("take_image", {}),
     TURN_INSTRUCTION: ("adjust_ptz", {"pan_deg": 20}),
     COUNT: ("count_objects", {"description": "balls", "view": "current"}),
     SQUARE: ("query_answer", {"question": SQUARE, "view": "current"}),
+    ODD: ("adjust_ptz", {"pan_deg": 20}),
+    VAGUE: ("adjust_ptz", {"pan_deg": -35}),
 }
 ANSWERS = {
     PICTURE_INSTRUCTION: "The picture is saved.",
     TURN_INSTRUCTION: "The camera has turned.",
     COUNT: "I counted the balls.",
     SQUARE: "I looked for it.",
+    ODD: "The lens is florped.",
+    VAGUE: "It looks nice now.",
 }
 
 
@@ -78,7 +86,7 @@ def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
 
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_RUNS_DIR": str(folder / "runs")}
     with Misbehaving(then=good(teacher)) as server:
-        runs = [["ask", asked, "--scene", SCENE] for asked in (COUNT, SQUARE)]
+        runs = [["ask", asked, "--scene", SCENE] for asked in (COUNT, SQUARE, ODD, VAGUE)]
         for arguments in ([*command, "--planner-url", server.url] for command in (["doctor"], *runs)):
             subprocess.run([sys.executable, "-m", "scope_ptz.cli", *arguments], env=environment, check=True, capture_output=True)
         asked = [r for r in server.requests if r.chat]
@@ -109,6 +117,31 @@ def test_the_agent_runs_on_a_served_checkpoint(scope: Scope, planner_server: Ser
     assert [d["served"]["calls_from"] for d in decisions if d["kind"] == "call"] == ["native"]
     assert all((d["served"]["first_token_s"] is not None) == (stream == "true") for d in decisions)
     assert all(d["usage"]["output_tokens"] > 0 for d in decisions)
+
+
+def hybrid(scope: Scope, server: Served, instruction: str) -> tuple[Any, list[str]]:
+    """Run an instruction with the hybrid planner. Return the result, and the part that planned each step."""
+    done = scope(
+        "ask", instruction, "--scene", SCENE, "--json", "--planner", "hybrid:chat", "--planner-url", server.url,
+        "--planner-model", server.model,
+    )  # fmt: skip
+    records = [json.loads(line) for line in (Path(done.json["run_dir"]) / "trace.jsonl").read_text().splitlines()]
+    return done.json, [record["decision"]["planned_by"] for record in records if record["event"] == "decision"]
+
+
+def test_the_grammar_plans_before_the_model(scope: Scope, planner_server: Served) -> None:
+    said, parts = hybrid(scope, planner_server, COUNT)
+    assert parts == ["grammar", "grammar"]
+    assert "3 balls" in said["answer"]
+    said, parts = hybrid(scope, planner_server, ODD)
+    assert parts == ["model", "model"]
+    assert [(call["name"], call["arguments"]) for call in said["tool_calls"]] == [TOOL_CALLS[ODD]]
+
+
+def test_a_call_of_the_served_model_without_grounds_is_asked_about(scope: Scope, planner_server: Served) -> None:
+    said, parts = hybrid(scope, planner_server, VAGUE)
+    assert (parts, said["outcome"], said["tool_calls"]) == (["model"], "clarification", [])
+    assert "Shall I do this: pan left 35 degrees?" in said["answer"]
 
 
 def test_the_server_passes_the_checks_of_doctor(scope: Scope, planner_server: Served) -> None:

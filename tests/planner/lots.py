@@ -25,6 +25,7 @@ FILES: dict[str, Path] = {
     "highway": _HERE / "more_instructions.jsonl",
     "registers": _HERE / "registers.jsonl",
     "control-room": _HERE / "control_room.jsonl",
+    **{path.stem: path for path in sorted((_HERE / "lots").glob("*.jsonl"))},
 }
 _TOLERANCE = 0.02
 _MOVES = frozenset({"adjust_ptz", "go_home", "go_to_preset", "zoom_to_object", "track_object"})
@@ -101,7 +102,15 @@ def _moves_alike(expected: dict[str, Any], call: PlannedCall) -> bool:
 
 
 def _same_arguments(expected: dict[str, Any], arguments: dict[str, Any]) -> bool:
+    expected, arguments = _with_factor(expected), _with_factor(arguments)
     return expected.keys() == arguments.keys() and all(_same(value, arguments[key]) for key, value in expected.items())
+
+
+def _with_factor(arguments: dict[str, Any]) -> dict[str, Any]:
+    """Return arguments with a change of zoom in per cent as a factor, which has the same effect."""
+    if not isinstance(percent := arguments.get("zoom_percent"), int | float):
+        return arguments
+    return {**{name: value for name, value in arguments.items() if name != "zoom_percent"}, "zoom_factor": 1 + percent / 100}
 
 
 def _same(expected: Any, value: Any) -> bool:

@@ -17,11 +17,18 @@ _START = Pose()
 
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
-    that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said."""
+    that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
+    ``simulated``: whether the camera is simulated."""
 
     def __init__(
-        self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = _START, lands: Pose | None = None
+        self,
+        looks: Iterable[Any] = (),
+        fail: dict[str, int] | None = None,
+        pose: Pose = _START,
+        lands: Pose | None = None,
+        simulated: bool = False,
     ) -> None:
+        self.simulated = simulated
         self.lands = lands
         self.looks = list(looks)
         self.fail = dict(fail or {})
@@ -82,9 +89,8 @@ class Stage:
 
     async def _run(self, instruction: str, conversation: tuple[PastTurn, ...]) -> tuple[Finish, tuple[Exchange, ...]]:
         planner = GrammarPlanner()
-        state = State(
-            instruction=instruction, briefing=Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS), conversation=conversation
-        )
+        briefing = Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS, simulated=self.simulated)
+        state = State(instruction=instruction, briefing=briefing, conversation=conversation)
         for _ in range(300):
             decision = await planner.step(state)
             if isinstance(decision, Finish):

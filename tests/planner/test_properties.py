@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.english.grammar.numbers import read_number
-from scope_ptz.planner.grammar.lexing.vocabulary import expand, vocabulary
+from scope_ptz.planner.grammar.lexing.lexicon import phrases
 from scope_ptz.planner.plan import plan
 from scope_ptz.tools.registry import TOOLS
 
@@ -35,7 +35,7 @@ ONES = [
     "nineteen",
 ]
 TENS = ["_", "_", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"]
-PHRASES = sorted({" ".join(expand(pattern)[0]).replace(" s ", "'s ") for patterns in vocabulary().values() for pattern in patterns})
+PHRASES = sorted(" ".join(words) for words in phrases())
 WORDS = st.sampled_from([*PHRASES, "20", "15.5", "cones", "the red car", "gate", ",", "and", "then", "?", ".", "-3", "2x", "50%"])
 
 

@@ -115,8 +115,8 @@ def test_going_to_the_winner() -> None:
 
 
 def test_moves_are_reported_with_the_pose_and_the_clamp() -> None:
-    assert "Panned right 20 degrees; the camera is at pan 20.0, tilt 0.0, zoom 1.0x." in Stage().run("pan right 20").text
-    assert "tilt limit cut the move short" in Stage().run("tilt up 80").text
+    assert "I panned right 20 degrees; the camera is now at pan 20.0, tilt 0.0, zoom 1.0x." in Stage().run("pan right 20").text
+    assert "as far as the tilt limit allows" in Stage().run("tilt up 80").text
 
 
 def test_coming_back_undoes_the_moves() -> None:

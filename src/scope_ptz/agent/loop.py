@@ -182,7 +182,7 @@ class _Episode:
                 frame=await agent.images.save_frame(frame) if agent.snapshots else None,
             )
         )
-        return Briefing(presets=presets, pose=self.start, limits=info.limits)
+        return Briefing(presets=presets, pose=self.start, limits=info.limits, simulated=info.simulated)
 
     async def _steps(self, briefing: Briefing) -> RunEnd:
         budgets, tools = self.agent.budgets, tuple(self.agent.tools.schemas())

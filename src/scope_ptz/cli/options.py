@@ -139,7 +139,7 @@ class ModelFlags:
         str | None,
         typer.Option(
             "--planner",
-            help="Planner: grammar (default), chat, a model, or a plug-in; see `scope models`.",
+            help="Planner: grammar (default), chat, a model, hybrid:MODEL, or a plug-in; see `scope models`.",
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None

@@ -22,7 +22,8 @@ PLURALS: Mapping[str, str] = MappingProxyType({one: many for many, one in SINGUL
 _INVARIANT = frozenset({
     "bus", "grass", "gas", "glass", "press", "sheep", "deer", "series", "traffic", "vms", "this", "is", "its", "was", "has", "does",
     "chassis", "cctv", "fencing", "scaffolding", "yes", "lens", "cross", "bass", "pass", "less", "across", "cattle", "machinery",
-    "equipment", "luggage", "furniture", "compass", "canvas", "campus", "bypass", "aircraft", "various", "as", "us",
+    "equipment", "luggage", "furniture", "compass", "canvas", "campus", "bypass", "aircraft", "various", "as", "us", "hi-vis",
+    "ppe",
 })  # fmt: skip
 """Words that end in "s" but are not plurals, and words without a plural form."""
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, CHAT, GRAMMAR
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, CHAT, GRAMMAR, HYBRID_PREFIX
 from scope_ptz.entry_points import PERCEPTION, PLANNERS, find, installed, normalised
 from scope_ptz.errors import ConfigError, InputError, UnknownNameError
 from scope_ptz.factory.model_specs import ModelOptions, ResolvedPair, ResolvedPerception, ResolvedPlanner
@@ -58,12 +59,14 @@ class ModelResolver:
             planner, perception = read_pair(self.registry, options.pair)
         planner = planner or (CHAT if options.planner_url or options.planner_model else GRAMMAR)
         perception = perception or (CHAT_BACKEND if options.perception_url or options.perception_model else BUILT_IN_PERCEPTION[0])
-        one_model = planner == perception
+        one_model = planner.removeprefix(HYBRID_PREFIX) == perception
         resolved = await self._planner(planner, sees=one_model)
         return ResolvedPair(resolved, self._with_router(await self._perception(perception, resolved if one_model else None)))
 
     async def _planner(self, name: str, *, sees: bool) -> ResolvedPlanner:
         options = self.options
+        if name.startswith(HYBRID_PREFIX):
+            return await self._hybrid(name.removeprefix(HYBRID_PREFIX), sees=sees)
         if name == GRAMMAR:
             if options.planner_url or options.planner_model or options.planner_options or options.planner_key_file:
                 raise InputError(
@@ -80,6 +83,16 @@ class ModelResolver:
         endpoint = await with_served_name(endpoint, served, model, "--planner-model")
         model = model or registered_model(self.registry, endpoint.model, "planner")
         return ResolvedPlanner(model.name if model else endpoint.model, endpoint, self._chat_options(model, sees=sees), model)
+
+    async def _hybrid(self, model: str, *, sees: bool) -> ResolvedPlanner:
+        """Return the hybrid planner whose language model or plug-in has this name."""
+        if model in ("", GRAMMAR) or model.startswith(HYBRID_PREFIX):
+            raise InputError(
+                f"'{HYBRID_PREFIX}{model}' names no language model. Name the one that plans what the grammar does not understand, "
+                f"for example {HYBRID_PREFIX}qwen3.5-4b, or {HYBRID_PREFIX}{CHAT} with --planner-url."
+            )
+        resolved = await self._planner(model, sees=sees)
+        return replace(resolved, name=f"{HYBRID_PREFIX}{resolved.name}", is_hybrid=True)
 
     def _is_plugin_planner(self, name: str) -> bool:
         """Return whether the name is that of a plug-in. Built-in and registered names take precedence."""
@@ -250,6 +263,8 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
 
 def _role_name(registry: Registry, name: str, role: Role) -> str:
     """Return the name of the built-in, registered model or plug-in for a role."""
+    if role == "planner" and name.startswith(HYBRID_PREFIX):
+        return HYBRID_PREFIX + _role_name(registry, name.removeprefix(HYBRID_PREFIX), role)
     built_in, group = ((GRAMMAR,), PLANNERS) if role == "planner" else (BUILT_IN_PERCEPTION, PERCEPTION)
     if name in built_in:
         return name

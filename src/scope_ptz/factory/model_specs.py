@@ -52,6 +52,7 @@ class ResolvedPlanner:
         model: The registry's entry; None for a model that is not registered.
         plugin: The spec that the factory of a plug-in receives; None for other planners.
         instance: An existing planner that the caller passed. All other fields except the name are then None.
+        is_hybrid: Whether the grammar plans what it understands, and the chat model or plug-in plans only the rest.
     """
 
     name: str
@@ -60,6 +61,7 @@ class ResolvedPlanner:
     model: Model | None = None
     plugin: PlannerSpec | None = None
     instance: Planner | None = None
+    is_hybrid: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,6 +81,10 @@ def make_planner(resolved: ResolvedPlanner) -> Planner:
     """
     if resolved.instance is not None:
         return resolved.instance
+    if resolved.is_hybrid:
+        from scope_ptz.planner.hybrid import HybridPlanner
+
+        return HybridPlanner(make_planner(replace(resolved, is_hybrid=False)), resolved.name)
     if resolved.plugin is not None:
         return make_plugin_planner(resolved.plugin)
     if resolved.endpoint is None:

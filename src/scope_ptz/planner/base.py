@@ -78,11 +78,17 @@ class PastTurn(_Model):
 
 
 class Briefing(_Model):
-    """The facts about the camera that the planner receives when a run starts."""
+    """The facts about the camera that the planner receives when a run starts.
+
+    Attributes:
+        simulated: Whether the camera is simulated. A planner asks before it moves a real camera for a reason that the user did not
+            give.
+    """
 
     presets: tuple[str, ...]
     pose: Pose
     limits: Limits
+    simulated: bool = False
 
 
 class State(_Model):
@@ -142,6 +148,8 @@ class CallTools(_Model):
         reasoning: The planner's reasoning, kept in traces only.
         opened: Whether an external agent fetched the picture that it was offered; None for planners that receive the pictures
             with each request.
+        planned_by: The part of a hybrid planner that made the decision: "grammar", "model", or "confirmed" for calls that the user
+            confirmed. None for other planners.
     """
 
     kind: Literal["call"] = "call"
@@ -151,6 +159,7 @@ class CallTools(_Model):
     reasoning: str = ""
     served: Served | None = None
     opened: bool | None = None
+    planned_by: str | None = None
 
 
 class Finish(_Model):
@@ -158,6 +167,7 @@ class Finish(_Model):
 
     Attributes:
         opened: See ``CallTools``.
+        planned_by: See ``CallTools``.
     """
 
     kind: Literal["answered", "clarification", "refused"]
@@ -166,6 +176,7 @@ class Finish(_Model):
     reasoning: str = ""
     served: Served | None = None
     opened: bool | None = None
+    planned_by: str | None = None
 
 
 Decision = CallTools | Finish

@@ -102,3 +102,18 @@ def test_runs_without_perception_calls_have_no_perception_times() -> None:
     assert current["looks"] == 0
     parts = ("eyes_median", "eyes_p95", "ratio", "capture_median", "capture_p95", "call_median")
     assert [unmarked(current[name]) for name in parts] == [None] * len(parts)
+
+
+def test_a_report_states_which_part_of_a_hybrid_planner_planned() -> None:
+    first, second, *_ = facts(2)
+    by_grammar = trial(first, steps=2, planned_by={"grammar": 2}, timings=Timings(planner_s=0.01, total_s=1.0))
+    by_both = trial(second, steps=2, planned_by={"model": 2}, timings=Timings(planner_s=3.0, total_s=4.0))
+    made = build_report([timed("hybrid:qwen3-4b", by_grammar, by_both)], load_registry())
+    told = row(made, "latency_hybrid", "hybrid:qwen3-4b + moondream3")
+    assert (told["grammar_steps"], told["model_steps"], told["without_model"]) == (2, 2, 0.5)
+    assert (told["grammar_step_median"], told["model_step_median"]) == pytest.approx((0.005, 1.5))
+
+
+def test_other_trials_are_stored_without_the_parts() -> None:
+    assert "planned_by" not in trial(facts(1)[0]).model_dump()
+    assert all(t.key != "latency_hybrid" for t in build_report([timed("qwen3-4b", trial(facts(1)[0]))], load_registry()).tables)

@@ -21,7 +21,7 @@ def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
     if at >= len(words):
         return None, at
     text, after = words[at].text, [w.text for w in words[at + 1 : at + 3]]
-    if text[0].isdigit():
+    if text[0].isdecimal():
         value = float(text.replace(",", ""))
         return (-value if re.search(r"(^|\s)-$", words[at].gap) else value), at + 1
     if text == "half" and after == ["a", "dozen"]:

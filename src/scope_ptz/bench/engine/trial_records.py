@@ -130,6 +130,7 @@ def _trace_fields(trace: Trace) -> dict[str, Any]:
         "outcome": ended.outcome if ended else None,
         "answer": ended.text if ended else "",
         "steps": ended.steps if ended else len(trace.decisions),
+        "planned_by": dict(Counter(d.decision.planned_by for d in trace.decisions if d.decision.planned_by is not None)),
         "tool_calls": dict(Counter(c.outcome.call.name for c in trace.calls if c.fault != "skipped")),
         "bad_calls": sum(c.fault == "bad_call" for c in trace.calls),
         "perception_failures": sum(c.fault == "perception" for c in trace.calls),

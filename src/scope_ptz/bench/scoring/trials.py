@@ -104,6 +104,7 @@ class Trial(_Record):
         outcome: How the run ended; None if it was interrupted.
         answer: The agent's final answer.
         steps: Number of decisions that the planner made.
+        planned_by: Number of decisions by part of a hybrid planner ("grammar", "model"); empty for other planners.
         tool_calls: Number of calls by tool, including failed calls.
         bad_calls: Number of calls with invalid arguments or to unknown tools.
         perception_failures: Number of calls that failed because perception failed.
@@ -129,6 +130,7 @@ class Trial(_Record):
     outcome: str | None
     answer: str
     steps: Count = 0
+    planned_by: dict[str, Count] = {}
     tool_calls: dict[str, Count] = {}
     bad_calls: Count = 0
     perception_failures: Count = 0
@@ -140,6 +142,12 @@ class Trial(_Record):
     looks: tuple[ObservationTime, ...] = ()
     judgements: tuple[Judgement, ...] = ()
     labels: tuple[Label, ...] = ()
+
+    @model_serializer(mode="wrap")
+    def _without_empty_parts(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out the parts of a planner that has none, so that its trials can also be read by older versions."""
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if name != "planned_by" or value}
 
 
 class ModelCard(_Record):

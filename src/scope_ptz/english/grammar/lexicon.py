@@ -48,6 +48,8 @@ class Lexicon:
 @lru_cache(maxsize=CACHE_SIZE)
 def singular_phrase(phrase: str) -> str:
     """Return the phrase with its last word in the singular."""
+    if not phrase.strip():
+        return phrase
     *first, last = phrase.split()
     return " ".join([*first, english.singular(last)])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from anyio import to_thread
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import TruthAnswer
     from scope_ptz.perception.ground_truth.view import Thing, View
 
-GROUND_TRUTH_VERSION = 1
+GROUND_TRUTH_VERSION = 2
 """Version of ground-truth perception, which traces record. It increases when the same view and request give another reply."""
 
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
@@ -108,6 +108,7 @@ class GroundTruthPerception(Perception):
     def _answer(self, frame: Frame, question: str) -> TruthAnswer:
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.language import parse_question
+        from scope_ptz.perception.ground_truth.unknown_words import unknown_nouns
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
@@ -116,7 +117,10 @@ class GroundTruthPerception(Perception):
             raise NotUnderstoodError(
                 f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
             )
-        return answer(view, parsed)
+        reply = answer(view, parsed)
+        if reply.text.startswith(_ABSENCES) and (unknown := unknown_nouns(view, parsed)):
+            raise NotUnderstoodError(f"I did not understand {_quoted(unknown)} in the question. Name a kind of thing.")
+        return reply
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
         from scope_ptz.perception.ground_truth.language import is_description, parse_description
@@ -132,9 +136,16 @@ class GroundTruthPerception(Perception):
                 f"The description '{description}' is not understood, because it is not a noun phrase. Name the things to find."
             )
         if not things and (unknown := unknown_nouns(view, parsed)):
-            quoted = english.listing([f"'{words}'" for words in unknown])
-            raise NotUnderstoodError(f"I did not understand {quoted} in the description. Name a kind of thing.")
+            raise NotUnderstoodError(f"I did not understand {_quoted(unknown)} in the description. Name a kind of thing.")
         return things
+
+
+_ABSENCES = ("There is no ", "There are no ", "I cannot tell: there is no ", "I cannot tell: there are no ")
+"""The beginnings of answers that state that something is absent."""
+
+
+def _quoted(phrases: Sequence[str]) -> str:
+    return english.listing([f"'{words}'" for words in dict.fromkeys(phrases)])
 
 
 def _ids(things: list[Thing]) -> str:

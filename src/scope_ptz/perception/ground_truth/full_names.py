@@ -6,6 +6,7 @@ The parser reads such a name as a noun with a property, but the scene may state 
 from __future__ import annotations
 
 from scope_ptz import english
+from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.view import Thing, View
 
@@ -24,9 +25,9 @@ def named_in_full(view: View, phrase: tree.Phrase) -> list[Thing]:
 
 def _words(phrase: tree.Phrase) -> set[str]:
     """Return all words of a phrase; an empty set if the phrase states no property, or more than a name can."""
-    if not phrase.tests or phrase.order is not None or phrase.ordinal is not None:
+    if not (phrase.tests or phrase.ordinal) or phrase.order is not None:
         return set()
-    words = set(phrase.words)
+    words = {*phrase.words, *(word for word, value in ORDINALS.items() if value == phrase.ordinal)}  # "the Second Chance sign"
     for test in phrase.tests:
         match test:
             case tree.Has(what=what) | tree.Relation(other=what) if len(what.phrases) == 1 and not what.phrases[0].tests:

@@ -131,6 +131,8 @@ def rank_key(key: tree.OrderKey) -> Callable[[Thing], float]:
         "furthest": lambda t: -t.distance_m,
         "biggest": lambda t: -_diagonal_m(t),
         "smallest": _diagonal_m,
+        "looks biggest": lambda t: -float(pixels(t)),
+        "looks smallest": lambda t: float(pixels(t)),
         "tallest": lambda t: -float(t.high_m[2] - t.low_m[2]),
         "widest": lambda t: -float(max(t.high_m[:2] - t.low_m[:2])),
     }

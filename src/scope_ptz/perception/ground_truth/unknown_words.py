@@ -13,13 +13,16 @@ from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import FILLERS, IGNORABLE
 from scope_ptz.perception.ground_truth.view import View
 
+_PRONOUNS = frozenset({("it",), ("them",)})
+"""Pronouns without a thing that they refer to. A question about a picture has no earlier sentence."""
 
-def unknown_nouns(view: View, description: tree.Description) -> list[str]:
-    """Return the noun phrases of a description that have no noun that the lexicon, the scene or common English knows.
+
+def unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[str]:
+    """Return the noun phrases of a description or question that have no noun that the lexicon, the scene or common English knows.
 
     Args:
         view: The view, whose scene adds its own nouns and the words of its facts.
-        description: The parsed description.
+        parsed: The parsed description or question.
 
     Returns:
         The words of each phrase, in order.
@@ -28,10 +31,13 @@ def unknown_nouns(view: View, description: tree.Description) -> list[str]:
     known = english.COLOURS | FILLERS | IGNORABLE | stated
     return [
         " ".join(phrase.words)
-        for phrase in _phrases(description)
-        if not nouns_in(phrase.words, view.nouns)
-        and not is_common_noun(" ".join(phrase.words))
-        and not any(word in known or english.cardinal(word) is not None for word in phrase.words)
+        for phrase in _phrases(parsed)
+        if phrase.words in _PRONOUNS
+        or (
+            not nouns_in(phrase.words, view.nouns)
+            and not is_common_noun(" ".join(phrase.words))
+            and not any(word in known or english.cardinal(word) is not None for word in phrase.words)
+        )
     ]
 
 

@@ -1,7 +1,8 @@
 """The built-in planner: a grammar for camera instructions and an interpreter. It needs no model.
 
-``lexing`` splits text into lexemes, ``parsing`` builds the steps of ``instruction_tree`` from them, ``binding`` resolves the names
-in the steps, and ``execution`` runs the steps against the history.
+``lexing`` splits text into words with their classes, ``parsing`` reads clauses and builds the steps of ``instruction_tree``,
+``binding`` resolves the names in the steps, ``consistency`` compares the steps with the instruction, and ``execution`` runs them
+against the history.
 
 Names are imported on first use, so that ``understand`` can be used without loading the planner class.
 """

@@ -176,6 +176,14 @@ class Read:
 
 
 @dataclass(frozen=True, slots=True)
+class LookCloser:
+    """Zoom in on an object, ask a question about it, and put the camera back."""
+
+    thing: Thing
+    question: str
+
+
+@dataclass(frozen=True, slots=True)
 class ZoomTo:
     """Zoom in on an object."""
 
@@ -306,6 +314,8 @@ class WhichPreset:
     Attributes:
         go: Whether to go to that preset afterwards.
         any_of: Whether to report which presets show any of the objects, instead of the preset with the most.
+        yes_no: Whether the question is whether any of the presets shows any of the objects.
+        rank: The requested place in the order: 1 for the most, 2 for the second most.
     """
 
     thing: Thing
@@ -313,6 +323,8 @@ class WhichPreset:
     places: tuple[PresetRef, ...] = ()
     go: bool = False
     any_of: bool = False
+    yes_no: bool = False
+    rank: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,12 +337,53 @@ class FirstWith:
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """Compare the counts of two descriptions in one view."""
+    """Compare the counts of two descriptions in one view.
+
+    Attributes:
+        yes_no: Whether the question is whether there are more (or fewer) of the first than of the second.
+    """
 
     first: Thing
     second: Thing
     comparison: Comparison = "more"
     view: View | None = None
+    yes_no: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """One number of a calculation: how many objects there are at a preset or, if ``place`` is None, in the current position."""
+
+    thing: Thing
+    place: PresetRef | None = None
+    view: View | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Total:
+    """Count objects of several kinds, or at several presets, and add the counts."""
+
+    parts: tuple[Tally, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Count twice, and report how many more objects there are in the first count than in the second."""
+
+    first: Tally
+    second: Tally
+
+
+@dataclass(frozen=True, slots=True)
+class RankCounts:
+    """Count objects of several kinds, or at several presets, and list them in the order of their counts.
+
+    Attributes:
+        first: Whether the list begins with the kind or preset with the most ("more") or the fewest objects.
+    """
+
+    parts: tuple[Tally, ...]
+    first: Comparison = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -396,7 +449,8 @@ class Unclear:
 Step = (
     Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
     | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | FirstWith | Compare | BeforeAfter | Sweep | Forbid | Report
-    | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | Mention | Rescope | Unclear
+    | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | LookCloser | Total
+    | Difference | RankCounts | Mention | Rescope | Unclear
 )  # fmt: skip
 
 

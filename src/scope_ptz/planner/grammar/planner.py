@@ -5,11 +5,14 @@ from __future__ import annotations
 from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
+from scope_ptz.planner.confirmations import yes_or_no
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.execution.camera_history import position_history
+from scope_ptz.planner.grammar.execution.closer_look import offer_text, offered
 from scope_ptz.planner.grammar.execution.program import Program
+from scope_ptz.planner.grammar.instruction_tree import Forbid, LookCloser, Thing
 
-GRAMMAR_VERSION = "2"
+GRAMMAR_VERSION = "3"
 """Version of the plans, in traces and run cards. It is raised when an instruction can get another plan. Version 1 had no number."""
 
 
@@ -28,15 +31,32 @@ class GrammarPlanner(Planner):
 
 def decide(state: State) -> Decision:
     """Return the next decision, which depends only on the state."""
-    meaning = understand(state.instruction, state.briefing.presets, state.conversation)
+    return decide_on(meaning_of(state), state)
+
+
+def meaning_of(state: State) -> Understanding:
+    """Return the meaning of an instruction, which may be the answer to an offer to go closer."""
+    offer = offered(state.conversation[-1].reply) if state.conversation else None
+    if offer is not None and (reply := yes_or_no(state.instruction)) is not None:
+        thing, question = offer
+        return Understanding((LookCloser(Thing(thing), question),) if reply == "yes" else (Forbid(any_move=True),))
+    return understand(state.instruction, state.briefing.presets, state.conversation)
+
+
+def decide_on(meaning: Understanding, state: State) -> Decision:
+    """Return the next decision for an instruction whose meaning is already known."""
     if meaning.refusal:
         return Finish(kind="refused", text=meaning.refusal)
     if meaning.clarification:
         return Finish(kind="clarification", text=meaning.clarification)
-    program = Program(state.briefing.limits, state.briefing.pose, positions=position_history(state.conversation))
+    briefing = state.briefing
+    positions = position_history(state.conversation)
+    program = Program(briefing.limits, briefing.pose, positions=positions, may_go_closer=briefing.simulated)
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
     call = _next_call(program, meaning, outcomes)
     if call is None:
+        if (offer := program.offer) is not None:
+            return Finish(kind="clarification", text=f"{program.answer()} {offer_text(offer)}")
         return Finish(kind="answered", text=program.answer())
     tool, arguments = call
     return CallTools(calls=(ToolCall(id=f"call-{len(outcomes) + 1}", name=tool, arguments=arguments),))

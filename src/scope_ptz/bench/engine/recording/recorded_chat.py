@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import Any
+from typing import Any, cast
 
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.chat_replies import ChatReply
@@ -27,8 +27,12 @@ class Exchanges:
 def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
     """Return a copy of a planner that records its server exchanges. The copy shares connections and state with the original.
 
-    A planner without a server is returned unchanged.
+    A planner without a server is returned unchanged. A hybrid planner asks the planner in its attribute ``model``.
     """
+    if isinstance(model := getattr(planner, "model", None), Planner):
+        hybrid: Any = copy(planner)
+        hybrid.model = recorded(model, exchanges)
+        return cast(Planner, hybrid)
     if not isinstance(planner, ChatPlanner):
         return planner
     recording = copy(planner)

@@ -31,7 +31,7 @@ TRIAL = "trial"
 MAX_CACHED = 4096
 """Maximum number of trials that are kept in memory, so that reading a log again does not execute its checks again."""
 _COMPARED = (
-    "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "tool_calls", "bad_calls",
+    "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "planned_by", "tool_calls", "bad_calls",
     "perception_failures", "server_events", "input_tokens", "output_tokens", "timings", "looks",
 )  # fmt: skip
 """Fields of a stored trial that are compared with the recomputed one, the most important first."""

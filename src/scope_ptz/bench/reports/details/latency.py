@@ -47,7 +47,10 @@ def latency_section(runs: Sequence[ReportRun]) -> Section:
     scored = [run for run in runs if run.scored_trials]
     pairs = [(run, timing_run(run, scored)) for run in pairs_of(scored)]
     sources = [source for _, source in pairs]
-    tables = (_stage_table(scored), _planner_table(pairs), _perception_table(pairs), _view_table(sources))
+    tables: tuple[ReportTable, ...] = (_stage_table(scored), _planner_table(pairs), _perception_table(pairs), _view_table(sources))
+    tables += (
+        (_hybrid_table(hybrid),) if (hybrid := [run for run in scored if any(t.planned_by for t in run.scored_trials)]) else ()
+    )
     contended = [run.label for run in sources if run.evaluation.card.contended]
     text = [
         "All values are seconds of wall-clock time; concurrent work counts once. The values of a stage cover the trials that used "
@@ -92,6 +95,28 @@ def _stage_table(runs: Sequence[ReportRun]) -> ReportTable:
             cells += [median(seconds), p95(seconds)]
         rows.append((*cells, median(stage_seconds(run, "first_token_s")), mean_tool_calls(run.scored_trials)))
     return ReportTable("latency_stages", "By stage (seconds per trial)", tuple(columns), tuple(rows))
+
+
+def _hybrid_table(runs: Sequence[ReportRun]) -> ReportTable:
+    """Return the table that states which part of a hybrid planner planned the steps, and how long it took."""
+    columns = (
+        Column("run", "Run"),
+        Column("grammar_steps", "Steps by the grammar", "count"),
+        Column("model_steps", "Steps by the model", "count"),
+        Column("without_model", "Trials without the model", "share"),
+        Column("grammar_step_median", "Seconds per step without the model, median", "seconds"),
+        Column("model_step_median", "Seconds per step with the model, median", "seconds"),
+    )
+    rows = []
+    for run in runs:
+        trials = [trial for trial in run.scored_trials if trial.planned_by]
+        with_model = [trial for trial in trials if trial.planned_by.get("model")]
+        without = [trial for trial in trials if not trial.planned_by.get("model")]
+        steps = [sum(trial.planned_by.get(part, 0) for trial in trials) for part in ("grammar", "model")]
+        seconds = [median([t.timings.planner_s / t.steps for t in group if t.steps]) for group in (without, with_model)]
+        rows.append((run.label, *steps, len(without) / len(trials), *seconds))
+    notes = ("The grammar plans the instructions that it understands; the model plans only the others.",)
+    return ReportTable("latency_hybrid", "Hybrid planners", columns, tuple(rows), notes)
 
 
 Timed = tuple[ReportRun, ReportRun]

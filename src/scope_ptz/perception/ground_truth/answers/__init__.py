@@ -6,13 +6,14 @@ from scope_ptz.perception.ground_truth.answers.compared_things import (
     compare,
     compare_count,
     count_kinds,
+    difference,
     how_far,
     most_common,
     which,
 )
 from scope_ptz.perception.ground_truth.answers.counted_things import count, exists
 from scope_ptz.perception.ground_truth.answers.legible_text import read, text_exists
-from scope_ptz.perception.ground_truth.answers.locations import identify, what, where
+from scope_ptz.perception.ground_truth.answers.locations import identify, kind_of, present, what, where
 from scope_ptz.perception.ground_truth.answers.ordered_things import in_order, quarter
 from scope_ptz.perception.ground_truth.answers.scene import describe, happening
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown
@@ -49,6 +50,10 @@ def answer(view: View, question: tree.Question | None) -> TruthAnswer:
             return quarter(view, question)
         case tree.InOrder():
             return in_order(view, question)
+        case tree.Present():
+            return present(view, question)
+        case tree.KindOf():
+            return kind_of(view, question)
         case tree.What():
             return what(view, question)
         case tree.Identify():
@@ -61,6 +66,8 @@ def answer(view: View, question: tree.Question | None) -> TruthAnswer:
             return compare(view, question)
         case tree.CompareCount():
             return compare_count(view, question)
+        case tree.Difference():
+            return difference(view, question)
         case tree.MostCommon():
             return most_common(view, question)
         case tree.Describe():

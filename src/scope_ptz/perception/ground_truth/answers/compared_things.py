@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, definite, none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, metres, name, place, reply, unknown
+from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, EQUAL, FIRST_OF_SEVERAL, definite, none_of, noun
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, metres, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import value_of
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
-from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
+from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _EQUALITY_TOLERANCE = 0.02
@@ -28,18 +28,20 @@ def which(view: View, question: tree.Which) -> TruthAnswer:
         return reply(f"it is the {name(matches[0])} {place(matches[0])}, about {metres(matches[0].distance_m)} away")
     things: list[Thing] = []
     for phrase in options:
-        best = [t for t in find_phrase(view, phrase) if t not in things]
+        best = [t for t in find(view, tree.Description((phrase,))) if t not in things]
         if not best:
             return unknown(f"I cannot tell: {none_of(view, tree.Description((phrase,)))}")
         things.append(best[0])
     ranked = sorted(zip(things, options, strict=True), key=lambda pair: rank_key(question.key)(pair[0]))
     (first, phrase), (second, other) = ranked[:2]
     if _equal(question.key, first, second):
-        return reply(f"{_the(view, phrase)} and {_the(view, other)} are about equal")
+        return reply(f"{_the(view, phrase)} and {_the(view, other)} are about {EQUAL[question.key]}")
     detail = ""
     if question.key in {"nearest", "furthest"}:
-        detail = f": it is about {metres(first.distance_m)} away, {_the(view, other)} about {metres(second.distance_m)}"
-    return reply(f"{_the(view, phrase)} is {COMPARATIVES[question.key]}{detail}")
+        near, far = metres(first.distance_m), metres(second.distance_m)
+        detail = f": it is about {near} away, {_the(view, other)} about {far}" if near != far else ""
+    rank = COMPARATIVES if len(ranked) == 2 else FIRST_OF_SEVERAL
+    return reply(f"{_the(view, phrase)} is {rank[question.key]}{detail}")
 
 
 def _the(view: View, phrase: tree.Phrase) -> str:
@@ -102,6 +104,18 @@ def compare_count(view: View, question: tree.CompareCount) -> TruthAnswer:
     comparative = {"more": "more", "fewer": "fewer"}.get(question.sense)
     statement = f"{comparative} {first} than {second}" if comparative else f"as many {first} as {second}"
     return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
+
+
+def difference(view: View, question: tree.Difference) -> TruthAnswer:
+    """Answer how many more things of one kind there are than of another."""
+    first, second = (len(find(view, what)) for what in (question.first, question.second))
+    more, fewer = (question.first, question.second)
+    a, b = english.counted(first, noun(view, more)), english.counted(second, noun(view, fewer))
+    if first == second:
+        return reply(f"there are equally many: {a} and {b}, so the difference is 0")
+    number, sense = abs(first - second), "more" if first > second else "fewer"
+    kind = noun(view, more, many=number != 1)
+    return reply(f"there {is_or_are(number)} {number} {sense} {kind} than {noun(view, fewer, many=True)}: {a} and {b}")
 
 
 def _most_of(view: View, question: tree.CompareCount) -> TruthAnswer:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import is_unmodelled_background, none_of, noun, predicate_words
+from scope_ptz.perception.ground_truth.answers.restating import none_of, noun, predicate_words, unmodelled_background
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, name, reply, things_with_places, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import has_item
@@ -27,8 +27,8 @@ def with_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> t
 
 def exists(view: View, question: tree.Exists) -> TruthAnswer:
     """Answer whether anything in view matches the description."""
-    if is_unmodelled_background(view, question.what):
-        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
+    if background := unmodelled_background(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing about the {background}")
     matches = find(view, question.what)
     if question.least != 1 or question.most is not None:
         yes = question.least <= len(matches) and (question.most is None or len(matches) <= question.most)
@@ -69,12 +69,12 @@ def there_are(view: View, what: tree.Description, matches: list[Thing]) -> str:
 
 def count(view: View, question: tree.Count) -> TruthAnswer:
     """Answer how many things match the description and the tests."""
-    if is_unmodelled_background(view, question.what):
-        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
+    if background := unmodelled_background(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing about the {background}")
     total = len(find(view, with_tests(question.what, question.tests)))
     if len(question.what.phrases) > 1:
         return reply(f"there {is_or_are(total)} {total} in view: {_each(view, question)}")
-    statement = f"{total} {noun(view, question.what, many=total != 1)}"
+    statement = f"{total or 'no'} {noun(view, question.what, many=total != 1)}"
     if question.tests:
         return reply(f"{statement} {predicate_words(view, question.tests, total)}")
     return reply(f"there {is_or_are(total)} {statement} in view")

@@ -88,16 +88,17 @@ def text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
     """Answer whether there is text on a thing or in view, and quote it."""
     if question.what is None:
         texts: Sequence[TextSighting] = view.texts
-        where = "in view"
+        where, place = "in view", ""
     else:
         things = find(view.for_reading(), question.what)
         if not things:
             return unknown(f"I cannot tell: {none_of(view, question.what)}")
         texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
         where = f"on {definite(view, question.what, plural(question.what))}"
+        place = f" {where}"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
-        return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
+        return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}{place}")
     if texts:
         return unknown(f"there is text {where}, but it is {illegibility(texts)} to read")
     return reply(f"no, there is no text {where}")

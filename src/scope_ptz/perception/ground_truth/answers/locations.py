@@ -6,7 +6,8 @@ from collections import Counter
 
 from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
-from scope_ptz.perception.ground_truth.answers.restating import after_noun, none_of, noun, predicate_words
+from scope_ptz.perception.ground_truth.answers.legible_text import read
+from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, none_of, noun, plural, predicate_words
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     metres,
@@ -17,7 +18,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     things_with_places,
     unknown,
 )
-from scope_ptz.perception.ground_truth.answers.values import UNSEEN, fact_in_view
+from scope_ptz.perception.ground_truth.answers.values import UNSEEN, fact_in_view, value_of
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds
@@ -80,9 +81,23 @@ def what(view: View, question: tree.What) -> TruthAnswer:
         return reply(none_of(view, missing))
     description = with_tests(question.what, question.tests)
     matches = find(view, description)
+    bearer = _bearer(question)
+    bearers = [] if bearer is None else find(view.for_reading(), bearer)
+    if bearers and (not matches or any("sign" in thing.concepts and thing.texts for thing in bearers)):
+        return read(view, tree.Read(bearer))
     if not matches:
         return _no_match(view, question, description)
     return things_in_words(view, question.tests, _by_nearness(view, question.tests, matches))
+
+
+def _bearer(question: tree.What) -> tree.Description | None:
+    """Return the sign of "what is on the sign?"; None for other questions."""
+    match question:
+        case tree.What(
+            what=tree.Description(phrases=(tree.Phrase(words=("thing",)),)), tests=(tree.Relation(kind="on", other=other),)
+        ):
+            return other
+    return None
 
 
 def _is_a_list(description: tree.Description) -> bool:
@@ -126,6 +141,33 @@ def things_in_words(view: View, tests: tuple[tree.Test, ...], matches: list[Thin
         return reply(things_with_places(matches) if len(matches) <= 3 else f"I can see {names(matches)}")
     location = f", {place(matches[0])}" if len(matches) == 1 and not any(isinstance(t, tree.Region) for t in rest) else ""
     return reply(f"{names(matches)} {predicate_words(view, rest, len(matches))}{location}")
+
+
+def present(view: View, question: tree.Present) -> TruthAnswer:
+    """Answer which of the listed things are in view, in the words of the question."""
+    kinds = [tree.Description((phrase,)) for phrase in question.options.phrases]
+    seen = [_any_of(view, kind) for kind in kinds if find(view, kind)]
+    missing = [kind for kind in kinds if not find(view, kind)]
+    if not seen:
+        return reply(none_of(view, question.options))
+    rest = f", but no {english.listing([noun(view, kind, plural(kind)) for kind in missing], 'or')}" if missing else ""
+    return reply(f"I can see {english.listing(seen)}{rest}")
+
+
+def _any_of(view: View, kind: tree.Description) -> str:
+    """Return a kind of thing as the question names it: "a clock", "some clocks"."""
+    return f"some {noun(view, kind, many=True)}" if plural(kind) else english.article(noun(view, kind))
+
+
+def kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
+    """Answer what kind of thing something is: with the kind that the scene states, otherwise with its name."""
+    matches = find(view, question.what)
+    kinds = Counter(kind for t in matches if (kind := value_of(t, ("kind",))) is not None)
+    if kinds.total() < len(matches) or not matches:
+        return what(view, tree.What(question.what))
+    if len(matches) == 1:
+        return reply(f"{as_asked(view, question.what)} is {english.article(next(iter(kinds)))}")
+    return reply(f"I can see {english.listing([english.counted(count, kind) for kind, count in kinds.items()])}")
 
 
 def identify(view: View, question: tree.Identify) -> TruthAnswer:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
@@ -18,13 +19,27 @@ _PRONOUNS = {
     **dict.fromkeys(("anything", "something", "everything"), "thing"),
 }
 SUPERLATIVES = {
-    "left": "left-most", "right": "right-most", "top": "top-most", "bottom": "lowest", "nearest": "nearest",
+    "left": "leftmost", "right": "rightmost", "top": "topmost", "bottom": "lowest", "nearest": "nearest",
     "furthest": "furthest", "biggest": "biggest", "smallest": "smallest", "tallest": "tallest", "widest": "widest",
+    "looks biggest": "biggest-looking", "looks smallest": "smallest-looking",
 }  # fmt: skip
 COMPARATIVES = {
     "left": "further to the left", "right": "further to the right", "top": "higher in the picture",
     "bottom": "lower in the picture", "nearest": "closer", "furthest": "further away", "biggest": "bigger",
-    "smallest": "smaller", "tallest": "taller", "widest": "wider",
+    "smallest": "smaller", "tallest": "taller", "widest": "wider", "looks biggest": "bigger in the picture",
+    "looks smallest": "smaller in the picture",
+}  # fmt: skip
+FIRST_OF_SEVERAL = {
+    "left": "the furthest to the left", "right": "the furthest to the right", "top": "the highest in the picture",
+    "bottom": "the lowest in the picture", "nearest": "the closest", "furthest": "the furthest away", "biggest": "the biggest",
+    "smallest": "the smallest", "tallest": "the tallest", "widest": "the widest",
+    "looks biggest": "the biggest in the picture", "looks smallest": "the smallest in the picture",
+}  # fmt: skip
+EQUAL = {
+    "left": "equally far to the left", "right": "equally far to the right", "top": "equally high in the picture",
+    "bottom": "equally low in the picture", "nearest": "equally far away", "furthest": "equally far away",
+    "biggest": "the same size", "smallest": "the same size", "tallest": "the same height", "widest": "equally wide",
+    "looks biggest": "the same size in the picture", "looks smallest": "the same size in the picture",
 }  # fmt: skip
 _RELATIONS = {
     "left": "to the left of", "right": "to the right of", "above": "above", "below": "below", "front": "in front of",
@@ -35,7 +50,13 @@ _FROM_SIDE = {"left": "from the left", "right": "from the right", "top": "from t
 
 def plural(description: tree.Description) -> bool:
     """Return whether a description is in the plural."""
-    return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in p.words[-1:])
+    return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in _head(p.words)[-1:])
+
+
+def _head(words: Sequence[str]) -> Sequence[str]:
+    """Return the words before "for" or "of": "price card" for "price card for roses"."""
+    end = next((i for i, word in enumerate(words) if word in {"for", "of"} and i), len(words))
+    return words[:end]
 
 
 def noun(view: View, description: tree.Description, many: bool = False) -> str:
@@ -51,6 +72,16 @@ def definite(view: View, description: tree.Description, many: bool = False) -> s
     return english.listing([f"the {_phrase(view, p, plural(tree.Description((p,))))}" for p in description.phrases])
 
 
+def referred(view: View, description: tree.Description) -> str:
+    """Return a description with the articles of the question: "the van", "a white helmet", "grey pipes"."""
+    return english.listing([_with_article(view, phrase) for phrase in description.phrases])
+
+
+def _with_article(view: View, phrase: tree.Phrase) -> str:
+    words = _phrase(view, phrase, plural(tree.Description((phrase,))))
+    return english.article(words) if phrase.article == "a" else f"the {words}" if phrase.article == "the" else words
+
+
 def as_asked(view: View, description: tree.Description) -> str:
     """Return a description with definite articles, in the singular or plural as in the question."""
     return definite(view, description, plural(description))
@@ -61,7 +92,7 @@ def _phrase(view: View, phrase: tree.Phrase, many: bool) -> str:
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
         return " ".join([*_ranked(view, phrase, " ".join(core)), *after, *_tests(view, phrase)])
-    shown = english.plural(" ".join(core)) if many else " ".join(core)
+    shown = english.plural(" ".join(core)) if many and not (after and english.is_plural(after[-1])) else " ".join(core)
     return " ".join([shown, *after, *_tests(view, phrase)])
 
 
@@ -84,7 +115,8 @@ def after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
         case tree.Has(what=what, worn=worn):
-            return f"{'wearing' if worn else 'with'} {_items(what)}"
+            carried = any(p.words[-1] in _PRONOUNS for p in what.phrases)
+            return f"{'wearing' if worn else 'carrying' if carried else 'with'} {_items(what)}"
         case tree.Says(words=words):
             return f'saying "{" ".join(words).upper()}"' if words else "with text"
         case tree.Not(test=tree.Has(what=what)):
@@ -104,16 +136,16 @@ def after_noun(view: View, test: tree.Test) -> str:
 def _plain(view: View, test: tree.Test) -> str:
     match test:
         case tree.Relation(kind=kind, other=other, preposition=preposition):
-            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {as_asked(view, other)}"
+            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {referred(view, other)}"
         case tree.Within(metres=metres, other=other, beyond=beyond):
-            of = f" of {as_asked(view, other)}" if other else ""
+            of = f" of {referred(view, other)}" if other else ""
             return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
         case tree.Between(first=first, second=second):
-            return f"between {as_asked(view, first)}" + ("" if first == second else f" and {as_asked(view, second)}")
+            return f"between {referred(view, first)}" + ("" if first == second else f" and {referred(view, second)}")
         case tree.Region(sides=sides, half=half):
             return region_words(sides, half)
         case tree.Measured(key=key, other=other):
-            return f"{COMPARATIVES[key]} than {as_asked(view, other)}"
+            return f"{COMPARATIVES[key]} than {referred(view, other)}"
         case tree.Faces(side=side):
             return f"facing {side}"
         case tree.Is(words=words):
@@ -122,10 +154,15 @@ def _plain(view: View, test: tree.Test) -> str:
             return ""
 
 
-def _items(what: tree.Description) -> str:
-    return english.listing(
-        [" ".join(p.words) if p.words[-1] in _PRONOUNS else english.article(" ".join(p.words)) for p in what.phrases]
-    )
+def _items(what: tree.Description, count: int = 1) -> str:
+    """Return parts or clothes with their articles. Several people wear "helmets", and one person wears "a helmet"."""
+    return english.listing([_item(" ".join(p.words), p.words[-1] in _PRONOUNS, count) for p in what.phrases])
+
+
+def _item(words: str, is_pronoun: bool, count: int) -> str:
+    if is_pronoun or english.is_plural(words.split()[-1]):
+        return words
+    return english.article(words) if count == 1 else english.plural(words)
 
 
 def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated: bool = False) -> str:
@@ -138,7 +175,9 @@ def _predicate(view: View, test: tree.Test, count: int, negated: bool) -> str:
         case tree.Not(test=inner):
             return _predicate(view, inner, count, not negated)
         case tree.Has(what=what, worn=False):
-            return f"{_verb_form('have', 'has', count, negated)} {_items(what)}"
+            return f"{_verb_form('have', 'has', count, negated)} {_items(what, count)}"
+        case tree.Has(what=what):
+            return f"{_form_of_be(count, negated)} wearing {_items(what, count)}"
         case tree.Says(words=()):
             return f"{_verb_form('bear', 'bears', count, negated)} text that I can read"
         case tree.Says(words=words):
@@ -175,20 +214,22 @@ def region_words(sides: Sequence[str], half: bool) -> str:
 
 def none_of(view: View, description: tree.Description) -> str:
     """Return the statement that nothing matches: "there is no red car in view"."""
+    description = tree.Description(tuple(replace(p, order=None, ordinal=None) for p in description.phrases))
     many = plural(description)
     only_one = len(description.phrases) > 1 and not any(plural(tree.Description((p,))) for p in description.phrases)
     words = english.listing([noun(view, tree.Description((p,)), many and not only_one) for p in description.phrases], "or")
     return f"there {'are' if many and not only_one else 'is'} no {words} in view"
 
 
-def is_unmodelled_background(view: View, description: tree.Description) -> bool:
-    """Return whether a description names a background ("lanes", "sky") that the scene does not model.
+def unmodelled_background(view: View, description: tree.Description) -> str:
+    """Return the background ("lane", "sky") that a description names and the scene does not model; empty for other descriptions.
 
     The background may be visible although the scene does not list it.
     """
     for phrase in description.phrases:
         spans = nouns_in(phrase.words, view.nouns)
-        concept = lexicon().concept(" ".join(phrase.words[slice(*spans[0])])) if spans else None
+        words = " ".join(phrase.words[slice(*spans[0])]) if spans else ""
+        concept = lexicon().concept(words) if words else None
         if concept and lexicon().kinds(concept) & BACKDROP and concept not in view.concepts:
-            return True
-    return False
+            return words
+    return ""

@@ -36,7 +36,8 @@ def name(thing: Thing) -> str:
     """Return the name of a thing, preceded by its colour if the name contains no colour."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
-    shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
+    is_proper = thing.name[:2].isupper() or any(word[:1].isupper() for word in thing.name.split()[1:])  # "Hartley & Sons sign"
+    shown = thing.name if is_proper else thing.name[:1].lower() + thing.name[1:]
     return shown if colour is None or set(english.letters(colour).split()) & set(words) else f"{colour} {shown}"
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import singular_phrase
 from scope_ptz.perception.ground_truth.answers.legible_text import fact_on_signs
-from scope_ptz.perception.ground_truth.answers.restating import as_asked, definite, none_of, noun, plural
+from scope_ptz.perception.ground_truth.answers.restating import as_asked, definite, none_of, noun, plural, unmodelled_background
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, place, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import (
@@ -53,8 +53,9 @@ def ask(view: View, question: tree.Ask) -> TruthAnswer:
     values = [(t, value_of(t, question.attribute)) for t in matches]
     stated = [(t, v) for t, v in values if v is not None]
     if not stated:
-        attribute = " ".join(question.attribute)
-        return unknown(f"I cannot tell: the scene does not say ({attribute} of {as_asked(view, question.what)})")
+        attribute, who = " ".join(question.attribute), as_asked(view, question.what)
+        missing = f"what {who} is {attribute}" if attribute.endswith("ing") else f"the {attribute} of {who}"
+        return unknown(f"I cannot tell: the scene does not state {missing}")
     verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
     if verb == "facing " and all("direction" in t.attributes for t, _ in stated):
         verb = "pointing "
@@ -63,7 +64,9 @@ def ask(view: View, question: tree.Ask) -> TruthAnswer:
         who = definite(view, question.what, many=len(stated) > 1)
         return reply(f"{who} {is_or_are(len(stated))} {verb}{stated[0][1]}")
     if not plural(question.what) and len(stated) <= 4:
-        return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in stated]))
+        things = [f"{t.category} {place(t)}" for t, _ in stated]
+        which = "the" if len(set(things)) == len(things) else "one"
+        return reply(english.listing([f"{which} {thing} is {verb}{v}" for thing, (_, v) in zip(things, stated, strict=True)]))
     return reply(
         f"{len(stated)} {noun(view, question.what, many=True)}: "
         + english.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
@@ -204,4 +207,6 @@ def absent(view: View, subject: tree.Description) -> TruthAnswer:
     """Answer a question about something that is not in view."""
     if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
         return unknown("I cannot tell that from the picture")
-    return unknown(f"I cannot tell: {none_of(view, subject)}")
+    if background := unmodelled_background(view, subject):
+        return unknown(f"I cannot tell: the scene says nothing about the {background}")
+    return reply(none_of(view, subject))

@@ -45,7 +45,7 @@ def yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     if None in answers and True not in answers:
         predicate = english.listing([after_noun(view, t) for t in tests])
         return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {predicate}")
-    choice = _choice(view, tests, things)
+    choice = _choice(view, subject, tests, things)
     if choice is not None:
         return choice
     return _verdict(view, question.scope, subject, tests, things, [t for t, ok in zip(things, answers, strict=True) if ok])
@@ -116,7 +116,9 @@ def _parts(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tr
         if after and nouns_in(last_phrase.words, view.nouns):
             tests[-1] = replace(relation, other=tree.Description((*relation.other.phrases[:-1], replace(last_phrase, words=head))))
             tests.append(tree.Is(after))
-    while len(tests) > 1 and isinstance(tests[0], tree.Region | tree.Relation | tree.Between):
+    while len(tests) > 1 and (
+        isinstance(tests[0], tree.Region | tree.Relation | tree.Between) or (isinstance(tests[0], tree.Has) and not tests[0].worn)
+    ):
         last = replace(last, tests=(*last.tests, tests.pop(0)))
     return tree.Description((*others, last)), tuple(tests)
 
@@ -126,17 +128,23 @@ def _every(answers: Sequence[bool | None]) -> bool | None:
     return False if False in answers else None if None in answers else True
 
 
-def _choice(view: View, tests: Sequence[tree.Test], things: list[Thing]) -> TruthAnswer | None:
+def _choice(view: View, subject: tree.Description, tests: Sequence[tree.Test], things: list[Thing]) -> TruthAnswer | None:
     """Answer "red or white?" by naming the alternative that holds; None if none is known to hold."""
     if len(tests) != 1 or not isinstance(tests[0], tree.Any):
         return None
     options = tests[0].tests
     true_options = [o for o in options if any(holds(view, t, o) for t in things)]
-    if true_options and len(things) == 1:
+    total = len(things)
+    if true_options and total == 1:
         return reply(f"the {name(things[0])} {predicate_words(view, true_options, 1)}")
     if true_options:
         counts = [(sum(holds(view, t, o) is True for t in things), o) for o in true_options]
-        return reply(english.listing([f"{n} of {len(things)} {predicate_words(view, [o], n)}" for n, o in counts]))
+        many = noun(view, subject, many=True)
+        if len(counts) == 1 and counts[0][0] == total:
+            return reply(f"{_all_of(total)} {many} {predicate_words(view, true_options, total)}")
+        (first, option), *rest = counts
+        others = [f"{n} {predicate_words(view, [o], n)}" for n, o in rest]
+        return reply(english.listing([f"{first} of the {total} {many} {predicate_words(view, [option], first)}", *others]))
     fact = _actual_value(view, options[0], things)
     return reply(f"neither: {fact}") if fact else None
 
@@ -160,12 +168,12 @@ def _verdict(
     some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
     share = f"{len(yes)} of the {total} {many} {predicate_words(view, tests, len(yes))}"
     if scope == "none":
-        return reply(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, 1)}")
+        return reply(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, total)}")
     if not yes:
         return _none_of_them(view, subject, tests, things, some=some)
     if len(yes) == total:
         several = total > 1 and len(subject.phrases) == 1
-        every = f"{'both' if total == 2 else f'all {total}'} {many}" if several else _subject_words(view, subject, total)
+        every = f"{_all_of(total)} {many}" if several else _subject_words(view, subject, total)
         return reply(f"yes, {every} {predicate_words(view, tests, total)}")
     if scope == "all" or (plural(subject) and not some):
         return reply(f"no, only {share}")
@@ -173,16 +181,29 @@ def _verdict(
     return reply(f"yes, {share}{where}")
 
 
+def _all_of(total: int) -> str:
+    """Return "both", or "all" with the number of things; numbers up to twelve are words."""
+    return "both" if total == 2 else f"all {english.number_word(total) if total <= _MAX_SPELLED else total}"
+
+
+_MAX_SPELLED = 12
+
+
 def _none_of_them(
     view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], *, some: bool
 ) -> TruthAnswer:
     """Answer no, and state the actual value if it is known. ``some`` is True if the question is about any of the things."""
     total, union = len(things), len(subject.phrases) > 1
+    if total > 1 and not union and len(tests) == 1 and isinstance(tests[0], tree.Not):
+        # Not "none of them does not wear a helmet".
+        return reply(
+            f"no, {_all_of(total)} {noun(view, subject, many=True)} in view {predicate_words(view, [tests[0].test], total)}"
+        )
     fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not union else None
     if fact:
         return reply(f"no, {fact}")
     if some or (total > 1 and not union):
-        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {predicate_words(view, tests, 1)}")
+        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {predicate_words(view, tests, total)}")
     return reply(f"no, {_subject_words(view, subject, total)} {predicate_words(view, tests, total, negated=True)}")
 
 

@@ -11,7 +11,7 @@ from scope_ptz.perception.ground_truth.language import question_tree as tree
 
 _SPECIFIC: tuple[type[Any], ...] = (
     tree.CompareCount, tree.Compare, tree.Which, tree.HowFar, tree.MostCommon, tree.TextExists, tree.Read, tree.IsA, tree.Where,
-    tree.Count, tree.CountKinds, tree.Happening, tree.Quarter, tree.InOrder,
+    tree.Count, tree.CountKinds, tree.Happening, tree.Quarter, tree.InOrder, tree.Present, tree.KindOf, tree.Difference,
 )  # fmt: skip
 """Specific question types, which are preferred to the general ones."""
 
@@ -72,6 +72,9 @@ def _cost_of_node(node: Any, cache: dict[int, float]) -> float:
             total += 3.0 if nouns_in(words) else 0.5
         case tree.Which(options=tree.Description(phrases=(_,))):
             total += 24.0  # one option is no choice: in "who is nearest the van", the van is the reference, not an option
+        case tree.Has(what=tree.Description(phrases=(first, *others))) if first.article != "the":
+            # In "the worker with a clipboard, the clock and the van", the clock is another item of the list.
+            total += 6.0 * any(other.article == "the" for other in others)
         case tree.Order(reference=reference):
             total += 3.0 if reference is not None else 0.0
         case tree.Ask(attribute=words):

@@ -51,6 +51,25 @@ def tests_of(children: Children) -> tuple[tree.Test, ...]:
     return tuple(tests)
 
 
+_ADJECTIVES = english.COLOURS | {
+    "big",
+    "small",
+    "large",
+    "tall",
+    "dark",
+    "light",
+    "bright",
+    "other",
+    "left",
+    "right",
+    "open",
+    "closed",
+}
+"""Words that can stand for a noun phrase after an article: "the red or the blue car"."""
+
+_DEFINITE = frozenset({"the", "these", "those", "its", "their", "his", "her", "your", "my", "both", "all of the", "all the"})
+
+
 class _Predicate(tuple[tree.Test, ...]):
     """The tests of "that is ..." or "is ...?"."""
 
@@ -92,7 +111,11 @@ class NounPhrases:
         return replace(phrase, order=tree.Order(key, tree.Description((other,))))
 
     def nps(self, children: Children) -> tree.Description:
-        """Build a list. The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all items."""
+        """Build a list.
+
+        The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all items. If every item has an
+        article of its own, the modifiers belong to the last item: "the van or the worker with a broom".
+        """
         phrases: list[tree.Phrase] = of_kind(children, tree.Phrase)
         last = phrases[-1]
         spans = nouns_in(last.words)
@@ -102,8 +125,8 @@ class NounPhrases:
         phrases[:-1] = [
             replace(
                 p,
-                words=p.words if nouns_in(p.words) else (*p.words, *noun),
-                tests=p.tests or (() if p.order else last.tests),
+                words=p.words if nouns_in(p.words) or (p.article and not _ADJECTIVES.issuperset(p.words)) else (*p.words, *noun),
+                tests=p.tests or (() if p.order or (p.article and last.article) else last.tests),
             )
             for p in phrases[:-1]
         ]
@@ -151,7 +174,10 @@ class NounPhrases:
         for test in [t for t in tests if isinstance(t, tree.Order)]:
             order = test
             tests.remove(test)
-        return tree.Phrase(tuple(core), tuple(tests), order, ordinal, amount)
+        leading = tokens_of(children, "DET", "A", "THAT")[:1]
+        article: Any = "the" if leading and (leading[0].type == "THAT" or leading[0] in _DEFINITE) else ""
+        article = "a" if leading and leading[0].type == "A" else article
+        return tree.Phrase(tuple(core), tuple(tests), order, ordinal, amount, article)
 
     def loose(self, children: Children) -> tree.Test:
         words = tuple(str(t) for t in tokens_of(children, "W"))

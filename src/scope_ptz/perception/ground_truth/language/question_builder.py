@@ -146,6 +146,9 @@ class QuestionBuilder(NounPhrases):
         with_word = value_of(children, "WITH")
         return tree.Ask(("wearing",) if with_word is None else ("carrying",), descriptions(children)[0])
 
+    def ask_carried(self, children: Children) -> tree.Ask:
+        return tree.Ask(("carrying",), descriptions(children)[0])
+
     def ask_direction(self, children: Children) -> tree.Ask:
         return tree.Ask(("direction",), descriptions(children)[0])
 
@@ -183,7 +186,9 @@ class QuestionBuilder(NounPhrases):
         return tree.Quarter(descriptions(children)[0])
 
     def in_order(self, children: Children) -> tree.InOrder:
-        return tree.InOrder(cast("tree.OrderKey", value_of(children, "RANKBY") or "left"), descriptions(children)[0])
+        criterion = value_of(children, "INORDER") or ""
+        usual = "nearest" if "distance" in criterion else "most" if "number" in criterion or "many" in criterion else "left"
+        return tree.InOrder(cast("tree.OrderKey", value_of(children, "RANKBY") or usual), descriptions(children)[0])
 
     def what_at(self, children: Children) -> tree.What:
         who = bool(tokens_of(children, "WHO"))
@@ -192,11 +197,19 @@ class QuestionBuilder(NounPhrases):
     def what_that(self, children: Children) -> tree.What:
         return tree.What(descriptions(children)[0], tests_of(children))
 
-    def kind_is(self, children: Children) -> tree.Identify:
+    def present(self, children: Children) -> tree.Present:
+        return tree.Present(descriptions(children)[0])
+
+    def kind_seen(self, children: Children) -> tree.KindOf:
+        what = descriptions(children)[0]
+        tests = tests_of(children)
+        return tree.KindOf(tree.Description(tuple(replace(p, tests=(*p.tests, *tests)) for p in what.phrases)))
+
+    def kind_is(self, children: Children) -> tree.KindOf:
         kind, description = descriptions(children)
         spans = nouns_in(kind.phrases[0].words)
         noun = kind.phrases[0].words[spans[0][0] : spans[0][1]] if spans else ()
-        return tree.Identify(
+        return tree.KindOf(
             tree.Description(
                 tuple(replace(p, words=(*p.words[:-1], *noun)) if noun and p.words[-1] == "one" else p for p in description.phrases)
             )
@@ -232,6 +245,14 @@ class QuestionBuilder(NounPhrases):
         """Build "are there more vans than cars, fewer, or just as many?"."""
         first, second = descriptions(children)
         return tree.CompareCount(self._sense(children[:3]), first, second, which=True)
+
+    def compare_numbers(self, children: Children) -> tree.CompareCount:
+        first, second = descriptions(children)
+        return tree.CompareCount("more", first, second, which=True)
+
+    def difference(self, children: Children) -> tree.Difference:
+        first, second = descriptions(children)
+        return tree.Difference(first, second)
 
     def more_of(self, children: Children) -> tree.CompareCount:
         options = descriptions(children)[0].phrases

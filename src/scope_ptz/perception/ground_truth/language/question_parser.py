@@ -10,6 +10,7 @@ from lark.exceptions import LarkError
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.perception.ground_truth.language.ambiguity import cheapest
 from scope_ptz.perception.ground_truth.language.earley import EarleyGrammar, readings
+from scope_ptz.perception.ground_truth.language.followups import without_first_part
 from scope_ptz.perception.ground_truth.language.question_builder import QuestionBuilder
 from scope_ptz.perception.ground_truth.language.question_tree import Description, Exists, Phrase, Question
 from scope_ptz.perception.ground_truth.language.tokeniser import tokenise
@@ -46,6 +47,7 @@ def is_description(text: str) -> bool:
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
     """Return the best reading of a question; None if it fits no rule."""
+    text = without_first_part(text)
     reading = _best(text, "question") or _best(text, "description")
     if not isinstance(reading, Description):
         return reading

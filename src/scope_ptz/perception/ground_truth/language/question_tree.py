@@ -7,7 +7,10 @@ from typing import Literal
 
 RelationKind = Literal["left", "right", "above", "below", "front", "behind", "near", "on", "facing"]
 Side = Literal["left", "right", "top", "bottom", "middle", "near", "far"]
-OrderKey = Literal["left", "right", "top", "bottom", "nearest", "furthest", "biggest", "smallest", "tallest", "widest"]
+OrderKey = Literal[
+    "left", "right", "top", "bottom", "nearest", "furthest", "biggest", "smallest", "tallest", "widest", "looks biggest",
+    "looks smallest",
+]  # fmt: skip
 Words = tuple[str, ...]
 
 
@@ -22,6 +25,8 @@ class Phrase:
     """The position among the matches: 1 for the first, -1 for the last."""
     amount: int | None = None
     """The number of things ("the two nearest cones")."""
+    article: Literal["the", "a", ""] = ""
+    """Whether the phrase begins with a definite or an indefinite article."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +241,20 @@ class What:
 
 
 @dataclass(frozen=True, slots=True)
+class Present:
+    """Ask which of several things are in view ("which of these can be seen: a clock, a ladder or a bench?")."""
+
+    options: Description
+
+
+@dataclass(frozen=True, slots=True)
+class KindOf:
+    """Ask what kind of thing something is ("what type of bicycle is the purple bicycle?")."""
+
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
 class Identify:
     """Ask what something is ("what is the thing on the left?", "what kind of vehicle is behind the fence?")."""
 
@@ -278,6 +297,14 @@ class CompareCount:
 
 
 @dataclass(frozen=True, slots=True)
+class Difference:
+    """Ask how many more things of one kind there are than of another."""
+
+    first: Description
+    second: Description
+
+
+@dataclass(frozen=True, slots=True)
 class MostCommon:
     """Ask for the most or least common colour or kind."""
 
@@ -301,5 +328,5 @@ class Happening:
 
 Question = (
     Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare
-    | CompareCount | MostCommon | Describe | Happening | Quarter | InOrder
+    | CompareCount | MostCommon | Describe | Happening | Quarter | InOrder | Present | KindOf | Difference
 )  # fmt: skip

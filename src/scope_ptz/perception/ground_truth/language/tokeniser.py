@@ -176,7 +176,7 @@ def _without_frame(words: list[str]) -> list[str]:
     i = 0
     while i < len(words):
         end = i + 1
-        if words[i] in _FRAME_PREPOSITIONS and i > 0:
+        if words[i] in _FRAME_PREPOSITIONS and (i > 0 or "," in words):
             while (
                 end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _ends_phrase(words, end))
             ):

@@ -9,6 +9,7 @@ _CONTRACTIONS = {
     "what's": "what is", "where's": "where is", "who's": "who is", "there's": "there is", "that's": "that is", "how's": "how is",
     "it's": "it is", "isn't": "is not", "aren't": "are not", "doesn't": "does not", "don't": "do not", "can't": "can not",
     "cannot": "can not", "wasn't": "was not", "hasn't": "has not", "haven't": "have not", "i'm": "i am", "they're": "they are",
+    "nobody": "no person", "no-one": "no person", "noone": "no person",
     "which's": "which is", "what're": "what are", "there're": "there are",
 }  # fmt: skip
 _SPLIT = re.compile(r'"[^"]*"|(?<![a-z0-9])\'[^\']+\'(?![a-z0-9])|[a-z0-9]+(?:[-.\'/][a-z0-9]+)*|,|;')

@@ -52,6 +52,8 @@ def _yes_no_question(phrase: str) -> str | None:
     clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _expand_contraction, match[1])
     if see := re.fullmatch(r"you (?:can )?(see|spot|make out|read) (.+)", clause, re.IGNORECASE):
         return f"can you {see[1]} {see[2]}"
+    if some := re.fullmatch(rf"((?:an?|any|some|no) .+) ({_BE})", clause, re.IGNORECASE):
+        return f"{some[2]} there {some[1]}"  # "whether a ladder is", at a preset
     if inverted := _WITH_AUXILIARY.fullmatch(clause):
         return f"{inverted[2]} {inverted[1]} {inverted[3]}"
     if match := re.fullmatch(r"(.+?)'s (.+)", clause):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from scope_ptz.planner.grammar.lexing.vocabulary import word_list
+from scope_ptz.planner.grammar.lexing.lexicon import off_topic_phrases
 
 _ARITHMETIC = re.compile(r"\d\s*[-+*/×]\s*\d|\bwhat(?:'s| is) \d+\b")
 _HARMFUL = re.compile(
@@ -18,7 +18,7 @@ REFUSAL = "I will not help with that: this camera is not for harming or spying o
 def is_about_the_scene(question: str) -> bool:
     """Return whether a picture could answer a question: False for arithmetic, general knowledge and similar topics."""
     text = " ".join(question.lower().replace("’", "'").split())
-    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in word_list("elsewhere")) or _ARITHMETIC.search(text))
+    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in off_topic_phrases()) or _ARITHMETIC.search(text))
 
 
 def is_harmful(instruction: str) -> bool:

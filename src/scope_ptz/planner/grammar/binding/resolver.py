@@ -13,18 +13,27 @@ from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
-from scope_ptz.planner.grammar.lexing.lexer import preset_key, within_one_edit
-from scope_ptz.planner.grammar.lexing.phrases import phrase_table
+from scope_ptz.planner.grammar.lexing.lexicon import phrases
+from scope_ptz.planner.grammar.lexing.preset_names import preset_key
+from scope_ptz.planner.grammar.lexing.spelling import within_one_edit
 
 _MIN_SIMILARITY = 0.8  # minimum similarity of two preset names, from 0 to 1
 _MAX_NAME_WORDS = 4
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
 _NOT_PRESETS = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
+_COMMAND_CLASSES = frozenset({
+    "DEG", "PRON", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN", "TILT", "TELL", "CARRY", "LIMIT", "CAMERA", "BACK", "HOWMANY",
+    "BE",
+})  # fmt: skip
+"""Classes of words that no preset name contains if the presets are unknown."""
+
 _MIN_ABBREVIATION_CHARS = 3
 _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
-_WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
+_WAITING = re.compile(r"(when(?! (?:do|does|did|is|are|will)\b)|once|as soon as|whenever)\b", re.IGNORECASE)
+_FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
 _EXISTENCE = re.compile(
-    r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
+    r"(?:(?:is|are) there|(?:can|do) you see|(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
+    r"here))) (?:an? |any |the |some )?(.+?)"
     r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
     re.IGNORECASE,
 )
@@ -34,7 +43,9 @@ _TWO_QUESTIONS = re.compile(
     re.IGNORECASE,
 )
 _WINNER = re.compile(
-    r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    r"what is the (?:total|sum)\W*|how many (?:is that|are there) (?:in total|altogether|together)\W*"
+    r"|where (?:there )?(?:are|is) (?:the )?(?:most|fewest|least)\W*"
+    r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
     re.IGNORECASE,
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
@@ -42,7 +53,7 @@ _ONES = re.compile(r"\bones?\b", re.IGNORECASE)
 _POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
 _IMPERSONAL = re.compile(
-    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b"
+    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like|\w+ing)\b"
     r"|\bwhat('s| is) it\b|\bit is\b",
     re.IGNORECASE,
 )
@@ -118,14 +129,10 @@ def abbreviates(short: str, long: str) -> bool:
 
 def plausible_name(text: str) -> bool:
     """Return whether words could name a preset: few words, none about camera motion. Used when the presets are unknown."""
-    words = [(word,) for word in preset_key(text)]
-    command_terminals = {
-        "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
-        "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE",
-    }  # fmt: skip
-    if not 0 < len(words) <= _MAX_NAME_WORDS or any(word in _NOT_PRESETS for (word,) in words):
+    words = preset_key(text)
+    if not 0 < len(words) <= _MAX_NAME_WORDS or any(word in _NOT_PRESETS for word in words):
         return False
-    return not any(phrase_table().get(word) & command_terminals for word in words)
+    return not any(phrases().get((word,), frozenset()) & _COMMAND_CLASSES for word in words)
 
 
 @dataclass(slots=True)
@@ -290,6 +297,18 @@ class Resolver:
         self.counted = True
         return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
 
+    def _tally(self, part: ast.Tally) -> ast.Tally:
+        place = self.place(part.place) if part.place else None
+        return ast.Tally(self.thing(part.thing), place, self._view(part.view))
+
+    def _total(self, step: ast.Total) -> Sequence[ast.Step]:
+        self.counted = True
+        return [ast.Total(tuple(self._tally(part) for part in step.parts))]
+
+    def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
+        self.counted = True
+        return [ast.Difference(self._tally(step.first), self._tally(step.second))]
+
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.counted and _WINNER.fullmatch(step.question.strip()):
             return []  # the answer states the counts
@@ -297,6 +316,8 @@ class Resolver:
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(step.question):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
+        if step.embedded and _FUTURE.match(direct_question(step.question)):
+            raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         if two := _TWO_QUESTIONS.fullmatch(step.question.strip()):
             first = self._ask(replace(step, question=f"{two['seen']}?"))
             return [*first, *self._ask(ast.Ask(two["more"], step.view))]
@@ -439,6 +460,8 @@ class Resolver:
             return ast.Readable(self.thing(condition.thing))
         if isinstance(condition, ast.Statement) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
             return replace(condition, subject=ast.Thing("it"))
+        if isinstance(condition, ast.Statement) and not condition.subject.text and not self.antecedent and self.preset:
+            self.antecedent = self.preset.replace("-", " ")  # "go to the yard, and if it is empty, go home"
         if isinstance(condition, ast.Statement):
             return replace(condition, subject=self.thing(condition.subject))
         if isinstance(condition, ast.Outnumbers):

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_commands
 from scope_ptz.planner.grammar.consistency.words import Word, words_of
-from scope_ptz.planner.grammar.lexing.lexer import preset_key
+from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.evidence import Evidence
 from scope_ptz.planner.grammar.consistency.words import Word
-from scope_ptz.planner.grammar.lexing.lexer import within_one_edit
+from scope_ptz.planner.grammar.lexing.spelling import within_one_edit
 
 _WORDS = {
     "left": ("left", "lefts", "leftward", "leftwards", "anticlockwise", "counterclockwise", "ccw"),
@@ -26,7 +26,8 @@ _ALSO = {
 
 _AFTER_RIGHT = frozenset({
     "now", "away", "then", "out", "in", "round", "around", "over", "at", "on", "through", "across", "angle", "angles", "hand",
-    "back", "to", "up", "down", "behind", "the", "time", "here", "there",
+    "back", "to", "up", "down", "behind", "below", "beside", "by", "next", "above", "near", "under", "underneath", "the", "time",
+    "here", "there",
 })  # fmt: skip
 """Words before which "right" may mean "exactly"."""
 
@@ -58,6 +59,7 @@ def ignored_directions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
         and not (word.is_described or word.is_negated)
         and _is_direction(words, i, direction)
         and direction not in evidence.directions | evidence.still
+        and not (direction in {"up", "down"} and evidence.has(ast.GoToPreset) and not evidence.axes)
         and not _leads_to_target(words, i, evidence)
     ]
 
@@ -73,7 +75,7 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
     before = words[i - 1].text if i else ""
     after = words[i + 1].text if i + 1 < len(words) else ""
     if words[i].text == "right":
-        return after not in _AFTER_RIGHT and before not in {"all", "straight"}
+        return after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"
     if words[i].text == "left":
         return before not in _BEFORE_LEFT
     if direction in {"up", "down"}:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations_with_replacement, pairwise
+from itertools import combinations, pairwise
 
 from scope_ptz.english.grammar.numbers import read_number
 from scope_ptz.planner.grammar import instruction_tree as ast
@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.consistency.words import Word
 
 _TOLERANCE = 0.02
 _VAGUE = frozenset({"one", "couple", "zero"})  # "the one on the left", "a couple of degrees", "zero in on"
-_UNITS_OF = (1.0, 60.0, 3600.0, 360.0, 0.01)  # minutes and hours in seconds, full turns in degrees, per cent
+_UNITS_OF = (1.0, 60.0, 3600.0, 90.0, 360.0, 0.01)  # minutes and hours in seconds, right angles and full turns in degrees, per cent
 _NAMED = frozenset({"preset", "position", "view", "bookmark", "camera", "cam", "unit", "station", "number", "step", "task"})
 """Words before a number that is part of a name."""
 
@@ -62,7 +62,9 @@ def _claims(words: Sequence[Word]) -> list[NumberClaim]:
 def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     before = words[start - 1].text if start else ""
     used_words = words[start : start + used]
-    return before in _NAMED or any(word.is_described or word.is_negated or word.text in _VAGUE for word in used_words)
+    return before in {*_NAMED, "the", "these", "those"} or any(
+        word.is_described or word.is_negated or word.text in _VAGUE for word in used_words
+    )
 
 
 def _take(claim: NumberClaim, left: list[float], evidence: Evidence) -> bool:
@@ -94,7 +96,7 @@ def _is_product(claim: NumberClaim, evidence: Evidence) -> bool:
     """Return whether the plan reaches a number in steps: 90 degrees as three turns of 30."""
     if claim.value == len(evidence.presets) or (claim.value in {180, 360} and evidence.has(ast.Sweep)):
         return True
-    pairs = combinations_with_replacement(evidence.numbers, 2)
+    pairs = combinations(evidence.numbers, 2)
     return any(abs(a * b - claim.value) <= _TOLERANCE for a, b in pairs)
 
 

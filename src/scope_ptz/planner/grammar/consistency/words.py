@@ -6,10 +6,27 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-from scope_ptz.planner.grammar.lexing.vocabulary import spelling
+from scope_ptz.planner.grammar.lexing.spelling import corrected_word
 
 _WORD = re.compile(r"(?<![\w./])\d+/\d+(?![\w/])|[-+−]?\d+(?:\.\d+)?|\.\d+|[^\W\d_]+|[,;:.!?()\n&]|->|→|[–—]")
-_NEGATING = frozenset({"not", "dont", "never", "without", "no", "avoid", "cannot", "instead", "because", "cos", "since"})
+_NEGATING = frozenset(
+    {
+        "not",
+        "dont",
+        "never",
+        "without",
+        "no",
+        "avoid",
+        "cannot",
+        "instead",
+        "because",
+        "cos",
+        "since",
+        "except",
+        "excluding",
+        "leave",
+    }
+)
 """Words that begin a clause about what not to do, or about a reason."""
 
 _BREAKS = frozenset(",;:.!?()\n&→–—") | {"->", "and", "then", "but", "or", "so", "just"}
@@ -45,7 +62,7 @@ def words_of(text: str) -> list[Word]:
     words: list[Word] = []
     for match in _WORD.finditer(plain):
         word = Word(unicodedata.normalize("NFKC", match.group()).replace("−", "-"), match.start(), match.end())
-        word.text = spelling().get(word.text, word.text)
+        word.text = corrected_word(word.text)
         if word.text == "clockwise" and words and words[-1].text in {"anti", "counter"}:
             words[-1] = Word("anticlockwise", words[-1].start, word.end)
         else:
@@ -61,6 +78,11 @@ def _mark_negated(words: list[Word]) -> None:
         contracted = word.text == "t" and i > 0 and words[i - 1].end + 1 == word.start
         if word.is_break:
             is_negated = False
-        elif contracted or word.text in _NEGATING or (word.text == "of" and words[i - 1].text in {"instead", "rather"}):
+        elif (
+            contracted
+            or word.text in _NEGATING
+            or (word.text == "keep" and {"as", "same"} & {w.text for w in words[i : i + 4]})
+            or (word.text == "of" and words[i - 1].text in {"instead", "rather"})
+        ):
             is_negated = True
         word.is_negated = is_negated

@@ -8,6 +8,8 @@ from typing import Any
 
 from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
+from scope_ptz.english.grammar.common_nouns import is_common_noun
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
@@ -40,9 +42,18 @@ def count_word(count: int) -> str:
 
 
 def head_and_rest(description: str) -> tuple[str, str]:
-    """Split a description after its head noun: "red cars" and " behind the gate"."""
-    match = _MODIFIER_START.search(description)
+    """Split a description after its head noun: "red cars" and " behind the gate", "people" and " sitting down"."""
+    match = _MODIFIER_START.search(description) or _participle_after_noun(description)
     return (description[: match.start()], description[match.start() :]) if match else (description, "")
+
+
+def _participle_after_noun(description: str) -> re.Match[str] | None:
+    """Return the participle that follows the noun, as in "people sitting down", but not in "market awning"."""
+    for match in re.finditer(r"\s(\w+ing)\b", description):
+        last = description[: match.start()].split(" ")[-1].lower()
+        if english.is_plural(last) and not is_common_noun(match[1].lower()) and lexicon().concept(match[1].lower()) is None:
+            return match
+    return None
 
 
 def noun(description: str, count: float) -> str:
@@ -110,13 +121,13 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
 
 
 def shortfall_text(result: Mapping[str, Any]) -> str:
-    """Return the sentence that states why a move ended early: a rule of the site, or limits of the camera; empty if it did not."""
+    """Return the words that state why a move ended early: a rule of the site, or limits of the camera; empty if it did not."""
     if held_back_by := result.get("held_back_by"):
-        return f" The move was held back by {held_back_by}."
+        return f", held back by {held_back_by}"
     clamped = result.get("clamped", ())
     if not clamped:
         return ""
-    return f" The {english.listing(list(clamped))} {'limit' if len(clamped) == 1 else 'limits'} cut the move short."
+    return f", as far as the {english.listing(list(clamped))} {'limit allows' if len(clamped) == 1 else 'limits allow'}"
 
 
 def sentence(text: str) -> str:
@@ -125,6 +136,31 @@ def sentence(text: str) -> str:
     if not text:
         return ""
     return text[0].upper() + text[1:] + ("" if text[-1] in ".!?" else ".")
+
+
+_NOT_UNDERSTOOD = re.compile(
+    r"The (?:question|description) '(?P<text>.+)' is not understood\b"
+    r"|I did not understand '(?P<words>.+)' in the (?:question|description)\b",
+    re.DOTALL,
+)
+
+
+def not_understood_text(error: str) -> str:
+    """Return the statement that perception did not understand a question or a description; empty for other errors."""
+    match = _NOT_UNDERSTOOD.match(error)
+    return f'I did not understand "{match["text"] or match["words"]}"' if match else ""
+
+
+def continued(text: str) -> str:
+    """Return a sentence so that it can follow a colon: with a small first letter, unless it begins with "I" or capitals."""
+    return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
+
+
+def without_consequence(reason: str, what: str) -> str:
+    """Return why a step was not made: "I can see no trucks, so I left it at that"."""
+    if not reason:
+        return f"so I {what}"
+    return f"{reason} So I {what}" if reason[-1] in ".!?" else f"{reason}, so I {what}"
 
 
 def quantity_text(quantity: Quantity, description: str) -> str:

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
-from scope_ptz.planner.grammar.execution.run_state import CallGenerator, RunState
+from scope_ptz.planner.grammar.execution.closer_look import CloserLook
+from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
-class ConditionEvaluation(RunState):
+class ConditionEvaluation(CloserLook):
     """The part of a run that evaluates conditions."""
 
     def _test(self, condition: ast.Condition) -> CallGenerator:
@@ -34,7 +35,7 @@ class ConditionEvaluation(RunState):
         if isinstance(condition, ast.Seen):
             count = yield from self._visible_count(condition.thing.text, condition.view)
             self._last_count = count
-            return condition.quantity.matches(count), f"I can see {phrases.counted(condition.thing.text, count)} now"
+            return condition.quantity.matches(count), f"I can see {phrases.counted(condition.thing.text, count)}"
         if isinstance(condition, ast.Outnumbers):
             first = yield from self._visible_count(condition.first.text, "current")
             second = yield from self._visible_count(condition.second.text, "current")
@@ -55,12 +56,13 @@ class ConditionEvaluation(RunState):
             met = counts[0] > counts[1] if condition.comparison == "more" else counts[0] < counts[1]
             return met, f"I can see {first} at {condition.first.name} and {second} at {condition.second.name}"
         subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
-        result = yield from self._required_perception_call(
-            "query_answer", question=condition.question or f"is {subject} {condition.predicate}?", view="current"
-        )
+        question = condition.question or f"is {subject} {condition.predicate}?"
+        result = yield from self._answer_to(question, "current", condition.subject.text)
+        if result is None:
+            raise HaltedError("I stopped there, because what comes next depends on it")
         answer = result["answer"].strip().lower()
         if not result.get("known", True) or not answer.startswith(("yes", "no")):
-            return None, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
+            return None, f"I cannot tell whether {subject} is {condition.predicate}: {phrases.continued(result['answer'])}"
         return answer.startswith("yes") == condition.expected, result["answer"]
 
     def _joined(self, condition: ast.Joined) -> CallGenerator:

@@ -18,9 +18,11 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
-from scope_ptz.planner.grammar.execution.condition_evaluation import ConditionEvaluation, reading_question
+from scope_ptz.planner.grammar.execution.closer_look import is_too_small
+from scope_ptz.planner.grammar.execution.comparisons import Comparisons, stops_of_tour
+from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments
-from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError
+from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError, Offer
 
 _CAPABILITIES = (
     "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
@@ -30,11 +32,12 @@ _DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction 
 _MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
-class Program(ConditionEvaluation):
+class Program(Comparisons):
     """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> CallGenerator:
         """Run all steps. After that, ``answer()`` returns the answer."""
+        self.keeps_still = any(isinstance(step, ast.Forbid) and step.any_move for step in steps)
         start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
         self._visited = [self.positions.before, start] if self.positions.before else [start]
         try:
@@ -42,9 +45,20 @@ class Program(ConditionEvaluation):
         except HaltedError as halt:
             self._note(str(halt))
 
+    @property
+    def offer(self) -> Offer | None:
+        """The offer to go closer that can still be accepted, because the camera has not moved since."""
+        return next((offer for offer in self.offers if offer.pose == self.pose), None)
+
     def _run_steps(self, steps: Sequence[ast.Step]) -> CallGenerator:
-        for step in steps:
-            yield from getattr(self, f"_{type(step).__name__.lower()}")(step)
+        i = 0
+        while i < len(steps):
+            if len(stops := stops_of_tour(steps[i:])) > 1:
+                yield from self._tour(stops)
+                i += 2 * len(stops)
+                continue
+            yield from getattr(self, f"_{type(steps[i]).__name__.lower()}")(steps[i])
+            i += 1
 
     # Motion ------------------------------------------------------------------------------------------------------------
     def _move(self, step: ast.Move) -> CallGenerator:
@@ -57,9 +71,13 @@ class Program(ConditionEvaluation):
         if not arguments:
             self._note(f"The camera is already there: {phrases.pose_text(self.pose.as_dict())}")
             return
+        start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        text = f"{phrases.move_text(arguments)}; the camera is at {phrases.pose_text(result['pose'])}"
-        self._note(phrases.sentence(text) + phrases.shortfall_text(result))
+        # A move that was cut short is stated as the camera made it.
+        shortfall = phrases.shortfall_text(result)
+        moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
+        how = f"I {phrases.move_text(moved)}{shortfall}"
+        self._note(f"{how}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _back(self, step: ast.Back) -> CallGenerator:
         place = self._visited[-1]
@@ -87,7 +105,7 @@ class Program(ConditionEvaluation):
     def _return(self, pose: Pose) -> CallGenerator:
         arguments = return_arguments(pose, self.pose, self.limits)
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        self._note(f"{phrases.move_text(arguments)} to go back; the camera is at {phrases.pose_text(result['pose'])}")
+        self._note(f"I {phrases.move_text(arguments)} to go back; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _go_to(self, place: VisitedPosition) -> CallGenerator:
         if place.preset:
@@ -105,12 +123,12 @@ class Program(ConditionEvaluation):
         result = yield from self._camera_call("go_home")
         self._went_home = True
         self._record_position(None, home=True)
-        self._note(phrases.sentence("I went to the home view") + phrases.shortfall_text(result))
+        self._note(f"I went to the home view{phrases.shortfall_text(result)}")
 
     def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
         result = yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
-        self._note(phrases.sentence(f"I went to preset {step.ref.name}") + phrases.shortfall_text(result))
+        self._note(f"I went to preset {step.ref.name}{phrases.shortfall_text(result)}")
 
     def _gothere(self, step: ast.GoThere) -> CallGenerator:
         if self._best_preset:
@@ -167,26 +185,36 @@ class Program(ConditionEvaluation):
         self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
 
     def _count(self, step: ast.Count) -> CallGenerator:
-        view = step.view or "current"
+        view, counted = step.view or "current", list[str]()
         for thing in step.things:
             result = yield from self._perception_call("count_objects", description=thing.text, view=view)
             self._last_was_yes = result["count"] > 0 if result is not None else None
             if result is not None:
-                counts_text = phrases.counted(thing.text, result["count"], complete=result.get("complete", True))
-                self._note(f"I can see {counts_text} {phrases.where(view)}")
+                counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
+        if counted:
+            self._note(f"I can see {english.listing(counted)} {phrases.where(view)}")
 
-    def _ask(self, step: ast.Ask) -> CallGenerator:
-        result = yield from self._perception_call("query_answer", question=step.question, view=step.view or "current")
+    def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
+        result = yield from self._answer_to(step.question, step.view or "current", thing)
+        self._state_answer(result)
+
+    def _state_answer(self, result: dict[str, Any] | None) -> None:
         self._last_was_yes = _said_yes(result)
         if result is not None:
-            is_stated = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
-            self._note(result["answer"] if is_stated else f"I cannot tell: {result['answer']}")
+            is_stated = result.get("known", True) or is_too_small(result) or result["answer"].lower().startswith("i cannot tell")
+            self._note(result["answer"] if is_stated else f"I cannot tell: {phrases.continued(result['answer'])}")
 
     def _read(self, step: ast.Read) -> CallGenerator:
         if step.thing.text in self._missing:
             self._note("There was nothing to read")
             return
-        yield from self._ask(ast.Ask(reading_question(step.thing.text), step.view))
+        yield from self._ask(ast.Ask(reading_question(step.thing.text), step.view), step.thing.text)
+
+    def _lookcloser(self, step: ast.LookCloser) -> CallGenerator:
+        result = yield from self._from_close_up(step.question, step.thing.text, None)
+        if result is None:
+            self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
+        self._state_answer(result)
 
     def _camerastate(self, step: ast.CameraState) -> CallGenerator:
         yield from ()
@@ -208,16 +236,13 @@ class Program(ConditionEvaluation):
 
     def _if(self, step: ast.If) -> CallGenerator:
         met, reason = yield from self._test(step.condition)
-        self._note(reason)
         self._last_was_yes = met
-        if met is None:
-            self._note("So I did neither" if step.otherwise else "So I did nothing further for that")
-        elif met:
-            yield from self._run_steps(step.then)
-        elif step.otherwise:
-            yield from self._run_steps(step.otherwise)
+        branch = () if met is None else step.then if met else step.otherwise
+        if branch:
+            self._note(reason)
+            yield from self._run_steps(branch)
         else:
-            self._note("So I did nothing further for that")
+            self._note(phrases.without_consequence(reason, "did neither" if met is None and step.otherwise else "left it at that"))
 
     def _loop(self, step: ast.Loop) -> CallGenerator:
         limit, moves, best = self._move_limit(step), 0, -1
@@ -228,7 +253,7 @@ class Program(ConditionEvaluation):
             if met is None and isinstance(step.until, ast.Negated):
                 raise HaltedError(f"{reason}, so I stopped")  # "while" goes on only as long as its condition is known to hold
             if met:
-                self._note(f"{reason}, after {phrases.moves_text(last, moves)}" if moves else f"{reason}, without having to move")
+                self._note(f"{reason} after {phrases.moves_text(last, moves)}" if moves else f"{reason} without having to move")
                 return
             if moves >= limit:
                 break
@@ -268,83 +293,6 @@ class Program(ConditionEvaluation):
             return max(1, int(bound.degrees / (pan or tilt) + 1e-6))
         full_range_moves = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _DEFAULT_MAX_MOVES
         return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
-
-    # Comparison --------------------------------------------------------------------------------------------------------
-    def _compare(self, step: ast.Compare) -> CallGenerator:
-        view = step.view or "current"
-        first = yield from self._visible_count(step.first.text, view)
-        second = yield from self._visible_count(step.second.text, view)
-        self._last_was_yes = first > second if step.comparison == "more" else first < second
-        counts_text = f"{phrases.counted(step.first.text, first)} and {phrases.counted(step.second.text, second)}"
-        self._note(f"I can see {counts_text} {phrases.where(view)}")
-        more, less = (step.first.text, step.second.text) if first > second else (step.second.text, step.first.text)
-        self._note(
-            "That is the same number of both"
-            if first == second
-            else f"There are more {phrases.noun(more, 2)} than {phrases.noun(less, 2)}"
-        )
-
-    def _beforeafter(self, step: ast.BeforeAfter) -> CallGenerator:
-        text = step.thing.text
-        before = yield from self._visible_count(text, "current")
-        yield from self._run_steps(step.moves)
-        after = yield from self._visible_count(text, "current")
-        self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
-        if before == after:
-            self._note("The number is the same before and after")
-        else:
-            when = "before" if (before > after) == (step.comparison == "more") else "after"
-            self._note(f"There are {step.comparison} {phrases.noun(text, 2)} {when} the move")
-
-    def _whichpreset(self, step: ast.WhichPreset) -> CallGenerator:
-        text, counts = step.thing.text, dict[str, int]()
-        for place in step.places:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
-            counts[place.name] = yield from self._visible_count(text, "current")
-        self._note(f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}")
-        if step.any_of:
-            matching_presets = [name for name, count in counts.items() if count]
-            self._last_was_yes = bool(matching_presets)
-            self._note(
-                f"{_capitalised_plural(text)} can be seen at {english.listing(matching_presets)}"
-                if matching_presets
-                else f"{_capitalised_plural(text)} can be seen at none of them"
-            )
-            self._best_preset = matching_presets[0] if matching_presets else None
-            return
-        best = (max if step.comparison == "more" else min)(counts.values())
-        best_presets = [name for name, count in counts.items() if count == best]
-        self._best_preset = best_presets[0] if len(best_presets) == 1 or self.assume_met else None
-        superlative = (
-            ("more" if step.comparison == "more" else "fewer")
-            if len(counts) == 2
-            else ("the most" if step.comparison == "more" else "the fewest")
-        )
-        verb = f"shows {superlative} {phrases.noun(text, 2)}"
-        self._note(
-            f"It is a tie between {english.listing(best_presets)}" if len(best_presets) > 1 else f"Preset {best_presets[0]} {verb}"
-        )
-        if step.go:
-            yield from self._gothere(ast.GoThere())
-
-    def _firstwith(self, step: ast.FirstWith) -> CallGenerator:
-        for place in step.places:
-            yield from self._camera_call("go_to_preset", name=place.name)
-            self._record_position(place.name)
-            count = yield from self._visible_count(step.thing.text, "current")
-            if count or self.assume_met:
-                self._best_preset, self._last_was_yes = place.name, True
-                self._note(f"The first is {place.name}, where I can see {phrases.counted(step.thing.text, count)}")
-                return
-        self._best_preset, self._last_was_yes = None, False
-        names = english.listing([place.name for place in step.places])
-        self._note(f"I can see {phrases.counted(step.thing.text, 0)} at {names}")
-
-
-def _capitalised_plural(text: str) -> str:
-    """Return a description in the plural, with a capital first letter."""
-    return phrases.sentence(phrases.noun(text, 2))[:-1]
 
 
 def _is_opposed(aim: ast.Aim, pose: Pose) -> bool:

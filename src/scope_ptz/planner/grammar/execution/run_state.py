@@ -35,6 +35,21 @@ class AssumedOutcome:
     error: None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """An offer to go closer, which the user has not accepted yet.
+
+    Attributes:
+        thing: What to zoom in on.
+        question: The question to ask again.
+        pose: The camera's pose when the question was asked.
+    """
+
+    thing: str
+    question: str
+    pose: Pose
+
+
 class HaltedError(Exception):
     """An error that ends the run. The message gives the reason and becomes part of the answer."""
 
@@ -47,6 +62,8 @@ class RunState:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
         assume_met: Whether to treat every condition as met, for plans without a camera.
+        may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers it.
+        keeps_still: Whether the user asks not to move the camera.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -55,6 +72,9 @@ class RunState:
     pose: Pose
     positions: PositionHistory = field(default_factory=PositionHistory)
     assume_met: bool = False
+    may_go_closer: bool = False
+    keeps_still: bool = False
+    offers: list[Offer] = field(default_factory=list)  # closer looks that the user must allow first
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
@@ -91,12 +111,16 @@ class RunState:
         return outcome.result
 
     def _perception_call(self, tool: str, **arguments: Any) -> CallGenerator:
-        """Make a perception call and return its result. If it fails twice, add a note to the answer and return None."""
+        """Make a perception call and return its result. If it fails twice, add a note to the answer and return None.
+
+        A question that perception does not understand is not asked again.
+        """
         outcome: Outcome = yield from self._call(tool, **arguments)
-        if outcome.error is not None:
+        if outcome.error is not None and not phrases.not_understood_text(outcome.error):
             outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
-            self._note(f"I could not look ({tool} failed): {outcome.error or 'no result'}")
+            error = outcome.error or "no result"
+            self._note(phrases.not_understood_text(error) or f"I could not look ({tool} failed): {error}")
             return None
         return outcome.result
 

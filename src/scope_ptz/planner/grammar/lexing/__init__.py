@@ -1,1 +1,1 @@
-"""Split text into lexemes: known phrases, numbers and free words."""
+"""Split an instruction into lexemes: words and fixed expressions with their classes, numbers and preset names."""

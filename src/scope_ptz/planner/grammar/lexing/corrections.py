@@ -13,9 +13,11 @@ from scope_ptz.english.grammar.numbers import read_number
 _HESITATION = r"(?:oh|oops|er|erm|uh|um|ah|well|actually|please|hang on|hold on)"
 _MARKER = re.compile(
     rf"(?:\s*[,;.–—-]+\s*|\s+)(?:{_HESITATION}[,\s.–—-]+)*"
-    r"(?:(?:no|sorry|wait|scratch that|correction|on second thoughts?|my mistake|no wait|wait no)\b[,\s.–—-]*)*"
+    r"(?:(?:no|sorry|wait|scratch that|scrap that|strike that|belay that|correction|on second thoughts?|my "
+    r"mistake|no wait|wait no)\b[,\s.–—-]*)*"
     rf"(?:{_HESITATION}[,\s.–—-]+)*"
-    r"(?:i (?:mean|meant)(?: to say)?|(?:make|made) (?:that|it)|no|sorry|wait|scratch that|correction|rather)\b[,:\s.–—-]*"
+    r"(?:i (?:mean|meant)(?: to say)?|(?:make|made) (?:that|it)|no|sorry|wait|scratch that|scrap that|strike "
+    r"that|belay that|correction|(?:or )?rather|oops|er|erm|actually)\b[,:\s.–—-]*"
     r"(?P<new>[^,;.!?]*)",
     re.IGNORECASE,
 )
@@ -25,6 +27,7 @@ _NUMBER_WORD = re.compile(r"[-+−]?\d+(?:\.\d+)?|[^\W\d_]+")
 _CONTINUATION = re.compile(r"\s+(?:and|then)\b.*", re.IGNORECASE)
 _FILLING = re.compile(r"^(?:to|the|go to|by|not|about|that's|to the)\b\s*", re.IGNORECASE)
 _REST = re.compile(r"^(?:degrees?|deg|times|x|°|preset|please|instead|\s)*$", re.IGNORECASE)
+_REPORTED = re.compile(r"\s*i said\b", re.IGNORECASE)
 _UNIT_AFTER = re.compile(r"^\s*,\s*(?=(?:degrees?|deg|times)\b)", re.IGNORECASE)
 
 
@@ -32,7 +35,7 @@ def corrected(text: str, presets: Sequence[str] = ()) -> str:
     """Return an instruction with its corrections applied."""
     for _ in range(3):
         match = _MARKER.search(text)
-        while match and (replaced := _replaced(text[: match.start()], match["new"], presets)) is None:
+        while match and (replaced := _replacement(text, match, presets)) is None:
             match = _MARKER.search(text, match.start() + 1)
         if not match or replaced is None:
             return text
@@ -40,8 +43,18 @@ def corrected(text: str, presets: Sequence[str] = ()) -> str:
     return text
 
 
+def _replacement(text: str, match: re.Match[str], presets: Sequence[str]) -> str | None:
+    """Return the text before a correction with the correction applied; None if it is unclear what it replaces."""
+    is_inserted = bool(re.search(r"\s[-–—]\s", match["new"]))  # "zoom out - sorry, in - 2x"
+    if is_inserted and "mean" not in match[0].lower():
+        return None
+    return _replaced(text[: match.start()], match["new"], presets)
+
+
 def _replaced(before: str, new: str, presets: Sequence[str]) -> str | None:
     """Return the text before a correction with its last number, direction or preset replaced; None if nothing fits."""
+    if _REPORTED.match(before):
+        return None
     more = _CONTINUATION.search(new)
     rest = more[0] if more else ""
     new = new[: len(new) - len(rest)].strip()
@@ -58,7 +71,7 @@ def _with_amount(before: str, new: str, rest: str) -> str | None:
     """Replace the last direction and the last number by those of the correction."""
     direction = _DIRECTION.search(new)
     number = _numbers(new)
-    unread = _DIRECTION.sub("", new)
+    unread = re.sub(r"\s[-–—]\s", " ", _DIRECTION.sub("", new))
     for start, end in reversed(_numbers(unread)):
         unread = unread[:start] + unread[end:]
     if not (direction or number) or len(number) > 1 or not _REST.match(re.sub(r"\b(?:to|by|the)\b", "", unread)):
@@ -71,10 +84,13 @@ def _with_amount(before: str, new: str, rest: str) -> str | None:
             return None
         spans.append((directions[-1].span(), direction[0]))
     if number:
-        numbers = _numbers(before)
-        if not numbers or numbers[-1][0] < clause:
+        numbers = [span for span in _numbers(before) if span[0] >= clause]
+        if not numbers and not direction:
             return None
-        spans.append((numbers[-1], new[slice(*number[0])]))
+        if numbers:
+            spans.append((numbers[-1], new[slice(*number[0])]))
+        else:  # "pan left, no, right 25"
+            spans[0] = (spans[0][0], f"{spans[0][1]} {new[slice(*number[0])]}")
     for (start, end), words in sorted(spans, reverse=True):
         before = before[:start] + words + before[end:]
     return before + rest

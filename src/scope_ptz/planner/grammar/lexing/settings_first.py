@@ -22,7 +22,7 @@ _PATTERNS = tuple(
     for pattern in (
         rf"(?P<asked>.+?)[.?;:!,]\s*{_PURPOSE},?\s+(?P<moves>[^?]+?)[.!\s]*",
         r"(?P<asked>.+):\s*(?P<moves>[^?:]+?),?\s+and (?:then )?(?:have a |take a )?look(?: there)?[.!\s]*",
-        rf"(?P<asked>.+?)[.?]\s+(?P<moves>[^?.]+?)\s+{_PURPOSE}[.!\s]*",
+        rf"(?P<asked>.+?)[.?]\s+(?P<moves>(?:[^?.]|\.(?=\d))+?)\s+{_PURPOSE}[.!\s]*",
         r"(?P<asked>.+?)[.?!]\s*you(?:'ll| will)? (?:have|need) to (?P<moves>[^?]+?)(?: for (?:that|this|it))?[.!\s]*",
     )
 )
@@ -42,10 +42,20 @@ _PARK = re.compile(
 """To park the camera is to send it home, but to park it at a preset is to go there."""
 
 
+_FROM = re.compile(
+    r"(?P<asked>[^.?!]+)\?\s*\(?(?:(?:please )?(?:look|check)(?: it)? (?:from|at|in)|from|use) "
+    r"(?P<place>[^.?!,;:)]+?)(?:,? please)?\)?[.!]?",
+    re.IGNORECASE,
+)
+"""A question with the place to look from: "Are there any dogs? Check from fence-east."."""
+
+
 def with_settings_first(text: str) -> str:
     """Return an instruction with the moves before the question, if its words say that the moves serve the question."""
     text = _PARK.sub(r"\1go to", _IF_ANY.sub(r"\1", text))
     plain = text.strip()
+    if (match := _FROM.fullmatch(plain)) and _ASKS.match(match["asked"]) and " and " not in match["place"]:
+        return f"Go to {match['place']}. {match['asked']}?"
     for pattern in _PATTERNS:
         match = pattern.fullmatch(plain)
         if match and _ASKS.match(match["asked"]) and not _LOOKS.search(match["moves"]):

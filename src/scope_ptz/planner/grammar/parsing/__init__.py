@@ -1,1 +1,1 @@
-"""Parse lexemes into the steps of an instruction: grammar, chart parser and builders."""
+"""Read the clauses of an instruction and combine them into steps."""

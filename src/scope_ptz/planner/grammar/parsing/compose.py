@@ -20,6 +20,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Count,
     DoAgain,
     EachTime,
+    FirstWith,
     Further,
     GoToPreset,
     Home,
@@ -28,6 +29,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Loop,
     Move,
     Part,
+    PresetRef,
     Repeat,
     Rescope,
     SameAt,
@@ -35,6 +37,8 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Step,
     Turn,
     Unclear,
+    WhichPreset,
+    Zoom,
 )
 
 _CONTRADICTION = "Those two directions contradict each other. Which way shall I turn?"
@@ -52,7 +56,17 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     """Append a step to the previous steps, or combine it with them."""
     if isinstance(step, Move):
         step = _with_same_amounts(step, out)
-    if _add_modifier(out, step):
+        if (
+            isinstance(step, Move)
+            and out
+            and step == out[-1]
+            and all(isinstance(part, Zoom) and part.kind in {"in", "out"} for part in step.parts)
+        ):
+            return  # "out all the way, widest angle"
+    if isinstance(step, Move) and out and isinstance(out[-1], Move) and link not in {".", "then"} and _restates(out[-1], step):
+        out.append(Unclear("Is that part of the same move, or another one? Please give each move its amount."))
+        return
+    if _add_modifier(out, link, step):
         return
     last = out[-1] if out else None
     if last is not None and (joined := _joined_to_last(last, link, step)) is not None:
@@ -65,7 +79,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out.append(_stepped(step))
 
 
-def _add_modifier(out: list[Step], step: Step) -> bool:
+def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
     """Apply a step that modifies or repeats the previous steps. Return False for any other step, without applying it."""
     last = out[-1] if out else None
     match step:
@@ -75,6 +89,8 @@ def _add_modifier(out: list[Step], step: Step) -> bool:
             out[-1:] = _interleaved(last, step.body)
         case AtIntervals():
             _add_at_intervals(out, step)
+        case Rescope() if link == "," and isinstance(last, Count | Ask) and last.view in (None, step.view):
+            out[-1] = replace(last, view=step.view)  # "how many people are there, everywhere?"
         case Rescope():
             out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
         case CompareWithBefore():
@@ -85,11 +101,40 @@ def _add_modifier(out: list[Step], step: Step) -> bool:
             _add_further(out, step)
         case Back() if step.amount is not None and step.amount.kind in ("degrees", "little", "lot"):
             _add_back_by(out, step.amount)
+        case WhichPreset(places=()) if len(visited := _last_visited(out)) > 1:
+            out[-len(visited) :] = [replace(step, places=visited)]  # "go to the gate, then the yard, and say which has more cars"
+        case FirstWith(places=places) if places and (visited := _last_visited(out)):
+            out[-len(visited) :] = [
+                replace(step, places=(*visited, *places))
+            ]  # "visit gate, then yard, and stop at the first with a van"
         case SameAt():
             out.append(AtPlaces(step.places, _done_at_place(out)))
         case _:
             return False
     return True
+
+
+def _restates(first: Move, second: Move) -> bool:
+    """Return whether a move without a verb and an amount follows one with an amount: "6 degrees of tilt, upwards".
+
+    It may only say the same in other words, so it must not be made as another move.
+    """
+    if second.has_verb:
+        return False
+    is_sized = any(isinstance(p, Aim) or (isinstance(p, Turn) and p.amount) or isinstance(p, Zoom) for p in first.parts)
+    unsized = [p for p in second.parts if (isinstance(p, Turn) and p.amount is None and p.step is None) or isinstance(p, Zoom)]
+    same = {_axis(p) for p in first.parts} & {_axis(p) for p in unsized}
+    return is_sized and bool(unsized) and (bool(same) or all(isinstance(p, Turn) for p in unsized))
+
+
+def _last_visited(steps: Sequence[Step]) -> tuple[PresetRef, ...]:
+    """Return the presets that the last steps go to, without anything between them."""
+    visited: list[PresetRef] = []
+    for step in reversed(steps):
+        if not isinstance(step, GoToPreset):
+            break
+        visited.append(step.ref)
+    return tuple(reversed(visited))
 
 
 def _add_further(out: list[Step], step: Further) -> None:
@@ -155,7 +200,9 @@ def _joined(first: Move, second: Move) -> list[Step]:
         parts = first.parts if second.has_verb else tuple(_shared(p, second.parts) for p in first.parts)
         return [_stepped(Move((*parts, *second.parts), first.has_verb))]
     one, other = first.parts[-1], second.parts[0]
-    unspecified = isinstance(one, Turn) and one.amount is None and not second.has_verb
+    unspecified = (
+        isinstance(one, Turn) and isinstance(other, Turn) and not second.has_verb and (one.amount is None or other.amount is None)
+    )
     if unspecified and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
         return [Unclear(_CONTRADICTION)]
     return [_stepped(first), _stepped(second)]
@@ -213,6 +260,9 @@ def _stepped_loop(step: Loop | Repeat) -> Step:
 
 def _add_each_time(out: list[Step], step: EachTime) -> None:
     """Add steps to run after every move of the previous steps."""
+    if out and isinstance(out[-1], Snap) and out[-1].times > 1:
+        out[-1] = Repeat((replace(out[-1], times=1), *step.body), out[-1].times)  # "five shots, tilting up 2 degrees after each"
+        return
     for i in range(len(out) - 1, -1, -1):
         target = out[i]
         if isinstance(target, Repeat | Loop | AtPlaces):
@@ -241,6 +291,9 @@ def _add_again(out: list[Step], step: DoAgain) -> None:
     """
     if isinstance(out[-1], GoToPreset) and len(out) > 1:
         out.extend(_done_at_place(out[:-1]))
+        return
+    if isinstance(out[-1], Repeat) and step.times is None and len(out) == 1:
+        out[-1] = replace(out[-1], times=out[-1].times + 1)  # "right 10, again, again"
         return
     first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoToPreset | Home)), default=0)
     first = first if first < len(out) else 0

@@ -1,0 +1,151 @@
+"""Go closer when perception reports that something is too small, look again, and put the camera back."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution.move_arguments import return_arguments
+from scope_ptz.planner.grammar.execution.run_state import CallGenerator, Offer, RunState
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
+
+_TOO_SMALL = re.compile(
+    r"\btoo (?:small|far|distant|tiny|blurry|blurred)\b|\b(?:illegible|unreadable|unintelligible)\b"
+    r"|\bnot (?:big|large|close|sharp|clear) enough\b|\b(?:not|no|in)[ -]?(?:legible|readable)\b"
+    r"|\b(?:cannot|can't|can not|unable to|could not|couldn't) (?:be read|read|make out|be made out)\b",
+    re.IGNORECASE,
+)
+"""Reports that a closer view could help. Text that is hidden or seen from the side is no better from close up."""
+
+_NOUN_PHRASE = re.compile(
+    r"\b(?:the|that|this|these|those|a|an) (?P<thing>.+?)(?= (?:says?|reads?|shows?|displays?|states?|lists?"
+    r"|ha(?:s|ve)|is|are|was|were|looks?|wears?)\b|,|\?|\.?$)",
+    re.IGNORECASE,
+)
+_PROPERTY_OF = re.compile(
+    r"(?:texts?|writing|words?|letter(?:s|ing)|message|names?|number|figures?|digits|prices?|time|colour|color|state|title|caption"
+    r"|slogan|inscription|close[- ]up|(?:speed )?limit|date|(?:opening )?hours|logo|brand|make|kind|type|side|front|back|rear|top)"
+    r"(?: (?:that (?:is|are) )?(?:written|printed|painted|shown|displayed|given|stated))? (?:of|on|for|at|in|that)"
+    r" (?:the|that|this|an?) ",
+    re.IGNORECASE,
+)
+"""The beginning of a phrase that names a property or a part of the thing: "the price on the"."""
+
+_NO_THING = frozenset({"picture", "image", "view", "frame", "scene", "photo", "text", "writing", "time", "word", "words"})
+
+
+class CloserLook(RunState):
+    """The part of a run that asks perception, and goes closer when it must."""
+
+    def _answer_to(self, question: str, view: View, thing: str = "") -> CallGenerator:
+        """Ask a question and return the result; None if perception fails.
+
+        A question such as "what does the sign say when you zoom in on it?" is asked from close up.
+
+        Args:
+            question: The question.
+            view: The view to ask about.
+            thing: The thing that the question is about; empty to find it in the question.
+        """
+        plain = without_close_up(question)
+        if plain != question and view == "current" and (subject := thing or thing_of(plain)):
+            result = yield from self._from_close_up(plain, subject, None)
+            if result is not None:
+                return result
+        result = yield from self._perception_call("query_answer", question=plain, view=view)
+        if result is None or view != "current" or self.keeps_still or not is_too_small(result):
+            return result
+        thing = thing or thing_of(question)
+        if not thing:
+            return result
+        if not self.may_go_closer:
+            self.offers.append(Offer(thing, question, self.pose))
+            return result
+        return (yield from self._from_close_up(question, thing, result))
+
+    def _from_close_up(self, question: str, thing: str, before: dict[str, Any] | None) -> CallGenerator:
+        """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` without one.
+
+        If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole.
+        """
+        start, found = self.pose, False
+        for target in dict.fromkeys((thing, _whole_of(thing))):
+            thing = target
+            zoomed = yield from self._perception_call("zoom_to_object", description=thing)
+            found = zoomed is not None and bool(zoomed.get("found"))
+            if found or zoomed is None:
+                break
+        if not found:
+            return before
+        result = yield from self._perception_call("query_answer", question=question, view="current")
+        if result is None or not result.get("known", True):
+            self._note(f"I zoomed in on the {thing}, but that did not help, so I put the camera back")
+        else:
+            self._note(f"I zoomed in on the {thing} to answer that, and put the camera back afterwards")
+        if self.assume_met:
+            self.pose = start  # a plan cannot know how far the camera zooms in, and so not the move back
+        elif arguments := return_arguments(start, self.pose, self.limits):
+            yield from self._camera_call("adjust_ptz", **arguments)
+        return before if result is None else result
+
+
+def _whole_of(thing: str) -> str:
+    """Return the whole of a part: "van" for "licence plate of the van". Return other things unchanged."""
+    match = re.search(r" (?:of|on) (?:the|that|this|an?) (.+)", thing, re.IGNORECASE)
+    return match[1] if match else thing
+
+
+_CLOSE_UP = re.compile(
+    r",? (?:when|if|after|once) (?:you )?zoom(?:ed|ing)? in(?: on (?:it|them))?(?: to read(?: it)?)?(?=\W*$)"
+    r"|,? (?:seen |viewed )?(?:from close up|up close)(?=\W*$)",
+    re.IGNORECASE,
+)
+_CLOSE_UP_OF = re.compile(r"\b(?:a|the) close[- ]up of (?=\w)", re.IGNORECASE)
+
+
+def without_close_up(question: str) -> str:
+    """Return a question without the request to zoom in: "what does the sign say when you zoom in on it?"."""
+    return _CLOSE_UP.sub("", _CLOSE_UP_OF.sub("", question))
+
+
+def is_too_small(result: dict[str, Any]) -> bool:
+    """Return whether an answer reports that the thing is too small or too far away to tell."""
+    return not result.get("known", True) and bool(_TOO_SMALL.search(str(result.get("answer", ""))))
+
+
+def thing_of(question: str) -> str:
+    """Return the thing that a question is about, without its article; empty if it names none.
+
+    For "what is written on the sign next to the gate?", it is "sign next to the gate".
+    """
+    text = " ".join(question.split())
+    while match := _NOUN_PHRASE.search(text):
+        thing = match["thing"].strip()
+        if (inner := _PROPERTY_OF.match(text, match.start("thing"))) is not None:
+            text = "the " + text[inner.end() :]
+        elif phrases.head_and_rest(thing.lower())[0] in _NO_THING:
+            text = text[match.end("thing") :]
+        else:
+            return thing
+    return ""
+
+
+def offer_text(offer: Offer) -> str:
+    """Return the question whether to go closer. It states everything that ``offered`` reads back."""
+    thing, question = (json.dumps(text, ensure_ascii=False) for text in (offer.thing, offer.question))
+    return f"Shall I zoom in on {thing} to answer {question}? {_END}"
+
+
+_END = "Please answer yes or no."
+_STRING = r'"(?:[^"\\]|\\.)*"'
+_OFFER = re.compile(rf"Shall I zoom in on (?P<thing>{_STRING}) to answer (?P<question>{_STRING})\? {re.escape(_END)}\Z", re.DOTALL)
+
+
+def offered(reply: str) -> tuple[str, str] | None:
+    """Return the thing and the question of the offer at the end of a reply; None if there is none."""
+    match = _OFFER.search(reply)
+    return (json.loads(match["thing"]), json.loads(match["question"])) if match else None

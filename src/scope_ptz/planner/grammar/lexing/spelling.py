@@ -1,0 +1,49 @@
+"""Correct slips of the keys in the words of the planner's vocabulary."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from scope_ptz.english.grammar.common_nouns import is_common_noun
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
+
+_MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as slips
+_MIN_SHORT_CHARS = 3
+
+
+def within_one_edit(a: str, b: str) -> bool:
+    """Return whether two words are equal, or differ by one insertion, deletion, substitution or swap of neighbouring letters."""
+    if abs(len(a) - len(b)) > 1 or a == b:
+        return a == b
+    head = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    rest_a, rest_b = a[head:], b[head:]
+    swapped = len(rest_a) >= 2 and rest_a[1:2] + rest_a[:1] + rest_a[2:] == rest_b
+    return swapped or rest_a[1:] == rest_b[1:] or rest_a[1:] == rest_b or rest_a == rest_b[1:]
+
+
+@lru_cache(maxsize=8192)
+def corrected_word(word: str) -> str:
+    """Return the word of the vocabulary that a misspelt word stands for; any other word unchanged."""
+    lists = spelling_lists()
+    if word in lists["fixed"]:
+        return str(lists["fixed"][word])
+    if len(word) < _MIN_SHORT_CHARS or not word.isalpha() or is_english(word):
+        return word
+    close = [known for known in lists["short"] if (_is_slip if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
+    return close[0] if len(close) == 1 else word
+
+
+def _is_slip(word: str, known: str) -> bool:
+    """Return whether a short word was mistyped: the same letters in another order, or one letter doubled or left out."""
+    if len(word) == len(known):
+        return sorted(word) == sorted(known) and within_one_edit(word, known)
+    if len(word) > len(known):
+        return within_one_edit(word, known) and any(word == known[:i] + known[i] + known[i:] for i in range(len(known)))
+    return len(known) > _MIN_SHORT_CHARS and word[0] == known[0] and within_one_edit(word, known)
+
+
+@lru_cache(maxsize=8192)
+def is_english(word: str) -> bool:
+    """Return whether a word is known, so that it is not a misspelling of another."""
+    return word in known_words() or word in spelling_lists()["real"] or lexicon().concept(word) is not None or is_common_noun(word)

@@ -1,0 +1,118 @@
+"""Tell what is said beside a command: reasons, things pointed out, courtesy, and conditions without "if"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.conditions import Condition, Seen, Thing
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import VERBS, Clause, Source
+from scope_ptz.planner.grammar.parsing.clause_starts import STATEMENT
+from scope_ptz.planner.grammar.parsing.conditions import condition_of
+from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+
+_WISH = r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at) _+"
+_FAILING = r"(SELF|PRON) (MODAL|DOV) (not|hardly|barely) _+|SELF (be|HAVEV|BE|LOWER-ED) _+"
+_STATE = (
+    r"(it|PRON|DET FREE|DET VIEWNOUN|DET PICTURE|there) (BE|looks|MODAL) (AMOUNTISH)* (too|so|very|ADVERB|not|FREE|in|DET|LOT) _*"
+)
+_POINTED_OUT = (
+    (
+        r"(FILLER)* (SELF (MODAL|DOV|HAVEV|think|believe|reckon)* (SEE|SEE-ED|SHOW)|(SELF (think|believe|"
+        r"reckon))? there (BE|HAVEV been)) (?P<thing>_+)"
+    ),
+    r"(FILLER)* (?P<thing>_+?) (BE|HAVEV) _+",
+    r"(FILLER)* (?P<thing>_+)",
+)
+_NEED = r"(WRAPPER|need be|needed|necessary|required|(SELF) (have to|must|need to|need|want|like)|possible)"
+_FINE = (
+    r"(it|that|this) (BE)? (not)? (all_right|FILLER|okay|ok|fine|convenient|possible|too much trouble|too "
+    r"much|no trouble|a problem) _*|SELF (DOV|do) not mind _*|_{0,1} FILLER"
+)
+_NOT_A_REASON = frozenset({"must", "should", "never", "both"})
+
+
+def is_reason(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a clause only says why: "I want to see the roof", "we cannot see the doors", "the sun is in the lens"."""
+    return bool(full_match(f"(FILLER|COMMA)* ({_WISH}|{_FAILING}|{_STATE})", lexemes))
+
+
+def is_wish(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a clause says what the user wants to see."""
+    return bool(full_match(f"(FILLER|COMMA)* ({_WISH})", lexemes))
+
+
+def explains(clause: Clause, clauses: int) -> bool:
+    """Return whether a clause that cannot be read only says why the others shall be done.
+
+    It must not state an angle, a place, or something to do several times.
+
+    Args:
+        clause: The clause.
+        clauses: The number of clauses of the instruction.
+    """
+    if clause.is_question or clauses < 2 or not match_start(STATEMENT, clause.lexemes):
+        return False
+    if any(x.has("HOWMANY") or x.word in {"know", "tell", "whether"} for x in clause.lexemes):
+        return False  # "I need to know how the bins are placed"
+    denies = any(x.has("NOT") for x in clause.lexemes)
+    if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):
+        return False
+    if _NOT_A_REASON & {x.word for x in clause.lexemes}:
+        return False
+    return not any(x.has("NUM", "DEG", "PAN", "TILT", "ZOOM", "PRESET", "HOME") for x in clause.lexemes)
+
+
+def pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing | None:
+    """Return the thing that a clause points out for the next one: "there is a man by the van. Follow him."; None for none."""
+    if (
+        after is None
+        or clause.is_question
+        or not after.lexemes
+        or after.marker
+        or not search("(it|them|him|her|PRON)", after.lexemes)
+    ):
+        return None
+    if any(x.has("NUM", "DEG", "NOT", "NONE", "IF", "HOME") for x in clause.lexemes) or clause.lexemes[0].has(*VERBS):
+        return None
+    for pattern in _POINTED_OUT:
+        match = full_match(pattern, clause.lexemes)
+        if match and (thing := thing_of(source, match["thing"])) is not None and thing.text:
+            return thing
+    return None
+
+
+def elliptical_condition(source: Source, clause: Clause, after: Clause | None) -> Condition | None:
+    """Return the condition of "more than five cars? Zoom out", "see a fox, follow it" and "any smoke, go home"; None for others."""
+    is_followed = after is not None and not after.marker and after.link in {",", ".", "and"} and not after.is_question
+    if not is_followed or after is None or not after.lexemes or not _is_command(after.lexemes):
+        return None
+    lexemes = clause.lexemes
+    if full_match("(ATLEAST|MORETHAN|FEWERTHAN|EXACTLY|ATMOST) NUM _+", lexemes):
+        return condition_of(source, lexemes)
+    if search("|".join(VERBS), lexemes[1:]) or lexemes[0].has("WHQ"):
+        return None
+    if (match := full_match("(SEE|spot) (ANY|SOMEONE) (?P<thing>_*)|(ANY|any) (?P<thing>_+)", lexemes)) is not None:
+        if not clause.is_question and lexemes[0].word not in {"any", "see", "spot", "notice", "detect"}:
+            return None
+        thing = thing_of(source, match["thing"]) if match["thing"] else Thing("people")
+        return Seen(thing) if thing is not None and thing.text else None
+    if lexemes[0].has("SOMEONE", "NOONE") or (lexemes[0].word == "no" and clause.link != ","):
+        return condition_of(source, lexemes)
+    return None
+
+
+def _is_command(lexemes: Sequence[Lexeme]) -> bool:
+    first = next((x for x in lexemes if not x.has("FILLER", "FIRSTLY")), None)
+    return first is not None and first.has(*VERBS, "HOME", "LEFT", "RIGHT", "UP", "DOWN")
+
+
+def is_courtesy(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "if" are only polite: "it's not too much trouble", "you don't mind"."""
+    return bool(full_match(_FINE, lexemes))
+
+
+def is_need(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "if" leave it to the planner: "needed", "you have to"."""
+    return bool(full_match(f"(FILLER)* {_NEED} (FILLER)*", lexemes))

@@ -1,0 +1,129 @@
+"""The forms of words that begin a clause."""
+
+from __future__ import annotations
+
+from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, VERBS
+
+ENDS = {"STOP": ".", "QUESTION": "?", "COLON": ":"}
+
+
+SEPARATORS = ("COMMA", "AND", "BUT", "DASH", "OPEN", "CLOSE")
+
+
+SKIPPED = ("FILLER", "LEADFILLER", "FIRSTLY", "WRAPPER", "COMMA", "INSTEAD", "QUOTE")
+
+
+GERUNDS = tuple(f"{verb}-ING" for verb in VERBS)
+
+
+NOUNS_TOO = frozenset({
+    "frame", "head", "point", "view", "image", "picture", "shoot", "turn", "track", "step", "record", "log", "note", "report",
+    "show", "watch", "display", "tip", "tail", "level", "need", "want", "have", "do", "make", "press", "trim", "shadow", "trail",
+    "check", "search", "survey", "face", "angle", "train", "crane", "list", "name", "state", "total", "cover", "drop", "dip",
+    "duck", "bow", "start", "end", "stop", "run", "draw", "rock", "pop", "set", "edge", "slide", "drift", "tour", "pick", "cut",
+    "change", "tuck", "shift", "patrol", "pull", "capture", "hold", "shot", "store", "monitor", "focus", "swing", "spin",
+    "call", "skip", "export", "access", "twist", "wheel", "rest", "comb", "can", "ask", "nip", "tab", "spot", "range",
+})  # fmt: skip
+"""Words that are verbs or nouns. They begin a clause only if the next word can follow a verb."""
+
+
+AFTER_VERB = (
+    "DET", "PRON", "NUM", "FRACTION", *DIRECTIONS, "IN", "OUT", "LITTLE", "LOT", "LIMIT", "CAMERA", "AROUND", "BACK", "AMOUNTISH",
+    "SELF", "HOME", "PRESET", "REVERSE", "PICTURE", "HOWMANY", "WHQ", "MORE", "CLOSER", "WIDER", "TELL", "VISIBLE",
+)  # fmt: skip
+
+
+NOUN_LIKE = (
+    "FREE",
+    "PRESET",
+    "NUM",
+    "DEG",
+    "VISIBLE",
+    "CAMERA",
+    "PICTURE",
+    "HOME",
+    "PRON",
+    "X",
+    "PERCENT",
+    "FULL",
+    "NOW",
+    "LITTLE",
+    "LOT",
+    "LIMIT",
+    "PRESETNOUN",
+    "IN",
+    "OUT",
+    "FILLER",
+    "AGAINWORD",
+    "STEPNOUN",
+    "VIEWNOUN",
+    "SECONDS",
+    "MINUTES",
+    "TURNNOUN",
+    "SEE",
+    *DIRECTIONS,
+)
+
+
+ADJECTIVES = frozenset({"slow", "red", "blue", "green", "white", "black", "yellow", "big", "small", "new", "old", "last", "first"})
+
+
+BEFORE_NOUN = ("DET", "PREP", "REL", "MODAL", "DOV", "NOT", "SELF", "WRAPPER", "KEEP", "WHQ", "HAVEV", "NEGATED", "ADVERB", "NUM")
+"""Classes of words after which a verb without a separator does not begin a clause."""
+
+
+QUESTION_FORMS = (
+    r"(and|so|FILLER)* (HOWMANY|HOWMANYMORE|WHQ|BE (there|DET|PRON|SOMEONE|NOONE|FREE|PRESET|CAMERA)|DOV (DET|"
+    r"PRON|SELF|SOMEONE)|HAVEV (DET|SOMEONE|PRON)|MODAL (SELF|DET|PRON) (ADVERB|FILLER)* (SEE|READ)|PREP WHQ|"
+    r"out_of DET|any FREE|DET FREE VISIBLE|(anyone|anybody|anything) )"
+)
+
+
+ASKING = r"_{0,4} (TELL|DESCRIBE|LISTING) "
+
+
+FRAGMENT = (
+    r"(AMOUNTISH|DET|to|PREP)* (LEFT|RIGHT|UP|DOWN) (AMOUNTISH|by)* (NUM|FRACTION|LITTLE|LOT|LIMIT|MORE)|"
+    r"(AMOUNTISH|MORE|DET)* (NUM|FRACTION|LITTLE|LOT) (DEG)? (to|over|DET|MORE|AMOUNTISH|PREP)* (LEFT|RIGHT|"
+    r"UP|DOWN)|NUM (X|PERCENT) (ZOOM|IN|OUT)|NUM X \Z"
+)
+"""Beginnings of moves without a verb, as in "left 20" or "10 degrees up"."""
+
+
+LOOSE_FRAGMENT = (
+    r"(AMOUNTISH|BACK|to|PREP|over|the|DET|MORE|IN|OUT)* (LEFT|RIGHT|UP|DOWN|NUM|FRACTION|LITTLE|LOT|LIMIT|"
+    r"SAMEAMOUNT|BACK|TWICE|VERTICALUP|VERTICALDOWN)"
+)
+"""Beginnings of words that continue a move after "and" or a comma, as in "up by 12" or "by another 10"."""
+
+
+HEADINGS = frozenset({"steps", "tasks", "task", "instructions", "plan", "orders", "commands", "procedure", "sequence"})
+
+
+STATEMENT = (
+    r"((DET)? (FREE|CAMERA|VIEWNOUN|PICTURE)+ 's |all SELF HAVEV|FREE FREE? 's (PREP|FREE|DET|AMOUNTISH)|"
+    r"(FREE)? (wants|needs)|WRAPPER |(SELF|PRON|SOMEONE|there|that|it) (MODAL|DOV|BE|HAVEV|FREE|SHOW|TELL|"
+    r"CARRY)|(DET|all|FRACTION|LOT|FREE)+ (FREE|CAMERA|PICTURE|VIEWNOUN)* (BE|HAVEV|MODAL|DOV|WISH) |too "
+    r"(much|FREE|LOT|DET)|MODAL not |DOV not SELF|(need|needs|want) (it|PRON|them) |DET FREE{1,2} (FREE|"
+    r"CARRY-S|SWITCH-S|TURN-S))"
+)
+"""Beginnings of statements that say why: "I can't see the doors", "the sun is in the lens", "too much sky"."""
+
+
+STARTS = (
+    r"(up to NUM|(do|MODAL) not|HOME|SNAP|PICTURE|ANOTHER (PICTURE|DET)?\Z|DET ANOTHER|EACHTIME|ATMOST|REASON|"
+    r"NEGATED|RESET|REPEAT|BETWEENEACH|AGAINWORD|UNDO|WIDE|TIGHT|CLOSER|WIDER|FULL|RESETZOOM|BACK|SCAN|"
+    r"REVERSE|VERTICALDOWN|VERTICALUP|IFSO|IFNOT|INSTEAD|DET (pan|tilt|zoom|PANNOUN|TILTNOUN|ZOOMNOUN) (to|at|"
+    r"NUM)|NUM PICTURE|(with|one) DET? PICTURE|DET (PICTURE)|LEVEL|(at|from|in) DET? PRESET PRESETNOUN? "
+    r"COMMA? (COUNT|PAN|TILT|ZOOM|TAKE|TURN|SNAP|HOWMANY|READ|TELL|FIND)|CENTREALL|NUM X (INTURN|"
+    r"ATMOST)*(STOP|COMMA|CLOSE|\Z)|TWICE|THRICE|PURPOSE)"
+)
+
+
+PLACE_LEAD = (
+    r"(FILLER|FIRSTLY)* (at|from|in|on|for|between|using|starting from|starting at|with) (PRESET|DET|AND|OR|"
+    r"PRESETNOUN|COMMA|EVERY|CAMERA|on|at|NUM|ORDINAL)+|(NOW|FULL|FILLER)+|from (LEFT|RIGHT|UP|DOWN|FREE|"
+    r"PREP) to? (LEFT|RIGHT|UP|DOWN|FREE)|CAMERA NUM|(in|on|at|behind|between|near|under|beside|among) (DET|"
+    r"NUM)* (FREE|PREP|DET|NUM)+|(FILLER)* for (NUM|DET|FRACTION|AMOUNTISH)* (SECONDS|MINUTES)"
+)
+"""A place before a comma belongs to the clause that follows."""

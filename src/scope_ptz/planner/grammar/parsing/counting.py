@@ -1,0 +1,133 @@
+"""Read clauses that count, or check places for things."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    AtPlaces,
+    Count,
+    Step,
+    Thing,
+)
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import ME, SKIP, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.noun_phrases import described, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.scopes import has_full_scope, without_view
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
+
+
+_LOOKING = r"(TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SEE|have|AIM|do|give|get|CARRY|LISTING|FIND|and|DET)"
+
+
+_SEEING = (
+    r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ)|there BE|SELF "
+    r"(can|could|do|have)? (SEE|have|got)|HAVEV SELF (got)?|do we have|can be SEE-ED|can be seen|BE VISIBLE|"
+    r"are we SEE-ING|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
+    r"altogether)"
+)
+
+
+def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | tuple[Step, ...] | None:
+    """Read "count the cars", "how many cars are there" and "the number of cars"."""
+    if match := full_match(rf"{SKIP} {_LOOKING}* {ME} HOWMANYMORE (?P<first>_+) than (?P<second>_+)", lexemes):
+        return None
+    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ|BE|DET|that)* (?P<how>HOWMANY) (?P<rest>_+)", lexemes):
+        return _counted(source, match["rest"], view, lexemes, match["how"][0])
+    if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
+        return Count((Thing(),), view)
+    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ BE|DET|total|exact|overall)* COUNTNOUN (DET|all)? (?P<rest>_+)", lexemes):
+        return _counted(source, match["rest"], view, lexemes, None)
+    if match := full_match(
+        rf"{SKIP} (do|TAKE|CARRY)? {ME} DET? (?P<thing>FREE) (count|headcount) (of)? (VISIBLE|FILLER)*", lexemes
+    ):
+        return _counted(source, match["thing"], view, lexemes, None)  # "people count"
+    if match := full_match(rf"{SKIP} (COUNT|COUNT-ING) {ME} (?P<rest>_+)", lexemes):
+        if match["rest"][0].has("NUM", "to") and not match["rest"][0].has("DET") and len(match["rest"]) < 3:
+            return None
+        return _counted(source, match["rest"], view, lexemes, None)
+    return None
+
+
+def _counted(
+    source: Source, rest: Sequence[Lexeme], view: View | None, lexemes: Sequence[Lexeme], how: Lexeme | None
+) -> Step | tuple[Step, ...] | None:
+    """Return the count of what follows "how many" or "count"."""
+    if view is None and has_full_scope(lexemes):
+        view = "full"
+    rest, inner = without_view(trimmed(rest, "FILLER", "COMMA", "AMOUNTISH"))
+    view = view or inner
+    if full_match(r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again)*", rest) and not any(
+        x.has("FREE") for x in rest
+    ):
+        return Count((Thing(),), view)
+    if match := full_match(
+        rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|INTURN)*", rest
+    ):
+        things = things_of(source, match["thing"])
+        if things:
+            return Count(things, view)
+    if how is not None and (those := _count_those(source, rest, view)):
+        return those
+    if things := things_of(source, rest):
+        return Count(things, view)
+    return None
+
+
+def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> Step | None:
+    """Read "how many cars are in the left lane" or "... are red" as a count of a longer description."""
+    if match := full_match(r"(?P<part>_+?) (does|do|has|have) (?P<whole>_+?) (have|got|show|contain)", rest):
+        part, whole = thing_of(source, match["part"]), thing_of(source, match["whole"])
+        return Count((Thing(f"{part.text} of the {whole.text}"),), view) if part and whole else None
+    match = full_match(
+        (
+            r"(?P<thing>_+?) (?P<verb>(can SELF SEE|do SELF SEE|BE there|BE VISIBLE|BE|HAVEV|do|does|DOV)) "
+            r"(?P<not>not)? (have|wear|be)? (?P<rest>_+)"
+        ),
+        rest,
+    )
+    if not match or not (thing := thing_of(source, match["thing"])):
+        return None
+    words, verb = trimmed(match["rest"], "FILLER"), match["verb"]
+    text = text_of(source, words)
+    negated = match.has("not")
+    if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words):
+        return None
+    if not thing.text:
+        return Count((Thing(f"{'not ' if negated else ''}{text} ones"),), view)
+    if any(x.has("HAVEV", "DOV") for x in verb) and not any(x.has("BE", "SELF") for x in verb):
+        return Count((Thing(f"{thing.text} {'without' if negated else 'with'} {text}"),), view)
+    adjective = (
+        len(words) == 1 and (words[0].has("FREE") or words[0].word in {"open", "shut"}) and not text.endswith("ing") and not negated
+    )
+    return Count(
+        (Thing(described(f"{text} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{text}")),), view
+    )
+
+
+def check_places_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+    """Read "check the gate and the yard for people"."""
+    if (bare := full_match(rf"{SKIP} (check|TELL|scan|SCAN) for (?P<things>_+)", lexemes)) is not None:
+        things = things_of(source, bare["things"])
+        return Count(things, "full" if lexemes[0].has("SCAN") else None) if things else None  # "check for smoke"
+    if (wide := full_match(rf"{SKIP} (check|look|SCAN|TELL|search) FULL for (?P<things>_+)", lexemes)) is not None:
+        things = things_of(source, wide["things"])
+        return Count(things, "full") if things else None
+    match = full_match(
+        (
+            rf"{SKIP} (check|look at|look in|search|inspect|look in on|SCAN|check out|have a look at|take a look at) "
+            rf"(?P<places>_+?) for (?P<things>_+)"
+        ),
+        lexemes,
+    )
+    if not match:
+        return None
+    places, things = places_of(source, match["places"]), things_of(source, match["things"])
+    if any(x.has("SECONDS", "MINUTES") for x in match["things"]):
+        return None
+    return AtPlaces(places, (Count(things),)) if places is not None and things else None

@@ -1,0 +1,86 @@
+"""Read clauses that look at the scene: counts, questions, reading, pictures, close-ups and following."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    Ask,
+    Count,
+    Step,
+    Sweep,
+)
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.asking import question_step
+from scope_ptz.planner.grammar.parsing.clause import SKIP, Source, text_of
+from scope_ptz.planner.grammar.parsing.closeups import close_up_step, read_step, track_step
+from scope_ptz.planner.grammar.parsing.counting import check_places_step, count_step
+from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.pictures import picture_step
+from scope_ptz.planner.grammar.parsing.scopes import has_full_scope, without_view
+
+if TYPE_CHECKING:
+    pass
+
+
+def look_step(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> Step | tuple[Step, ...] | None:
+    """Return the step of a clause that looks at the scene; None for other clauses.
+
+    Args:
+        source: The instruction.
+        lexemes: The clause.
+        asked: Whether a question mark ends the clause.
+    """
+    bare, view = without_view(lexemes)
+    for read in (picture_step, check_places_step, _sweep):
+        if (step := read(source, lexemes)) is not None:
+            return step
+    if (
+        asked
+        and (match := full_match(r"(FILLER|SEE|SHOW|any|got)* (ANY|DET) (?P<thing>_+?) (VISIBLE|there|here|about|anywhere)*", bare))
+        and lexemes[0].has("SEE", "ANY")
+        and (thing := thing_of(source, match["thing"])) is not None
+        and thing.text
+    ):
+        return Ask(text_of(source, lexemes) + "?", "full" if has_full_scope(lexemes) else view)
+    for reader in (count_step, read_step):
+        if (step := reader(source, bare, view)) is not None:
+            return step
+    for read in (track_step, close_up_step):
+        if (step := read(source, bare)) is not None:
+            return step
+    return question_step(source, lexemes, bare, view, asked=asked)
+
+
+def _sweep(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
+    """Read "sweep the scene", which makes the following questions be about the whole scene."""
+    scope = (
+        r"(DET|FULL|WHOLETHING|VIEWNOUN|PRESETNOUN|area|site|AROUND|CAMERA|through|FILLER|over|of|whole|entire|"
+        r"full|sweep|place|LIMIT|surroundings|look|and|have|DET|all|full_sweep|once|CARRY|TURN|in|AIM|complete|"
+        r"yard|room|field|LITTLE|horizon|HORIZON|NUM DEG|so_that|one)*"
+    )
+    if (
+        full_match(
+            (
+                rf"{SKIP} (DET)? (FULL|LIMIT|full|complete)? (SCAN|SCAN-ING|check|look|AIM|look_through|do|DET|TELL|have a "
+                rf"look|(TURN) (NUM DEG|LIMIT) "
+                rf"AROUND|cover) {scope}"
+            ),
+            lexemes,
+        )
+        and (any(x.has("SCAN", "SCAN-ING", "FULL") for x in lexemes))
+        and not any(x.has("LEFT", "RIGHT", "UP", "DOWN", "HORIZON") or (x.has("TURN") and not x.has("SCAN")) for x in lexemes)
+    ):
+        return Sweep(turn=any(x.word in {"do_a_360", "do_a_full_360", "do_a_full_circle"} for x in lexemes))
+    match = full_match(
+        (
+            rf"{SKIP} (SCAN|SCAN-ING) (?P<where>(DET|FULL|VIEWNOUN|AROUND|area|site|through|of|over|place)*) (for|to "
+            rf"(SEE|FIND|COUNT)|COUNT-ING|COUNT) (?P<things>_+)"
+        ),
+        lexemes,
+    )
+    if match and (things := things_of(source, match["things"])):
+        return (Sweep(), Count(things, "full"))
+    return None

@@ -1,0 +1,199 @@
+"""Read a clause that turns the camera.
+
+The words for amounts, steps and directions are found wherever they stand. Every other word must be one that adds nothing, such as
+an article or "the camera"; otherwise the clause is not a turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Literal
+
+from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Further, Move, Part, Repeat, Step, Turn, Unclear
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import DANGLING, DIRECTIONS, NotUnderstoodError
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.special_turns import AXIS_TARGET, special_turn
+from scope_ptz.planner.grammar.parsing.turn_words import AXES, SILENT_IN_TURNS, TURN_GERUNDS, TURN_VERBS, TurnParts, find_parts
+
+HasClass = Callable[..., bool]
+"""Tells whether one of the words that add nothing belongs to a class."""
+
+_UNCLEAR_WAY = Unclear("Which way shall I turn, and how far?")
+_CONTRADICTION = Unclear("Those two directions contradict each other. Which way shall I turn?")
+
+
+def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
+    """Return the step of a clause that turns the camera; None if the clause is about something else.
+
+    Raises:
+        NotUnderstoodError: The clause turns the camera, but has words that are not accounted for.
+    """
+    if not _is_about_turning(lexemes):
+        return None
+    if special := special_turn(lexemes):
+        return special
+    found, silent, unread = find_parts(lexemes)
+    has_verb = any(x.has(*TURN_VERBS, *TURN_GERUNDS, *(f"{verb}-ED" for verb in TURN_VERBS), "REVERSE") for x in lexemes)
+    if not has_verb:  # "the one on the right" is not a turn
+        unread += [
+            x for x in silent if x.word in {"on", "at", "in", "with", "across", "along", "is", "are", "that", "one", "of", "into"}
+        ]
+    unread += [x for x in lexemes if x.word == "one" and not match_start("one DEG", lexemes[lexemes.index(x) :])]
+    if (camera := search("CAMERA (?P<number>NUM)(?! (DEG|X))", lexemes)) is not None:
+        unread += camera["number"]  # "camera 2 left" is about another camera
+    if lexemes[-1].word in DANGLING and not found.directions:
+        unread.append(lexemes[-1])
+    if unread:
+        raise NotUnderstoodError(unread)
+    step = _step(found, silent, lexemes)
+    return Repeat((step,), found.times) if found.times > 1 and isinstance(step, Move) else step
+
+
+def _is_about_turning(lexemes: Sequence[Lexeme]) -> bool:
+    if full_match(rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) ({AXIS_TARGET})+", lexemes):
+        return True
+    if any(x.has("ZOOM", "ZOOMNOUN", "PERCENT", "ENLARGE", "WIDEN", "HALVE", "PRESET") for x in lexemes):
+        return False
+    if full_match(
+        (
+            r"(FILLER|CAMERA|it|LITTLE|LOT|MORE|DET VIEWNOUN|AROUND)* (CARRY|CARRY-ING) (FILLER|CAMERA|it|LITTLE|LOT|"
+            r"MORE|DET VIEWNOUN|AROUND)*"
+        ),
+        lexemes,
+    ):
+        return True
+    return any(
+        x.has(
+            *DIRECTIONS,
+            "PAN",
+            "TILT",
+            "TURN",
+            "PAN-ING",
+            "TILT-ING",
+            "TURN-ING",
+            "AIM",
+            "AIM-ING",
+            "RAISE",
+            "LOWER",
+            "REVERSE",
+            "LEVEL",
+            "CENTREALL",
+            "CENTREWORD",
+            "PANNOUN",
+            "TILTNOUN",
+            "HORIZON",
+            "VERTICALUP",
+            "VERTICALDOWN",
+            "COMPASS",
+            "DEG",
+            "AHEAD",
+            "RAISE-ING",
+            "LOWER-ING",
+            "TURNNOUN",
+        )
+        for x in lexemes
+    ) or (
+        not any(x.has("PICTURE") for x in lexemes)
+        and all(x.has("NUM", *SILENT_IN_TURNS, "SAMEAMOUNT", "LITTLE", "LOT") for x in lexemes)
+        and any(x.has("NUM", "LITTLE", "SAMEAMOUNT", "LOT") for x in lexemes)
+    )
+
+
+def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step of the parts of a turn."""
+
+    def has(*classes: str) -> bool:
+        return any(x.has(*classes, *(f"{name}-ING" for name in classes)) for x in silent)
+
+    has_verb = any(x.has(*TURN_VERBS, *TURN_GERUNDS) and not x.has(*DIRECTIONS) for x in silent) or (
+        len(lexemes) > 1 and has("LOWER")
+    )
+    ways = list(dict.fromkeys(found.directions))
+    axes = {AXES[way][0] for way in ways}
+    if len(ways) > len(axes):
+        return _CONTRADICTION
+    if search("RIGHT (UP|DOWN)", lexemes) and not search("right (hand|side)", lexemes) and len(found.amounts) < 2:
+        return Unclear("Shall I also turn right?")  # "tilt it right down"
+    if (has("TILT") and ways and "tilt" not in axes) or (has("PAN") and ways and "pan" not in axes):
+        return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
+    if found.aims:
+        return Move(tuple(found.aims)) if not found.parts and found.target is None else _UNCLEAR_WAY
+    if found.target is not None:
+        return _target(found, ways, has, lexemes)
+    if not ways:
+        return _undirected(found, has, has_verb, lexemes)
+    amounts = found.amounts
+    exact = [amount for amount in amounts if amount.kind == "degrees"]
+    if len(ways) == 1:
+        if len(exact) > 1 or (len(amounts) > 1 and not exact):
+            return Unclear("By how many degrees shall I turn?")
+        amount = exact[0] if exact else amounts[0] if amounts else None
+        return Move((_turn(ways[0], amount, found),), has_verb)
+    if len(amounts) > len(ways):
+        return Unclear("By how many degrees shall I turn, and which way?")
+    return Move(_several(found, ways), has_verb)
+
+
+def _several(found: TurnParts, ways: list[str]) -> tuple[Part, ...]:
+    """Return the turns about two axes. One amount is shared; otherwise each direction has the amount next to it."""
+    amounts = found.amounts
+    if len(amounts) < 2:
+        return tuple(_turn(way, amounts[0] if amounts else None, found) for way in ways)
+    return tuple(_turn(way, amount, found) for way, amount in zip(ways, amounts, strict=False))
+
+
+def _turn(way: str, amount: Amount | None, found: TurnParts) -> Turn:
+    axis, sign = AXES[way]
+    step, count = found.step, found.count
+    if found.divides and count and amount and amount.kind == "degrees":
+        step = Amount("degrees", abs(amount.degrees) / count)
+    elif found.divides:
+        count = None
+    return Turn(axis, sign, amount, step, count)
+
+
+def _target(found: TurnParts, ways: list[str], has: HasClass, lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step that turns to an absolute angle."""
+    value = found.target or 0.0
+    if found.amounts or len(ways) > 1:
+        return Unclear("Is that the angle to turn to, or the angle to turn by?")
+    if ways and search("at NUM", lexemes):
+        return Unclear("Is that the angle to turn to, or the angle to turn by?")
+    axis: Literal["pan", "tilt"] = AXES[ways[0]][0] if ways else "tilt" if has("TILT", "TILTNOUN") else "pan"
+    if ways and AXES[ways[0]][1] < 0:
+        value = -abs(value)
+    if not ways and not has("TILT", "TILTNOUN", "PAN", "PANNOUN", "AIM", "TURN"):
+        return Unclear("Is that number the pan angle in degrees, or the number of a preset?")
+    return Move((Aim(axis, value),))
+
+
+def _undirected(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step of a turn without a direction: a signed angle ("pan 25"), or more of the turn before ("another 10")."""
+    amount = next(iter(found.amounts), None)
+    axis: Literal["pan", "tilt"] = "tilt" if has("TILT", "TILTNOUN") or search("TILT", lexemes) else "pan"
+    is_axis = has("PAN", "TILT", "PANNOUN", "TILTNOUN") or bool(search("PAN|TILT", lexemes))
+    if len(found.amounts) > 1 or (has("PAN") and has("TILT")):
+        return _UNCLEAR_WAY
+    if has("INCREASE", "DECREASE") and is_axis and amount:
+        return Move((Turn(axis, -1 if has("DECREASE") else 1, amount),))
+    if amount and amount.kind == "degrees" and any(x.has("ABSOLUTE") or x.word in {"set", "put"} for x in lexemes) and is_axis:
+        return Move((Aim(axis, amount.degrees),))
+    if amount and amount.kind == "degrees" and any(x.word == "face" for x in lexemes):
+        return Move((Aim("pan", amount.degrees),))
+    if (
+        amount
+        and amount.kind == "degrees"
+        and (
+            is_axis
+            or (any(x.has("TURN", "TURNNOUN", "REVERSE") for x in lexemes) and (abs(amount.degrees) >= 180 or amount.degrees < 0))
+        )
+    ):
+        return Move((Turn(axis, 1, amount, found.step, found.count),))
+    if found.step and is_axis and not amount:
+        return Move((Turn(axis, 1, amount, found.step, found.count),))
+    if amount and not has_verb and any(x.has("MORE") or x.word in {"another", "more"} for x in lexemes):
+        return Further(amount)
+    if not amount and not found.step and has_verb and (is_axis or has("TURN", "AIM", "CARRY")):
+        return Unclear("Shall I tilt up or down?" if axis == "tilt" else "Shall I turn left or right?")
+    return _UNCLEAR_WAY

@@ -1,0 +1,214 @@
+"""Read descriptions of things: noun phrases with determiner, modifiers, head noun and post-modifiers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from scope_ptz.english import COLOURS
+from scope_ptz.english.grammar.common_nouns import is_common_noun
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.planner.grammar.instruction_tree import Thing
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MARKERS, VERBS, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+
+_NEVER = (
+    "DEG", "STOP", "QUESTION", "THEN", "UNTIL", "IFNOT", "IFSO", "PAN", "TILT", "ZOOM", "PAN-ING", "TILT-ING", "ZOOM-ING",
+    "WRAPPER", "ATMOST", "REPEAT", "COLON",
+)  # fmt: skip
+"""Classes of words that no description contains."""
+
+_COMMANDS = ("TELL", "SWITCH", "TAKE", "SHOW", "FIND", "CARRY", "READ", "COUNT", "SNAP", "AIM", "TRACK", "TURN", "SCAN", "KEEP")
+_LEAD = r"(me|us|FILLER|OFNOUN|all of|both of|any of|some of)*"
+_DETERMINERS = ("DET", "EVERY", "ANY")
+_DEFINITE = frozenset({"the", "that", "this", "these", "those", "all_the", "all_of_the", "each_of_the", "my", "our", "your"})
+_PRONOUN = re.compile(r"(?:it|them|they|that|this|those|these|him|her|that one|this one|he|she|one|the one)", re.IGNORECASE)
+_RELATIVE = (
+    (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
+    (
+        re.compile(
+            r"\b(?:who|that|which) (?:don['’]?t|do not|doesn['’]?t|does not|have not|haven['’]?t) (?:have|wear)\b", re.IGNORECASE
+        ),
+        "without",
+    ),
+    (re.compile(r"\b(?:who|that|which)(?: (?:are|is)|['’](?:re|s)) (?=\w)", re.IGNORECASE), ""),
+    (re.compile(r"(?<!\bthat)(?<!\bwho)(?<!\bwhich) (?:have|has) (?=\w)", re.IGNORECASE), " with "),
+    (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
+    (re.compile(r" (?:of|in) the (?:picture|frame|image|view|shot|screen|scene)$", re.IGNORECASE), ""),
+    (re.compile(r"^(?:me |us )?(?:all )?(?:of )?(?:the |these |those )?(?=\w)", re.IGNORECASE), ""),
+)
+"""Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
+
+
+def described(text: str) -> str:
+    """Return a description without function words and without the verb of its relative clause.
+
+    For example "people that aren't wearing helmets" becomes "people not wearing helmets".
+    """
+    for pattern, plain in _RELATIVE:
+        text = pattern.sub(plain, text)
+    return " ".join(text.split())
+
+
+def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
+    """Return the thing that lexemes describe, with an empty text for a pronoun; None if they are not a noun phrase."""
+    lexemes = trimmed(lexemes, "FILLER", "COMMA", "QUOTE", "AND")
+    if not lexemes:
+        return None
+    if full_match(r"(all|both|each)? (of)? PRON (one|ones|there|here)?", lexemes) and _PRONOUN.fullmatch(
+        " ".join(x.word for x in lexemes)
+    ):
+        return Thing()
+    is_list = search("(AND|OR) (the|a|an)|COMMA", lexemes) and not search("between", lexemes)
+    if is_list or not is_noun_phrase(lexemes):
+        return None  # several things
+    while len(lexemes) > 1 and lexemes[-1].word in {"there", "here"}:
+        lexemes = lexemes[:-1]  # "at least 3 awnings there"
+    first = 0
+    while first < len(lexemes) - 1 and lexemes[first].has(*_DETERMINERS) and not lexemes[first].has("SOMEONE", "NUM"):
+        first += 1
+    definite = any(x.word in _DEFINITE for x in lexemes[:first])
+    text = described(text_of(source, lexemes[first:]))
+    return Thing(text, definite=definite) if text else None
+
+
+def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are one noun phrase, or several joined by "and", "or" or commas."""
+    if any((x.has("LIMIT", "INTURN") and "_" in x.word) or x.word in {"than", "nor", "neither"} for x in lexemes):
+        return False
+    if any(x.has(*_NEVER) or (x.has(*MARKERS) and not x.has("DET", "PREP", "REL", "SOMEONE")) for x in lexemes):
+        return False
+    if lexemes[0].has("REL", "AND", "OR", "BUT", "BE", "MODAL", "HAVEV", "NOT", "DOV", "REASON") and not lexemes[0].has("DET"):
+        return False
+    if lexemes[0].has("PREP", "SELF") and not lexemes[0].has("DET", "ADVERB", "ANY", "FREE"):
+        return False
+    if lexemes[-1].word == "can" and len(lexemes) > 1 and lexemes[-2].has("FREE"):
+        return is_noun_phrase(lexemes[:-1])  # "the trash can"
+    if lexemes[-1].has("DET", "PREP", "REL", "AND", "OR", "MODAL", "BE", "HAVEV", "DOV") and not lexemes[-1].has(
+        "ADVERB", "PRON", "ANY", "VISIBLE", *DIRECTIONS
+    ):
+        return False
+    if search("as (PRON|SELF)", lexemes) or match_start("NUM OR NUM|(it|them|him|her) PREP", lexemes):
+        return False
+    if search(r"EVERY (of)? (DET)* PRESETNOUN", lexemes):
+        return False
+    if not has_noun(tuple(lexemes)):
+        return False
+    relative = next((i for i, x in enumerate(lexemes) if x.has("REL") and i), len(lexemes))
+    if any(x.has("BE", "MODAL", "DOV", "HAVEV") and not x.has("DET") for x in lexemes[:relative]):
+        return False
+    return not any(_is_command(lexemes, i) for i in range(len(lexemes))) and not _ends_in_direction(lexemes)
+
+
+def has_noun(lexemes: tuple[Lexeme, ...]) -> bool:
+    """Return whether lexemes have a word that can name a thing."""
+    for before, x in pairwise(lexemes):
+        after = lexemes[lexemes.index(x) + 1 : lexemes.index(x) + 2]
+        if x.word in {"one", "ones"} and (
+            (after[:1] and after[0].has("PREP", "REL")) or (not after and not before.has("DET", "EVERY"))
+        ):
+            return True
+        if (
+            before.has("DET")
+            and not x.has("PRON", "DET", "HOME", "NUM", *DIRECTIONS, "FRACTION")
+            and (not after or after[0].has("PREP", "REL", "AND"))
+        ):
+            return True
+    if any(x.has("DET") for x in lexemes[:-1]) and lexemes[-1].has(*VERBS) and not lexemes[-1].has("PRON", "HOME", *DIRECTIONS):
+        return True  # "a wide load"
+    return any(
+        x.has(
+            "FREE",
+            "PRESET",
+            "PICTURE",
+            "CAMERA",
+            "SOMEONE",
+            "STEPNOUN",
+            "TURNNOUN",
+            "PRESETNOUN",
+            "VIEWNOUN",
+            "WHOLETHING",
+            "SECONDS",
+            "MINUTES",
+            "RIGHTSIDE",
+        )
+        or is_noun(x.word)
+        for x in lexemes
+        if not (x.has("PRON", "DET", "FILLER", "AMOUNTISH", "AND") and not x.has("FREE", "SOMEONE"))
+    )
+
+
+def is_noun(word: str) -> bool:
+    """Return whether a word is a noun that the lexicons of English know."""
+    words = word.replace("_", " ")
+    return lexicon().concept(words) is not None or is_common_noun(words)
+
+
+def _is_command(lexemes: Sequence[Lexeme], i: int) -> bool:
+    """Return whether the word at a position of a description is a verb in the imperative, not after a determiner."""
+    lexeme = lexemes[i]
+    if not lexeme.has(*_COMMANDS) or lexeme.has("FREE", "PREP", "DET") or is_noun(lexeme.word):
+        return False
+    if i == 0:
+        begins_clause = len(lexemes) > 1 and lexemes[1].has("DET", "PRON", "WHQ")
+        return (begins_clause or lexeme.has("TELL", "SWITCH", "TAKE")) and not lexeme.has("PICTURE")
+    if any(x.has("DET") for x in lexemes[max(0, i - 2) : i]):
+        return False
+    if lexemes[i - 1].has("COMMA", "AND", "OR"):
+        return True
+    verbal = lexeme.has("TAKE", "SWITCH", "FIND", "SNAP", "COUNT") and not lexeme.has("HAVEV")
+    return verbal and not lexemes[i - 1].has("DET", "REL", "FREE", "PREP", "MODAL", "NOT", "BE", "HAVEV")
+
+
+def _ends_in_direction(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a bare direction ends the words: "the van left", unlike "the van on the left"."""
+    last = lexemes[-1]
+    if not last.has(*DIRECTIONS) or len(lexemes) < 2:
+        return False
+    before = lexemes[-2]
+    return not (before.has("DET", "PREP", "BE", "AND", "OR", "ADVERB") or before.word.endswith("ing"))
+
+
+def things_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Thing, ...] | None:
+    """Return the things of a list: "cars and trucks". None if a part is not a noun phrase.
+
+    A list that belongs to one noun ("people with hats and bags") is one thing.
+    """
+    lexemes = trimmed(lexemes, "FILLER", "COMMA", "QUOTE")
+    if any(x.word in {"i_mean", "i_meant", "er", "erm", "oops", "sorry"} for x in lexemes):
+        return None  # "the cows, I mean the sheep"
+    parts: list[list[Lexeme]] = [[]]
+    for i, x in enumerate(lexemes):
+        after = lexemes[i + 1] if i + 1 < len(lexemes) else None
+        if (
+            x.has("AND", "COMMA")
+            and parts[-1]
+            and after is not None
+            and not after.has("AND", "REL", "VERB")
+            and _is_separate(parts[-1], lexemes[i + 1 :])
+        ):
+            parts.append([])
+        elif x.has("AND", "COMMA") and not parts[-1]:
+            continue
+        else:
+            parts[-1].append(x)
+    things = [thing_of(source, part) for part in parts if part]
+    if any(thing is None for thing in things):
+        whole = thing_of(source, lexemes)
+        return (whole,) if whole else None
+    return tuple(thing for thing in things if thing)
+
+
+def _is_separate(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> bool:
+    """Return whether "and" joins two things, instead of two parts of the description of one."""
+    if match_start(r"(DET|HOWMANY|EVERY|the)", after):
+        return not any(x.has("REL") for x in before) and not (
+            any(x.word == "between" for x in before) and not any(x.has("AND") for x in before)
+        )
+    if not after or (after[0].has("PREP", "ADVERB", "NOT") and not after[0].has("DET")):
+        return False
+    if after[0].word in COLOURS and all(x.word in COLOURS for x in before if not x.has("DET")):
+        return False  # "red and white barriers"
+    return not any(x.has("PREP", "REL") or x.word.endswith("ing") for x in before[1:])

@@ -1,0 +1,101 @@
+"""The clause that is being read: its words so far, and what can be said about them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MOTION_VERBS, VERBS, Clause
+from scope_ptz.planner.grammar.parsing.clause_starts import (
+    AFTER_VERB,
+    GERUNDS,
+    NOUNS_TOO,
+    PLACE_LEAD,
+    QUESTION_FORMS,
+)
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+
+
+class OpenClause:
+    """The words of an instruction, the clauses before a position, and the words of the clause at this position."""
+
+    def __init__(self, lexemes: Sequence[Lexeme]) -> None:
+        self.lexemes = tuple(lexemes)
+        self.out: list[Clause] = []
+        self.now: list[Lexeme] = []
+        self.link, self.marker = "", ""
+        self.opener: Lexeme | None = None
+
+    def _is_asking(self) -> bool:
+        return bool(self.now) and bool(search(r"(TELL|TELL-ING|WRAPPER|see|check) (me|us|FILLER|SELF)* \Z", self.now))
+
+    def _is_question(self) -> bool:
+        place = match_start(f"({PLACE_LEAD}) COMMA", self.now)
+        lead = [x for x in self.now[place.size if place else 0 :] if not x.has("FILLER", "FIRSTLY", "COMMA", "NOW")]
+        return bool(match_start(QUESTION_FORMS, lead)) or bool(
+            match_start(
+                (
+                    r"(WRAPPER|FILLER)* (TELL|DESCRIBE|LISTING) (me|us|FILLER|SELF)* (if|whether|what|which|who|where|how|"
+                    r"HOWMANY|WHQ|PREP WHQ|IF|that)"
+                ),
+                lead,
+            )
+        )
+
+    def _is_verb(self, i: int) -> bool:
+        """Return whether the lexeme at a position is a verb in the imperative."""
+        lexeme = self.lexemes[i]
+        if not lexeme.has(*VERBS):
+            return False
+        after = self.lexemes[i + 1] if i + 1 < len(self.lexemes) else None
+        return lexeme.word not in NOUNS_TOO or (
+            after is None
+            or after.has(*AFTER_VERB)
+            or after.word in {"to", "at", "on", "for", "towards", "whether", "if", "that", "what"}
+        )
+
+    def _is_amount(self) -> bool:
+        """Return whether the clause so far is only an amount, as in "4x zoom" or "in 10 degree steps, pan right"."""
+        return bool(full_match("(FILLER|in|by|with|DET|NUM|X|DEG|PERCENT|STEPNOUN|ATATIME|LITTLE|AMOUNTISH|of|COMMA)*", self.now))
+
+    def _is_free_of_nouns(self) -> bool:
+        return not any(x.has("FREE") for x in self.now)
+
+    def _is_motion(self) -> bool:
+        return (
+            self._is_free_of_nouns()
+            and not self._is_question()
+            and any(x.has(*MOTION_VERBS, *DIRECTIONS, *GERUNDS, "CLOSER", "WIDER", "HOME") for x in self.now)
+        )
+
+    def _awaits(self, rest: Sequence[Lexeme]) -> bool:
+        """Return whether the words after a separator complete the move before it: "left, about ten degrees", "up and left 10"."""
+        is_exact = bool(match_start("(AMOUNTISH|COMMA|by)* NUM", rest))
+        has_amount = any(x.has("NUM", "FRACTION", "LIMIT") or (not is_exact and x.has("LITTLE", "LOT")) for x in self.now)
+        has_way = any(x.has(*DIRECTIONS) for x in self.now)
+        only_amount = match_start(
+            (
+                r"(but|BUT|only|AMOUNTISH|COMMA|by|DET)* (NUM|FRACTION|LITTLE|LOT|LIMIT) (DEG|AMOUNTISH|of|DET|TURNNOUN|X|"
+                r"FILLER|PERCENT)* (COMMA|AND|THEN|STOP|QUESTION|\Z)"
+            ),
+            rest,
+        )
+        no_way = (
+            not has_way
+            and any(x.has("NUM") for x in self.now)
+            and bool(match_start("(to)? (DET)? (LEFT|RIGHT|UP|DOWN) (FILLER)* (COMMA|AND|THEN|STOP|\\Z)", rest))
+        )
+        if no_way and any(x.has("PAN", "TILT", "TURN", "DEG") for x in self.now):
+            return True  # "6 more degrees of tilt, upwards"
+        two_ways = has_way and match_start("(LEFT|RIGHT|UP|DOWN)", rest) and self.now[-1].has(*DIRECTIONS)
+        return not has_amount and (((has_way or bool(search("IN|OUT", self.now))) and bool(only_amount)) or bool(two_ways))
+
+    def _is_tour(self) -> bool:
+        """Return whether the clause so far goes to a preset or home, so that further names continue the tour."""
+        return (
+            self._is_free_of_nouns()
+            and any(x.has("PRESET", "HOME", "BACK") for x in self.now)
+            and not self._is_question()
+            and self.now[0].word not in {"at", "for", "from", "in", "on", "between", "using"}
+            and not any(x.has("REPEAT", "COUNT", "COUNT-ING", "COMPARE", "PICTURE", "READ", "OR", "TELL") for x in self.now)
+        ) or (bool(self.out) and bool(self.now) and all(x.has("PICTURE", "SNAP") for x in self.now))

@@ -1,0 +1,111 @@
+"""Match patterns of word classes against lexemes.
+
+A pattern is a regular expression whose letters are lexemes. A word in capitals is a class of the lexicon, a word in small letters
+is that word, and "_" is any lexeme: "(COUNT|tally) DET? (?P<things>_+)". Alternation, groups, repetition and look-ahead are those
+of regular expressions. Spaces mean nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+
+_NAME = re.compile(r"\\Z|\?P<\w+>|\?P=\w+|\?[:=!]|\?<[=!]|[A-Z][A-Z-]*|[a-z][a-z_']*|_|\s+")
+
+
+class Match:
+    """A pattern that matched, with the lexemes of its named groups."""
+
+    def __init__(self, match: re.Match[str], lexemes: Sequence[Lexeme], offsets: dict[int, int]) -> None:
+        self._match, self._lexemes, self._offsets = match, lexemes, offsets
+
+    def __getitem__(self, name: str) -> Sequence[Lexeme]:
+        """Return the lexemes of a group; none if the group took no part in the match."""
+        group = self._found.get(name)
+        if group is None:
+            return ()
+        start, end = self._match.span(group)
+        return self._lexemes[self._offsets[start] : self._offsets[end]]
+
+    @property
+    def _found(self) -> dict[str, str]:
+        return {name.partition("__")[0]: name for name, text in self._match.groupdict().items() if text is not None}
+
+    @property
+    def size(self) -> int:
+        """The number of lexemes that the whole match covers."""
+        return self._offsets[self._match.end()] - self._offsets[self._match.start()]
+
+    @property
+    def names(self) -> set[str]:
+        """The names of the groups that took part in the match."""
+        return set(self._found)
+
+    def has(self, name: str) -> bool:
+        """Return whether a group took part in the match."""
+        return name in self._found
+
+
+@lru_cache(maxsize=4096)
+def _compiled(pattern: str) -> re.Pattern[str]:
+    seen: dict[str, int] = {}
+
+    def element(match: re.Match[str]) -> str:
+        name = match[0]
+        if name.startswith("?P<"):  # a group may occur several times, in alternatives
+            group = name[3:-1]
+            seen[group] = seen.get(group, 0) + 1
+            return name if seen[group] == 1 else f"?P<{group}__{seen[group]}>"
+        if name.startswith(("?", "\\")):
+            return name
+        if name.isspace():
+            return ""
+        if name == "_":
+            return r"(?:[^ ]+ )"
+        if name[0].isupper():
+            return rf"(?:[^ |]*\|(?:[^ ]*\|)?{name}\|[^ ]* )"
+        return rf"(?:{re.escape(name)}\|[^ ]* )"
+
+    return re.compile(_NAME.sub(element, pattern))
+
+
+@lru_cache(maxsize=4096)
+def _compiled_anywhere(pattern: str) -> re.Pattern[str]:
+    """Return a pattern that begins at any lexeme."""
+    return re.compile(f"(?:(?<= )|^)(?:{_compiled(pattern).pattern})")
+
+
+@lru_cache(maxsize=2048)
+def _rendered(lexemes: tuple[Lexeme, ...]) -> tuple[str, dict[int, int]]:
+    text, offsets = [], {0: 0}
+    size = 0
+    for i, lexeme in enumerate(lexemes, 1):
+        piece = f"{lexeme.word.replace(' ', '_').replace('|', '_')}|{'|'.join(sorted(lexeme.classes))}| "
+        text.append(piece)
+        size += len(piece)
+        offsets[size] = i
+    return "".join(text), offsets
+
+
+def full_match(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
+    """Return the match of a pattern with all lexemes; None if it does not match."""
+    text, offsets = _rendered(tuple(lexemes))
+    match = _compiled(pattern).fullmatch(text)
+    return Match(match, lexemes, offsets) if match else None
+
+
+def match_start(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
+    """Return the match of a pattern at the first lexeme; None if it does not match."""
+    text, offsets = _rendered(tuple(lexemes))
+    match = _compiled(pattern).match(text)
+    return Match(match, lexemes, offsets) if match else None
+
+
+def search(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
+    """Return the first match of a pattern anywhere; None if there is none."""
+    text, offsets = _rendered(tuple(lexemes))
+    match = _compiled_anywhere(pattern).search(text)
+    return Match(match, lexemes, offsets) if match else None

@@ -1,0 +1,164 @@
+"""Read references to presets, and clauses that go to one, go home, or list the presets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    AtPlaces,
+    GoThere,
+    GoToPreset,
+    Home,
+    ListPresets,
+    PresetRef,
+    Step,
+    Unclear,
+)
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import Source, text_of
+from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
+
+_GO = (
+    r"(LEAVE (?=CAMERA|it|DET CAMERA)|(can|could|may) (i|we) (please)? (?=SHOW|TAKE)|SWITCH|CARRY|TURN|AIM|"
+    r"PAN|SHOW|KEEP|FIND|TAKE|SWITCH-ING|CARRY-ING|SHOW-ING|TURN-ING|HOMEWARD|BACK|over|straight|on|up|to|"
+    r"onto|into|at|me|us|it|SELF|CAMERA|FILLER|FIRSTLY|AROUND|DET|VIEWNOUN|back|towards|toward|for|"
+    r"from|out|in|PRON|next|now|with|through|again|by|of|down|along|LEADFILLER|look|GLUE|TRACK|HOMEVERB|QUOTE|"
+    r"AGAINWORD)*"
+)
+_TAIL = (
+    r"(FILLER|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
+    r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
+)
+_HOW = {"SHOW": "show", "AIM": "look", "USE": "use"}
+
+
+def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+    """Return the step of a clause that goes to a preset or home, or lists the presets; None for other clauses."""
+    if full_match(
+        (
+            r"(SWITCH|CARRY|SWITCH-ING|CARRY-ING|TURN|TAKE|back|BACK|to|it|CAMERA|DET|FILLER|FIRSTLY|SELF|RESET|GLUE|"
+            r"VIEWNOUN|PRON|LEADFILLER|AIM|straight|PAN|up|at)* HOME (FILLER|FIRSTLY|ORDINAL|now|again|position|"
+            r"VIEWNOUN|GLUE|PRESETNOUN|CAMERA)*|(FILLER)* RESET (FILLER|GLUE|to|HOME|CAMERA|DET|VIEWNOUN|PRESETNOUN)*|"
+            r"(FILLER)* park (CAMERA|it|DET)* (FILLER)*"
+        ),
+        lexemes,
+    ):
+        return Home()
+    if (
+        full_match(
+            (
+                r"(LISTING|SHOW|TELL|WHQ|DET|SELF|me|us|FILLER|list of|DOV|BE|have|HAVEV|there|available|saved|stored|"
+                r"defined|of|EVERY|know|for|VISIBLE|got|set|up|does|CAMERA|can|MODAL|use|i|to|go|list|the|names of|"
+                r"HOWMANY|NAMES|name|names|save|PICTURES|SWITCH|CARRY|in|on|has|been|this|choose|from|and|which|existing|"
+                r"configured|exist|at|here|saving|offer|your|what)* (presets|preset list|positions|views|bookmarks|"
+                r"PRESETNOUN) (LISTING|SHOW|DET|SELF|FILLER|list|DOV|BE|have|HAVEV|there|available|saved|stored|for|of|to|"
+                r"can|MODAL|SWITCH|i|go|does|CAMERA|exist|are|you|know|got|set|up|this|use|defined|configured|on|in|the|"
+                r"here|CARRY|names|have|choose|from|we|offer|VISIBLE|PREP|name|(of|for|at) FREE+)*"
+            ),
+            lexemes,
+        )
+        and any((x.word.endswith("s") and x.has("PRESETNOUN")) or x.word in {"list"} for x in lexemes)
+        and any(
+            x.has("LISTING", "WHQ", "SHOW", "TELL", "HOWMANY") or x.word == "names" or x.word in {"list", "available", "names"}
+            for x in lexemes
+        )
+        and not any(x.word in {"check", "both"} for x in lexemes)
+    ):
+        return ListPresets()
+    if match := full_match(rf"{_GO} {PLACE} {_TAIL}", lexemes) or full_match(
+        (
+            rf"(PAN|TILT|TURN|AIM|SWITCH|CARRY) (CAMERA|it|FILLER|over|AMOUNTISH)* (LEFT|RIGHT|UP|DOWN) (over|back|"
+            rf"AROUND)? (to|towards) {PLACE} {_TAIL}"
+        ),
+        lexemes,
+    ):
+        return GoToPreset(_ref(source, match, lexemes), _how(lexemes))
+    if full_match(
+        (
+            r"(SWITCH|CARRY|back|FILLER|to|over|it|CAMERA|SHOW|me|take|us|DET|AIM)* (to)? (there|that one|that preset|"
+            r"the winner|that view|DET winner|the first one|the best one|that position|whichever has more|the one "
+            r"with the most)"
+        ),
+        lexemes,
+    ) and any(x.has("SWITCH", "CARRY") for x in lexemes):
+        return GoThere()
+    return None
+
+
+def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
+    """Return the step of "visit every preset": a tour whose acts follow; None for other clauses."""
+    if match := full_match(
+        r"(SWITCH|CARRY|SHOW|SCAN|tour|through|to|at|FILLER)* (?P<places>(DET|EVERY)* _* PRESETNOUN EXCEPT _+)", lexemes
+    ):
+        places = places_of(source, match["places"])
+        return AtPlaces(places, ()) if places else None
+    if (
+        match := full_match(r"(FILLER|SWITCH|CARRY|TAKE|me|us|CAMERA|it)* from (?P<first>_+?) (to|on to) (?P<second>_+)", lexemes)
+    ) is not None:
+        first, second = place_of(source, match["first"]), place_of(source, match["second"])
+        return (GoToPreset(first), GoToPreset(second)) if first and second else None
+    match = full_match(
+        (
+            rf"(SWITCH|CARRY|SCAN|SHOW|AIM|TURN|SWITCH-ING|CARRY-ING|through|to|at|in|me|SELF|CAMERA|FILLER|over|on|"
+            rf"for|from|up|DET tour of|tour|around|round|FIRSTLY|around|AROUND|a tour of|of|TAKE|it|TRACK|do|run|"
+            rf"each)* (?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
+        ),
+        lexemes,
+    )
+    return AtPlaces((), ()) if match and not any(x.word == "both" for x in lexemes) else None
+
+
+def _ref(source: Source, match: Any, lexemes: Sequence[Lexeme]) -> PresetRef:
+    if match.has("name"):
+        name = match["name"][0]
+        position = list(lexemes).index(name)
+        near = lexemes[max(0, position - 2) : position + 2]
+        explicit = any(x.has("PRESETNOUN") and not x.has("PRESET") for x in near) or not any(
+            x.has("DET") for x in lexemes[max(0, position - 1) : position]
+        )
+        return PresetRef(name.preset, explicit=explicit)
+    number = match["number"] or match["ordinal"]
+    return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
+
+
+def _how(lexemes: Sequence[Lexeme]) -> Any:
+    """Return how a clause goes to a preset: with a verb that only presets follow, or one that things may follow."""
+    words = {x.word for x in lexemes}
+    if words & {"use", "using"}:
+        return "use"
+    if "at" in words and any(x.has("AIM") for x in lexemes) and not any(x.has("SWITCH") for x in lexemes):
+        return "look"
+    if any(x.has("SWITCH", "CARRY", "TURN", "SWITCH-ING", "CARRY-ING", "AIM", "PAN") for x in lexemes) or "to" in words:
+        return "go"
+    return "show" if any(x.has("SHOW", "FIND") for x in lexemes) else "bare"
+
+
+def unknown_place(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+    """Return the step of "go to X", where X is not a preset that the camera has; None for other clauses."""
+    match = full_match(
+        (
+            r"(FILLER|FIRSTLY)* (SWITCH|CARRY|goto|SHOW|back) (me|us|it|SELF|CAMERA|back|over|on|FILLER|up|straight|"
+            r"DET CAMERA)* (to|onto)? (DET)? (PRESETNOUN (CALLED)?)? (?P<name>(FREE|NUM|ORDINAL|UP|DOWN|COMPASS|IN|"
+            r"LITTLE|LEFT|RIGHT|OTHER|STOPNOUN|PREP|AND|ADVERB|HEADNOUN|TURNNOUN|STEPNOUN|of|WIDE|FULL|X|CAMERA|"
+            r"PICTURE|one|LOT|AROUND|VIEWNOUN){1,4}?) (?P<marked>PRESETNOUN)? (FILLER)*"
+        ),
+        lexemes,
+    )
+    if not match:
+        return None
+    words = {x.word for x in lexemes}
+    name = text_of(source, match["name"])
+    marked = match.has("marked") or any(x.has("PRESETNOUN") for x in lexemes)
+    if match["name"][0].has("PREP", "AND") and not marked:
+        return None
+    if (
+        ("to" in words and any(x.has("SWITCH", "CARRY") for x in lexemes))
+        or (marked and any(x.has("SWITCH", "CARRY", "SHOW") for x in lexemes))
+        or words & {"recall", "visit", "load", "goto", "use", "select"}
+    ):
+        if match["name"][0].has("NUM") and not marked:
+            return Unclear("Is that number the pan angle in degrees, or the number of a preset?")
+        return GoToPreset(PresetRef(name, explicit=marked), "go")
+    return None

@@ -1,0 +1,64 @@
+"""Read references to presets: one, a list, or every preset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    PresetRef,
+)
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import Source, text_of
+from scope_ptz.planner.grammar.parsing.patterns import full_match
+
+PLACE = (
+    r"((DET)? (PRESETNOUN)? (CALLED)? (QUOTE)? (?P<name>PRESET) (QUOTE)? (PRESETNOUN|one|VIEWNOUN|CAMERA|PICTURE|position)?"
+    r"|(DET)? PRESETNOUN (NUMBERWORD)? (?P<number>NUM)|(DET)? (?P<ordinal>ORDINAL) (PRESETNOUN|one))"
+)
+"""A reference to a preset that the camera has, or to its number."""
+
+
+EVERY_PLACE = (
+    r"((DET)* (EVERY|both) (of)? (DET|EVERY|SELF|saved|stored|available|different|of|single|other|known|NUM)* "
+    r"(PRESETNOUN|one)|(DET|SELF|saved|stored|available|different|NUM)* (presets|positions|views|bookmarks|"
+    r"viewpoints|waypoints))"
+)
+
+
+def place_of(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
+    """Return the preset that lexemes refer to; None for anything else."""
+    match = full_match(rf"(at|in|from|on|to|of|FILLER)* {PLACE} (FILLER)*", lexemes)
+    if match is None:
+        return None
+    if match.has("name"):
+        explicit = any(x.has("PRESETNOUN") for x in lexemes) or not any(x.has("DET") for x in lexemes)
+        return PresetRef(match["name"][0].preset, explicit=explicit)
+    number = match["number"] or match["ordinal"]
+    return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
+
+
+def places_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[PresetRef, ...] | None:
+    """Return the presets of a list; empty for "every preset"; None for anything else."""
+    if full_match(
+        (
+            rf"(at|in|from|on|to|of|through|FILLER|between|across|over|around)* ({EVERY_PLACE}|each of them|EVERY one|"
+            rf"ALLPRESETS (?!\Z)) (INTURN|FILLER|COMMA)*"
+        ),
+        lexemes,
+    ):
+        return ()
+    if match := full_match(rf"(at|in|from|on|to|of|through|FILLER)* {EVERY_PLACE} (EXCEPT|PREP) (?P<left_out>_+)", lexemes):
+        left_out = places_of(source, match["left_out"])
+        is_exception = any(x.has("EXCEPT") for x in lexemes) and left_out and source.presets
+        names = {ref.name for ref in left_out or ()}
+        return tuple(PresetRef(p, explicit=True) for p in source.presets if p not in names) if is_exception else None
+    while lexemes and (lexemes[0].has("EVERY") or lexemes[0].word in {"of", "both"}) and not lexemes[0].has("PRESET"):
+        lexemes = lexemes[1:]
+    parts: list[list[Lexeme]] = [[]]
+    for x in lexemes:
+        if x.has("AND", "COMMA", "OR", "THEN", "THAN"):
+            parts.append([])
+        else:
+            parts[-1].append(x)
+    refs = [place_of(source, part) for part in parts if part]
+    return tuple(ref for ref in refs if ref) if refs and all(refs) else None

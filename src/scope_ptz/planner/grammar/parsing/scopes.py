@@ -1,0 +1,122 @@
+"""Take adjuncts off a clause: the part of the scene, the place, repetitions and durations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar.instruction_tree import PresetRef
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import Source, trimmed
+from scope_ptz.planner.grammar.parsing.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
+
+_TRIVIAL = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "INSTEAD", "QUOTE", "ATSAMETIME")
+_TIMES = (
+    r"(COMMA)? (for)? (?P<times>(?P<number>NUM) X(?! (DET|as|ASCLOSE|ZOOMNOUN|ZOOM|IN|OUT|more|further|"
+    r"further_in))|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<number2>NUM)) (INTURN|FILLER)*"
+)
+MAX_TIMES = 50
+SECONDS = (
+    r"((?P<a>DET|about|AMOUNTISH)* (?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
+    r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS)?)"
+)
+
+
+def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | None]:
+    """Return a clause without the words for the part of the scene, and that part: "current", "full" or None."""
+    view: View | None = None
+    lexemes = trimmed(lexemes, *_TRIVIAL)
+    changed = True
+    while changed and len(lexemes) > 1:
+        changed = False
+        for end in (-1, 0):
+            x = lexemes[end]
+            near = lexemes[-2] if end else lexemes[1]
+            if (
+                x.has("FULL")
+                and not (end == 0 and near.has("BE"))
+                and not (end and near.has("DET", "PREP") and not near.has("ADVERB"))
+            ):
+                view, changed = "full", True
+            elif x.has("NOW") and not near.has("WHQ", "BE") and not (end == -1 and near.has("BE", "PREP", "DET")):
+                view, changed = view or ("current" if not x.word.startswith("from") else view), True
+            if changed:
+                lexemes = trimmed(lexemes[:-1] if end else lexemes[1:], *_TRIVIAL)
+                break
+    return lexemes, view
+
+
+def has_full_scope(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether words for the whole scene stand anywhere in a clause."""
+    return any(x.has("FULL") for x in lexemes)
+
+
+def place_before(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
+    """Return a clause without the preset that begins it ("at the gate, count ..."), and this preset; None for none."""
+    for size in range(min(len(lexemes) - 1, 12), 0, -1):
+        head, rest = lexemes[:size], lexemes[size:]
+        if head[0].has("FILLER", "LEADFILLER", "COMMA", "FIRSTLY"):
+            return place_before(source, lexemes[1:])
+        lead = full_match(
+            (
+                r"(at|from|in|on|using|starting from|starting at|with (DET)? CAMERA (on|at)|for|SWITCH-ING|between) "
+                r"(?P<place>_+?) (COMMA|FILLER)*"
+            ),
+            head,
+        )
+        if lead and (places := places_of(source, lead["place"])) is not None and not _is_part_of_noun(rest):
+            return trimmed(rest, "COMMA"), places
+    return tuple(lexemes), None
+
+
+def _is_part_of_noun(rest: Sequence[Lexeme]) -> bool:
+    return bool(rest) and rest[0].has("AND", "FREE", "PREP") and not rest[0].has("PAN")
+
+
+def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
+    """Return a clause without the preset that ends it ("count the cars at the gate"), and this preset; None for none."""
+    lexemes = trimmed(lexemes, *_TRIVIAL)
+    for size in range(min(len(lexemes) - 1, 14), 1, -1):
+        tail = lexemes[len(lexemes) - size :]
+        before = lexemes[len(lexemes) - size - 1]
+        lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to) (?P<place>_+)", tail)
+        if not lead or (before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB")):
+            continue
+        if lead["place"][0].has("PREP"):
+            continue
+        places = places_of(source, lead["place"])
+        if places is None or (lead["prep"][0].word in {"for", "to", "between"} and places):
+            continue
+        is_certain = (
+            not places or lead["prep"][0].word in {"at", "from", "in", "using"} or any(x.has("PRESETNOUN") for x in lead["place"])
+        )
+        if is_certain and not search(r"(near|by|behind|sign|word|text|written|of) \Z", lexemes[: len(lexemes) - size]):
+            return trimmed(lexemes[: len(lexemes) - size], "COMMA", "AND"), places
+    return lexemes, None
+
+
+def without_times(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:
+    """Return a clause without its number of repetitions, this number, and whether a comma precedes it."""
+    match = full_match(rf"(?P<body>_*?) {_TIMES}", lexemes)
+    if not match or not match.has("times"):
+        return tuple(lexemes), 1, False
+    number = match["number"] or match["number2"]
+    times = round(number[0].value) if number else 2 if match.has("twice") else 3
+    body = match["body"]
+    return trimmed(body, "COMMA"), max(1, min(times, MAX_TIMES)), len(body) > 0 and lexemes[len(body)].has("COMMA")
+
+
+def duration_of(match) -> float:  # type: ignore[no-untyped-def]
+    """Return the seconds of a match of ``SECONDS``."""
+    unit = match["unit"][0]
+    size = 1.0 if unit.has("SECONDS") else 60.0 if unit.has("MINUTES") else 3600.0
+    value = match["seconds"][0].value if match["seconds"] else 1.0
+    if match["part"]:
+        value = (value if match["seconds"] else 1.0) * match["part"][0].value
+    if match["more"]:
+        value += match["more"][0].value or 0.5
+    return size * value + (match["rest"][0].value if match["rest"] else 0.0)

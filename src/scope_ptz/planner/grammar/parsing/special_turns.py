@@ -1,0 +1,81 @@
+"""Read turns whose words name no direction and amount: "turn around", "level the camera", "pan 20, tilt -10"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Part, Step, Turn, Unclear
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.turn_words import SILENT_IN_TURNS, TURN_VERBS
+
+AXIS_TARGET = r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|is)? (?P<number>NUM) (DEG|X)?"
+
+
+def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
+    """Return the step of a turn whose words name no direction and amount: "turn around", "level the camera"."""
+    glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
+    if full_match(rf"{glue} (REVERSE|(TURN|TURN-ING|CARRY|AIM) {glue} (AROUND|REVERSE)) {glue}", lexemes):
+        return Move((Turn("pan", 1, Amount("degrees", 180.0)),))
+    if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) {glue}", lexemes):
+        return Move((Turn("tilt", 1 if match["way"][0].has("VERTICALUP") else -1, Amount("limit")),))
+    if match := full_match(rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) (?P<targets>({AXIS_TARGET})+)", lexemes):
+        return _targets(match["targets"])
+    if search("too (LOT|LEFT|RIGHT|UP|DOWN|much)", lexemes):
+        return Unclear("Which way shall I turn, and how far?")  # "too far left" is a complaint
+    if full_match(f"{glue} RIGHT AROUND {glue}", lexemes):
+        return Unclear("Shall I turn right, or all the way round?")
+    if full_match("(FILLER)* BACK UP (FILLER|LITTLE|LOT)*", lexemes):
+        return Unclear("Shall I zoom out, tilt up, or go back to where I was?")
+    if full_match(r"(FILLER)* go to the (LEFT|RIGHT) (FILLER)*", lexemes):
+        return Unclear("By how many degrees shall I turn?")
+    if full_match(
+        (
+            rf"{glue} CENTREALL {glue}|(FILLER)* CENTREWORD (DET)* (CAMERA|it|VIEWNOUN) (FILLER)*|(CARRY|SWITCH|TURN) "
+            rf"{glue} (BACK)? to CENTREWORD (FILLER)*"
+        ),
+        lexemes,
+    ):
+        return Move((Aim("pan", 0.0), Aim("tilt", 0.0)))
+    if match := full_match(
+        rf"{glue} (?P<number>NUM) DEG (?P<way>above|below|under|over|UP from|DOWN from) (DET)? HORIZON {glue}", lexemes
+    ):
+        sign = 1 if match["way"][0].word in {"above", "over"} or match["way"][0].has("UP") else -1
+        return Move((Aim("tilt", sign * abs(match["number"][0].value)),))
+    if full_match(
+        (
+            rf"{glue} (LEVEL {glue} (HORIZON)?|(AIM|AIM-ING|TILT|CARRY|TURN|UP|DOWN) {glue} (HORIZON|LEVEL)|(to|at) "
+            rf"the HORIZON) {glue} (HORIZON)? "
+        ),
+        lexemes,
+    ):
+        return Move((Aim("tilt", 0.0),))
+    if full_match(rf"{glue} (AIM|TURN|PAN|AIM-ING|CARRY) {glue} AHEAD {glue}", lexemes):
+        if any(x.has("CARRY") and not x.has("AIM", "PAN", "TURN") for x in lexemes) and any(
+            x.word.startswith("forward") for x in lexemes
+        ):
+            return Unclear("The camera cannot travel; it turns and zooms. Shall I zoom in?")
+        return Move((Aim("pan", 0.0),))
+    if any(x.has("COMPASS") for x in lexemes) and any(x.has(*TURN_VERBS) for x in lexemes):
+        return Unclear(
+            "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
+        )
+    return None
+
+
+def _targets(lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step of a list of absolute targets: "pan 20, tilt -10 and zoom 3"."""
+    aims: list[Part] = []
+    while lexemes and (match := match_start(AXIS_TARGET, lexemes)):
+        axis = match["axis"][0]
+        name: Literal["pan", "tilt", "zoom"] = (
+            "pan" if axis.has("PAN", "PANNOUN") else "tilt" if axis.has("TILT", "TILTNOUN") else "zoom"
+        )
+        aims.append(Aim(name, match["number"][0].value))
+        lexemes = lexemes[match.size :]
+    return (
+        Move(tuple(aims))
+        if len({part.axis for part in aims if isinstance(part, Aim)}) == len(aims)
+        else Unclear("Which way shall I turn, and how far?")
+    )

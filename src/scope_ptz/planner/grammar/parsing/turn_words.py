@@ -1,0 +1,160 @@
+"""Find the parts of a turn in the words of a clause: directions, amounts, steps and targets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from scope_ptz.planner.grammar.instruction_tree import Aim, Amount
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.clause import AS_FAR_AS, DIRECTIONS, fraction_of
+from scope_ptz.planner.grammar.parsing.patterns import Match, match_start
+
+TURN_VERBS = ("PAN", "TILT", "TURN", "CARRY", "DOACT", "AIM", "RAISE", "LOWER", "INCREASE", "DECREASE", "KEEP", "SCAN", "SHOW")
+
+
+TURN_GERUNDS = tuple(f"{verb}-ING" for verb in TURN_VERBS)
+
+
+SILENT_IN_TURNS = (
+    *TURN_VERBS, *TURN_GERUNDS, *(f"{verb}-ED" for verb in TURN_VERBS), "CAMERA", "VIEWNOUN", "PICTURE", "PRON", "DET", "AMOUNTISH",
+    "MORE", "SIDE", "TURNNOUN", "FILLER", "SELF", "GLUE", "DIAGONALLY", "ATSAMETIME", "ABSOLUTE", "WHOLETHING", "COMMA",
+    "PANNOUN", "TILTNOUN", "DEG", "LEADFILLER", "QUOTE", "INTURN", "AROUND", "FIRSTLY", "REVERSE", "BACK", "BUT",
+)  # fmt: skip
+"""Classes of words that a turn may contain besides amounts and directions."""
+
+
+_NUMBER = "(AMOUNTISH|and)* (?P<number>NUM) (AMOUNTISH)*"
+
+
+_CHUNKS = (
+    ("turn", r"LIMIT AROUND"),
+    ("right angle", r"(by|through|DET)* ((?P<fraction>FRACTION) (of)? (DET)? )?RIGHTANGLE"),
+    ("parts", r"(in|over) (?P<count>NUM) STEPNOUN"),
+    ("steps", r"(in|by|with|using|at)? (DET)? (?P<count>NUM) (jumps of|STEPNOUN of)? (?P<size>NUM) DEG? STEPNOUN"),
+    ("steps", r"(?P<count>NUM) STEPNOUN of (?P<size>NUM) DEG?"),
+    ("steps", r"(in|with|by|using|at)? (DET)? STEPNOUN of (about|AMOUNTISH)? (?P<size>NUM) DEG?"),
+    ("steps", r"(in|with|by|using|at)? (?P<size>NUM) DEG? (STEPNOUN|ATATIME)"),
+    ("steps", r"(in|with|using|by) (?P<small>small|little|short|LITTLE) STEPNOUN"),
+    ("times", (
+r"(?P<number>NUM) X (INTURN|AMOUNTISH)*(?! SAMEAMOUNT)|X (?P<number2>NUM)|(?P<twice>TWICE)(?! (SAMEAMOUNT|"
+r"ASCLOSE))|(?P<thrice>THRICE)(?! SAMEAMOUNT)"
+)),
+    ("turn", (
+r"(AMOUNTISH|DET|by)* ((?P<number>NUM) )?(?P<fraction>FRACTION) (of)? (DET)? (full|complete|whole|LIMIT|"
+r"MAX)? (TURNNOUN|(of the|the)? (way|LIMIT) AROUND|way AROUND|of the way AROUND)"
+)),
+    ("turn", r"(AMOUNTISH|DET|by)* ((?P<number>NUM) )?(?P<fraction>FRACTION) (of) (DET)* way AROUND"),
+    ("turn", r"(AMOUNTISH|DET)* ((?P<number>NUM) )?(full|complete|whole|entire|LIMIT) (TURNNOUN)"),
+    ("turn", r"(?P<number>NUM) (turns|rotations|revolutions|circles)"),
+    ("part", r"(AMOUNTISH|DET)* ((?P<times>NUM) )?(?P<fraction>FRACTION) (of)? ((?P<number>NUM)|DET)? DEG"),
+    ("turn", r"by DET? (?P<fraction>FRACTION)"),
+    ("axis", r"(?P<axis>PANNOUN|TILTNOUN) (to|of|at|is)? (?P<number>NUM) DEG?"),
+    ("target", (
+r"(to|at|until it is at) (DET|ABSOLUTE|PANNOUN|TILTNOUN|TURNNOUN|of|exactly)* (?P<number>NUM) DEG? "
+r"(ABSOLUTE)?(?! (to|LEFT|RIGHT|UP|DOWN|on))"
+)),
+    ("limit", AS_FAR_AS),
+    ("limit", r"(LIMIT) (of)? (DET)* "),
+    ("amount", rf"{_NUMBER} (DEG)? "),
+    ("lot", r"(AMOUNTISH|DET)* LOT (MORE)? "),
+    ("little", r"(AMOUNTISH|DET)* LITTLE (MORE|of)* "),
+    ("same", r"(by)? SAMEAMOUNT"),
+    ("direction", r"(?P<LEFT>LEFT)|(?P<RIGHT>RIGHT)|(?P<UP>UP)|(?P<DOWN>DOWN)"),
+)  # fmt: skip
+
+
+AXES: dict[str, tuple[Literal["pan", "tilt"], int]] = {
+    "LEFT": ("pan", -1),
+    "RIGHT": ("pan", 1),
+    "UP": ("tilt", 1),
+    "DOWN": ("tilt", -1),
+}
+
+
+_SMALL_STEP_DEG = 5.0
+
+
+@dataclass
+class TurnParts:
+    """The parts of a turn, in the order of the words. ``parts`` has directions and amounts."""
+
+    parts: list[str | Amount] = field(default_factory=list)
+    target: float | None = None
+    aims: list[Aim] = field(default_factory=list)
+    step: Amount | None = None
+    count: int | None = None
+    divides: bool = False
+    times: int = 1
+
+    @property
+    def directions(self) -> list[str]:
+        return [part for part in self.parts if isinstance(part, str)]
+
+    @property
+    def amounts(self) -> list[Amount]:
+        return [part for part in self.parts if isinstance(part, Amount)]
+
+
+def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list[Lexeme]]:
+    """Return the parts of a turn, the other words that a turn may contain, and the words that it may not contain."""
+    found, silent, unread = TurnParts(), list[Lexeme](), list[Lexeme]()
+    i = 0
+    while i < len(lexemes):
+        rest = lexemes[i:]
+        first = rest[0]
+        verb_direction = (
+            "UP" if first.has("RAISE", "RAISE-ING", "RAISE-ED") else "DOWN" if first.has("LOWER", "LOWER-ING", "LOWER-ED") else ""
+        )
+        is_verb = not silent and not found.parts
+        if verb_direction and (is_verb or not first.has(*DIRECTIONS)):
+            found.parts.append(verb_direction)
+            silent.append(first)
+            i += 1
+            continue
+        match, name = next(((m, name) for name, pattern in _CHUNKS if (m := match_start(pattern, rest)) and m.size), (None, ""))
+        if match and not (first.has("TURNNOUN", "CARRY", "AIM", "TILT", "PAN", "TURN") and name in {"lot", "little"}):
+            _add(found, name, match)
+            i += match.size
+        elif first.has(*SILENT_IN_TURNS) and not first.has("NEGATED", "NOT", "NONE"):
+            silent.append(first)
+            i += 1
+        else:
+            unread.append(first)
+            i += 1
+    return found, silent, unread
+
+
+def _add(found: TurnParts, name: str, match: Match) -> None:
+    """Add the part of a turn that a pattern found."""
+    value = match["number"][0].value if "number" in match.names and match["number"] else None
+    if name == "steps":
+        size = _SMALL_STEP_DEG if "small" in match.names else abs(match["size"][0].value)
+        found.step = Amount("degrees", size)
+        found.count = max(1, round(match["count"][0].value)) if "count" in match.names and match["count"] else None
+    elif name == "parts":
+        number = abs(match["count"][0].value)
+        found.step, found.count, found.divides = Amount("degrees", number), max(1, round(number)), True
+    elif name == "times":
+        number = value if value is not None else match["number2"][0].value if match["number2"] else 2 if match["twice"] else 3
+        found.times = max(1, min(round(number), 50))
+    elif name == "turn":
+        part = fraction_of(match["fraction"][0]) if match.has("fraction") else 1.0
+        found.parts.append(Amount("degrees", round(360 * (value or 1.0) * part, 6)))
+    elif name == "right angle":
+        part = fraction_of(match["fraction"][0]) if match.has("fraction") else 1.0
+        found.parts.append(Amount("degrees", 90.0 * part))
+    elif name == "part":
+        times = match["times"][0].value if match["times"] else 1.0
+        found.parts.append(Amount("degrees", times * fraction_of(match["fraction"][0]) * (value if value is not None else 1.0)))
+    elif name == "axis":
+        found.aims.append(Aim("pan" if match["axis"][0].has("PANNOUN") else "tilt", value or 0.0))
+    elif name == "target":
+        found.target = value
+    elif name == "amount":
+        found.parts.append(Amount("degrees", value or 0.0))
+    elif name == "direction":
+        found.parts.append(next(way for way in DIRECTIONS if match[way]))
+    else:
+        found.parts.append(Amount(name))  # type: ignore[arg-type]

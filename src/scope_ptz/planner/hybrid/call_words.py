@@ -1,0 +1,140 @@
+"""Name tool calls in words, and read these words back.
+
+The words are shown to the user, who confirms them in the next turn. A planner keeps no state between turns, so it reads the calls
+from its own question in the conversation. Reading is the exact inverse of naming.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from typing import Any
+
+from scope_ptz.planner.base import ToolCall
+
+_NUMBER = r"(?P<{}>\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
+_TEXT = r'(?P<text>"(?:[^"\\]|\\.)*")'
+_VIEWS_IN_WORDS = {"current": "this view", "full": "the whole scene"}
+_VIEW = rf"(?P<view>{'|'.join(_VIEWS_IN_WORDS.values())})"
+_PAN = rf"pan (?P<pan>left|right) {_NUMBER.format('pan_by')} degrees"
+_TILT = rf"tilt (?P<tilt>up|down) {_NUMBER.format('tilt_by')} degrees"
+_ZOOM = (
+    rf"zoom (?P<zoom>in|out) to {_NUMBER.format('factor')} times the magnification"
+    rf"|zoom (?P<by>in|out) by {_NUMBER.format('percent')} percent"
+    r"|zoom all the way (?P<limit>in|out)"
+)
+
+
+def named(call: ToolCall) -> str:
+    """Return a valid call in words that can follow "Shall I": 'pan right 20 degrees', 'count "cars" in this view'."""
+    arguments = call.arguments
+    view = _VIEWS_IN_WORDS[arguments.get("view", "current")]
+    match call.name:
+        case "adjust_ptz":
+            return " and ".join(_move_words(arguments)) or "leave the camera where it is"
+        case "go_to_preset":
+            return f"go to the preset {_quoted(arguments['name'])}"
+        case "go_home":
+            return "go to the home view"
+        case "get_presets":
+            return "list the presets"
+        case "take_image":
+            return "take a picture"
+        case "count_objects":
+            return f"count {_quoted(arguments['description'])} in {view}"
+        case "query_answer":
+            return f"find out {_quoted(arguments['question'])} from {view}"
+        case "zoom_to_object":
+            return f"zoom in on {_quoted(arguments['description'])}"
+        case "track_object":
+            return f"follow {_quoted(arguments['description'])} for {_number(arguments.get('duration_s', 10))} seconds"
+    return f"call {call.name} with {json.dumps(arguments, ensure_ascii=False)}"
+
+
+def read(words: str) -> tuple[str, dict[str, Any]] | None:
+    """Return the tool and the arguments of a call in words; None for other texts."""
+    for pattern, call in _FORMS:
+        if match := pattern.fullmatch(words):
+            return call(match)
+    return None
+
+
+def _move_words(arguments: dict[str, Any]) -> list[str]:
+    words = []
+    if pan := arguments.get("pan_deg", 0):
+        words.append(f"pan {'right' if pan > 0 else 'left'} {_number(abs(pan))} degrees")
+    if tilt := arguments.get("tilt_deg", 0):
+        words.append(f"tilt {'up' if tilt > 0 else 'down'} {_number(abs(tilt))} degrees")
+    if (factor := arguments.get("zoom_factor")) is not None:
+        words.append(f"zoom {'in' if factor >= 1 else 'out'} to {_number(factor)} times the magnification")
+    if (percent := arguments.get("zoom_percent")) is not None:
+        words.append(f"zoom {'in' if percent >= 0 else 'out'} by {_number(abs(percent))} percent")
+    if limit := arguments.get("zoom_limit"):
+        words.append(f"zoom all the way {limit}")
+    return words
+
+
+def _read_move(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
+    found = match.groupdict()
+    arguments: dict[str, Any] = {}
+    if found["pan"]:
+        arguments["pan_deg"] = _value(found["pan_by"]) * (1 if found["pan"] == "right" else -1)
+    if found["tilt"]:
+        arguments["tilt_deg"] = _value(found["tilt_by"]) * (1 if found["tilt"] == "up" else -1)
+    if found["factor"]:
+        arguments["zoom_factor"] = _value(found["factor"])
+    if found["percent"]:
+        arguments["zoom_percent"] = _value(found["percent"]) * (1 if found["by"] == "in" else -1)
+    if found["limit"]:
+        arguments["zoom_limit"] = found["limit"]
+    return "adjust_ptz", arguments
+
+
+def _with_text(tool: str, field: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
+    def call(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
+        found = match.groupdict()
+        arguments: dict[str, Any] = {field: json.loads(found["text"])}
+        if "view" in found:
+            arguments["view"] = next(view for view, words in _VIEWS_IN_WORDS.items() if words == found["view"])
+        if "seconds" in found:
+            arguments["duration_s"] = _value(found["seconds"])
+        return tool, arguments
+
+    return call
+
+
+def _plain(tool: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
+    return lambda _: (tool, {})
+
+
+_FORMS: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, dict[str, Any]]]], ...] = (
+    (re.compile("leave the camera where it is"), _plain("adjust_ptz")),
+    (
+        re.compile(rf"(?=pan |tilt |zoom (?:in|out) (?:to|by) |zoom all )(?:{_PAN})?(?: and )?(?:{_TILT})?(?: and )?(?:{_ZOOM})?"),
+        _read_move,
+    ),
+    (re.compile(f"go to the preset {_TEXT}", re.DOTALL), _with_text("go_to_preset", "name")),
+    (re.compile("go to the home view"), _plain("go_home")),
+    (re.compile("list the presets"), _plain("get_presets")),
+    (re.compile("take a picture"), _plain("take_image")),
+    (re.compile(f"count {_TEXT} in {_VIEW}", re.DOTALL), _with_text("count_objects", "description")),
+    (re.compile(f"find out {_TEXT} from {_VIEW}", re.DOTALL), _with_text("query_answer", "question")),
+    (re.compile(f"zoom in on {_TEXT}", re.DOTALL), _with_text("zoom_to_object", "description")),
+    (re.compile(f"follow {_TEXT} for {_NUMBER.format('seconds')} seconds", re.DOTALL), _with_text("track_object", "description")),
+    (re.compile(r"call (?P<tool>\S+) with (?P<json>\{.*\})", re.DOTALL), lambda m: (m["tool"], json.loads(m["json"]))),
+)
+
+
+def _quoted(text: Any) -> str:
+    return json.dumps(str(text), ensure_ascii=False)
+
+
+def _number(value: float) -> str:
+    """Return a number without a trailing ".0", so that it can be read back exactly."""
+    return str(int(value)) if float(value).is_integer() and abs(value) < 1e15 else repr(float(value))
+
+
+def _value(text: str) -> float:
+    value = float(text)
+    return int(value) if value.is_integer() and "." not in text and "e" not in text else value

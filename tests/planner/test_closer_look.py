@@ -1,0 +1,134 @@
+"""The planner goes closer when something is too small to read or to tell, and only then."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.grammar.execution.closer_look import is_too_small, offer_text, offered, thing_of, without_close_up
+from scope_ptz.planner.grammar.execution.run_state import Offer
+from tests.planner.stage import Stage
+
+SMALL = {"answer": "There is text on the sign, but it is too small to read.", "known": False}
+READ = {"answer": 'The sign reads "STOP".', "known": True}
+CLOSE = Pose(12, -3, 4)
+
+
+def test_it_zooms_in_looks_again_and_puts_the_camera_back() -> None:
+    stage = Stage([SMALL, True, READ], pose=Pose(10, 0, 1), lands=CLOSE, simulated=True)
+    finish = stage.run("what does the sign say?")
+    assert [name for name, _ in stage.calls] == ["query_answer", "zoom_to_object", "query_answer", "adjust_ptz"]
+    assert stage.calls[1] == ("zoom_to_object", {"description": "sign"})
+    assert stage.calls[0] == stage.calls[2]
+    assert stage.pose == Pose(10, 0, 1)
+    assert finish.kind == "answered"
+    assert finish.text.startswith(
+        'I zoomed in on the sign to answer that, and put the camera back afterwards. The sign reads "STOP".'
+    )
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        READ,
+        {"answer": "There is text on the sign, but it is too oblique to read.", "known": False},
+        {"answer": "There is text on the sign, but it is too much hidden or cut off to read.", "known": False},
+        {"answer": "I cannot tell: there is no sign in view.", "known": False},
+        {"answer": "The letters are too small for a road sign, but it reads STOP.", "known": True},
+    ],
+)
+def test_otherwise_it_stays(answer: dict[str, object]) -> None:
+    stage = Stage([answer], simulated=True)
+    stage.run("what does the sign say?")
+    assert [name for name, _ in stage.calls] == ["query_answer"]
+
+
+def test_it_stays_when_told_not_to_move() -> None:
+    stage = Stage([SMALL], simulated=True)
+    finish = stage.run("without moving the camera, what does the sign say?")
+    assert [name for name, _ in stage.calls] == ["query_answer"]
+    assert "too small" in finish.text
+
+
+def test_a_thing_that_cannot_be_found_leaves_the_first_answer() -> None:
+    stage = Stage([SMALL, False], simulated=True)
+    finish = stage.run("what does the sign say?")
+    assert [name for name, _ in stage.calls] == ["query_answer", "zoom_to_object"]
+    assert "too small to read" in finish.text
+
+
+def test_a_real_camera_asks_first() -> None:
+    stage = Stage([SMALL, True, READ], pose=Pose(10, 0, 1), lands=CLOSE)
+    asked = stage.turn("what does the sign say?")
+    assert [name for name, _ in stage.calls] == ["query_answer"]
+    assert asked.reply.endswith('Shall I zoom in on "sign" to answer "what does the sign say?"? Please answer yes or no.')
+    finish = stage.run("yes please", (asked,))
+    assert [name for name, _ in stage.calls[1:]] == ["zoom_to_object", "query_answer", "adjust_ptz"]
+    assert finish.kind == "answered" and "STOP" in finish.text
+    assert stage.pose == Pose(10, 0, 1)
+
+
+def test_a_no_leaves_the_camera_where_it_is() -> None:
+    stage = Stage([SMALL], pose=Pose(10, 0, 1))
+    asked = stage.turn("what does the sign say?")
+    stage.run("no", (asked,))
+    assert len(stage.calls) == 1
+
+
+def test_no_offer_after_the_camera_has_moved_on() -> None:
+    finish = Stage([SMALL]).run("what does the sign say? then pan right 20 degrees")
+    assert finish.kind == "answered"
+    assert "Shall I" not in finish.text
+
+
+@pytest.mark.parametrize(
+    ("question", "plain"),
+    [
+        ("What does the docks sign say when you zoom in on it?", "What does the docks sign say?"),
+        ("What does a close-up of the docks sign say?", "What does the docks sign say?"),
+        ("What is the price on the card, seen from close up?", "What is the price on the card?"),
+        ("What is written on the board, if you zoom in on it to read?", "What is written on the board?"),
+        ("What does the zoom sign say?", "What does the zoom sign say?"),
+    ],
+)
+def test_requests_for_a_close_up(question: str, plain: str) -> None:
+    assert without_close_up(question) == plain
+
+
+@pytest.mark.parametrize(
+    ("question", "thing"),
+    [
+        ("What does the bank sign say?", "bank sign"),
+        ("what is written on the sign next to the gate?", "sign next to the gate"),
+        ("Which price does the price card for lettuce show?", "price card for lettuce"),
+        ("What is the price on the price card for lettuce?", "price card for lettuce"),
+        ("what words are on the side of the van?", "van"),
+        ("what is the name of the shop?", "shop"),
+        ("What is the price that the price card for roses shows?", "price card for roses"),
+        ("What time does the clock show?", "clock"),
+        ("read the text in view", ""),
+        ("What time is it?", ""),
+    ],
+)
+def test_the_thing_of_a_question(question: str, thing: str) -> None:
+    assert thing_of(question) == thing
+
+
+@pytest.mark.parametrize(
+    "text", ["It is too small to read.", "I cannot make out the letters.", "The plate is illegible.", "It is too far away to tell."]
+)
+def test_reports_of_a_vision_model(text: str) -> None:
+    assert is_too_small({"answer": text, "known": False})
+    assert not is_too_small({"answer": text, "known": True})
+
+
+@given(st.text(min_size=1), st.text(min_size=1))
+def test_an_offer_can_be_read_back(thing: str, question: str) -> None:
+    assert offered("It is too small. " + offer_text(Offer(thing, question, Pose()))) == (thing, question)
+
+
+@given(st.text())
+def test_other_replies_offer_nothing(text: str) -> None:
+    assert offered(text) is None

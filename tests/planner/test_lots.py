@@ -1,0 +1,26 @@
+"""The lots of instructions: the share that is planned as expected, and no move that nobody asked for."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from tests.planner.lots import FILES, planned, rows, verdict
+
+_DEV_FLOOR = 0.9  # share of right plans in the part that the grammar is developed on
+_HELD_OUT_FLOOR = 0.8  # and in the part that is kept aside
+_MAX_SHARE_OF_WRONG_LOOKS = 0.08
+
+
+@pytest.mark.parametrize("lot", FILES)
+@pytest.mark.parametrize(("split", "floor"), [("dev", _DEV_FLOOR), ("held-out", _HELD_OUT_FLOOR)])
+def test_lot(lot: str, split: str, floor: float) -> None:
+    verdicts = Counter(verdict(row, planned(row)) for row in rows(lot, split))
+    size = sum(verdicts.values())
+    if not size:
+        assert split == "held-out", f"{lot} has no rows to develop on"
+        return
+    assert verdicts["wrong move"] == 0, f"{verdicts['wrong move']} wrong moves in {lot} ({split})"
+    assert verdicts["right"] >= floor * size, f"{verdicts['right']} of {size} right in {lot} ({split})"
+    assert verdicts["wrong look"] <= _MAX_SHARE_OF_WRONG_LOOKS * size
