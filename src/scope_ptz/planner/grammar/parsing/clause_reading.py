@@ -34,7 +34,7 @@ from scope_ptz.planner.grammar.parsing.asides import (
 from scope_ptz.planner.grammar.parsing.calculations import calculated
 from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
 from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.reader import Reader, bare_clause
 
@@ -123,6 +123,10 @@ class ClauseReading:
         if words[-2:] == ["take", "one"] and isinstance(self.last, Snap):
             return ()  # "my boss wants a photo of the trailer, so take one"
         moves = bool(steps) and all(isinstance(step, Move | Snap) for step in steps)
+        zooms = [part for step in steps if isinstance(step, Move) for part in step.parts if isinstance(part, Zoom)] if moves else []
+        is_in = bool(match_start("(FILLER|WRAPPER)* ZOOM IN", clause.lexemes))
+        if is_in and any(part.kind == "factor" and part.value < 1 for part in zooms):
+            return (Unclear("Shall I zoom in or out?"),)  # "zoom in half"
         is_aimed = isinstance(self.last, Move) and all(isinstance(part, Aim) and part.axis == "zoom" for part in self.last.parts)
         is_undirected = not any(x.has(*DIRECTIONS, "MORE") for x in clause.lexemes) and clause.link in {",", "and"}
         turns = moves and all(isinstance(part, Turn) for step in steps if isinstance(step, Move) for part in step.parts)

@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     AtIntervals,
     AtPlaces,
     Bound,
+    DoAgain,
     EachTime,
     FirstWith,
     Forbid,
@@ -159,6 +160,8 @@ class Sentences(ClauseReading):
         if after.marker in {"BEFORE", "AFTER"} and after.link in {"", ",", "and"} and steps:
             self._take()
             other = self.reader.read(after.lexemes)
+            if before is not None and isinstance(steps[0], DoAgain):
+                steps = (before,)  # "count the cars now, and again after panning left"
             first, second = (steps, other) if after.marker == "BEFORE" else (other, steps)
             return [Linked(clause.link, s) for s in first] + [Linked("then", s) for s in second]
         if after.marker == "REASON" and after.link in {"", ",", "and"}:
