@@ -28,7 +28,21 @@ NEVER_A_MOVE = [
     "go to the moon",
     "tell me a joke",
     "zoom in on it",
+    "crank it up",
+    "turn it down",
+    "all left",
+    "this is the gate",
+    "turn your back to us",
+    "pan slowly right until something moves",
+    "go to the gate, zoom in and return",
+    "go to the gate, pan left 20 and come back",
+    "visit every preset and return",
+    "visit gate and highway in turn and zoom in 2x",
+    "pause",
 ]
+AT_EACH = "go_to_preset(name=gate); {act}; go_to_preset(name=highway); {act}"
+EVERY_PRESET = "; ".join(f"go_to_preset(name={name}){{act}}" for name in PRESETS)
+COUNT_PEOPLE = "count_objects(description=people, view=current)"
 PLANS = [
     ("drop the view by 15 degrees", "adjust_ptz(tilt_deg=-15)"),
     ("lift it up 10", "adjust_ptz(tilt_deg=10)"),
@@ -59,6 +73,61 @@ PLANS = [
     ("how many of the cars are red?", "count_objects(description=red cars, view=current)"),
     ("count the red and white barriers", "count_objects(description=red and white barriers, view=current)"),
     ("PAN RIGHT 20!!", "adjust_ptz(pan_deg=20)"),
+    ("look at each of gate, highway and count people there", AT_EACH.format(act=COUNT_PEOPLE)),
+    ("visit the gate and the highway in turn and count the people", AT_EACH.format(act=COUNT_PEOPLE)),
+    (
+        "look at each of gate and highway, count the people and take a picture",
+        AT_EACH.format(act=f"{COUNT_PEOPLE}; take_image()"),
+    ),
+    ("look at each of gate and highway, count the people and go home", AT_EACH.format(act=COUNT_PEOPLE) + "; go_home()"),
+    (
+        "visit gate and highway one by one: are there any cracks?",
+        AT_EACH.format(act="query_answer(question=are there any cracks?, view=current)"),
+    ),
+    ("read the sign at gate and highway", AT_EACH.format(act="query_answer(question=What does the sign say?, view=current)")),
+    ("read the sign at the gate", "query_answer(question=What does the sign at the gate say?, view=current)"),
+    (
+        "compare gate with highway by number of vans",
+        AT_EACH.format(act="count_objects(description=vans, view=current)"),
+    ),
+    ("is the barrier open? (gate preset)", "go_to_preset(name=gate); query_answer(question=is the barrier open?, view=current)"),
+    ("is the barrier open (gate preset)?", "go_to_preset(name=gate); query_answer(question=is the barrier open?, view=current)"),
+    (
+        "what colour is the door? look from highway",
+        "go_to_preset(name=highway); query_answer(question=what colour is the door?, view=current)",
+    ),
+    ("is the door open? go to the gate", "query_answer(question=is the door open?, view=current); go_to_preset(name=gate)"),
+    ("is this the gate?", "query_answer(question=is this the gate?, view=current)"),
+    ("is it the gate", "query_answer(question=is it the gate?, view=current)"),
+    ("crank it left", "adjust_ptz(pan_deg=-10)"),
+    ("all the way left", "adjust_ptz(pan_deg=-360)"),
+    ("pan until the van is centred", "zoom_to_object(description=van)"),
+    ("show me where the ladder is", "zoom_to_object(description=ladder)"),
+    ("tell me where the ladder is", "query_answer(question=Where is the ladder?, view=current)"),
+    ("someone's at the door - zoom in on them", "zoom_to_object(description=people at the door)"),
+    (
+        "how many planes are parked and how many are moving?",
+        "count_objects(description=parked planes, view=current); count_objects(description=moving planes, view=current)",
+    ),
+    ("what's the queue like at the gate?", "go_to_preset(name=gate); query_answer(question=what's the queue like?, view=current)"),
+    ("photograph each preset in turn", EVERY_PRESET.format(act="; take_image()")),
+    ("check every preset for people", EVERY_PRESET.format(act=f"; {COUNT_PEOPLE}")),
+    ("do a lap of the presets and come home", EVERY_PRESET.format(act="") + "; go_home()"),
+    ("visit every preset, count the people and go home", EVERY_PRESET.format(act=f"; {COUNT_PEOPLE}") + "; go_home()"),
+    ("go via the gate to the highway", "go_to_preset(name=gate); go_to_preset(name=highway)"),
+    (
+        "more people at the gate than on the highway?",
+        AT_EACH.format(act=COUNT_PEOPLE),
+    ),
+    ("get the forklift centred", "zoom_to_object(description=forklift)"),
+    ("find where the ladder is", "zoom_to_object(description=ladder)"),
+    ("rotate 30 left, pause, rotate 30 right", "adjust_ptz(pan_deg=-30); adjust_ptz(pan_deg=30)"),
+    ("I'd be grateful for a picture of the gate", "go_to_preset(name=gate); take_image()"),
+    (
+        "step through the presets, stopping at the first with a ladder",
+        "go_to_preset(name=gate); count_objects(description=ladder, view=current)",
+    ),
+    ("how many vans, in total, can be seen?", "count_objects(description=vans, view=current)"),
 ]
 
 

@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     CameraState,
     Help,
     Step,
+    Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.patterns import full_match
@@ -21,6 +22,8 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         r"(to|where|from|SELF|it|CAMERA|BE|HAVEV|DOV|start|started|began|begin|came|before|SWITCH-ED|CARRY-ED|"
         r"AIM-ING|BEFORE|how|DET|previous|original|last|old|VIEWNOUN|PRESETNOUN|FILLER|AGAINWORD|GLUE|INSTEAD)*"
     )
+    if full_match("(TURN|TURN-ING|CARRY) (your|my|its|his|her|their) BACK _*", lexemes):
+        return Unclear("Which way shall I turn, and how far?")  # "turn your back to us"
     if full_match(
         (
             rf"(CARRY|TURN|PAN|SWITCH|RESET|put|take)* (it|CAMERA|SELF|right|straight|DET)* (BACK|BACK again) {where}|"

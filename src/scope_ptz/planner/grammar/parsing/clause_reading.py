@@ -21,6 +21,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Snap,
     Step,
     Sweep,
+    Thing,
     Track,
     Turn,
     Unclear,
@@ -33,6 +34,7 @@ from scope_ptz.planner.grammar.parsing.asides import (
 )
 from scope_ptz.planner.grammar.parsing.calculations import calculated
 from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
+from scope_ptz.planner.grammar.parsing.clause_starts import GERUNDS
 from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.preset_refs import places_of
@@ -51,6 +53,7 @@ class ClauseReading:
         self.next = 0
         self.last: Step | None = None
         self.has_zoomed_in = False
+        self.has_visited = self.has_left = False  # in this sentence: whether the camera went to a preset, and moved on from there
 
     def _peek(self, offset: int = 0) -> Clause | None:
         position = self.next + offset
@@ -96,13 +99,35 @@ class ClauseReading:
             steps = (NO_END,)  # "search for a car, panning right 20 at a time"
         if len(steps) == 1 and isinstance(steps[0], Track) and not steps[0].thing.text and isinstance(self.last, Track):
             steps = ()  # "stay on the crane, tracking it"
+        steps = self._with_clear_return(clause, steps)
         self.last = steps[-1] if steps else self.last
+        return steps
+
+    def _with_clear_return(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        """Return the steps of a clause. "Go to the gate, zoom in and return" is asked about: there are two places to return to."""
+        if clause.link == ".":
+            self.has_visited = self.has_left = False
+        is_undo = any(x.has("UNDO", "ZOOM", "ZOOMNOUN") for x in clause.lexemes)
+        if (
+            self.has_left
+            and clause.link != "then"
+            and not is_undo
+            and any(isinstance(s, Back) and not s.zoom_only and s.amount is None for s in steps)
+        ):
+            return (Unclear("Shall I take back only the last move, or go back to where I was before the preset?"),)
+        for step in steps:
+            is_tour = isinstance(step, AtPlaces) and not step.body
+            self.has_left |= is_tour or (self.has_visited and isinstance(step, Move | ZoomTo | Track | GoToPreset))
+            self.has_visited |= isinstance(step, GoToPreset)
         return steps
 
     def _checked(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps of a clause, or what else its words ask for in this place."""
         first = clause.lexemes[0] if clause.lexemes else None
         steps = tuple(calculated(clause.lexemes, step) for step in steps)
+        same = full_match(f"HOWMANY BE (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)})", clause.lexemes)
+        if same and isinstance(self.last, Count) and len(words := self.last.things[-1].text.split()) in {1, 2} and len(steps) == 1:
+            return (Count((Thing(f"{same['state'][0].word} {words[-1]}"),), self.last.view),)  # "... and how many are moving?"
         if (
             len(steps) == 1
             and first is not None
@@ -113,8 +138,10 @@ class ClauseReading:
         ):
             return (Unclear("Which of the two do you mean?"),)  # "go to the gate, er, the yard"
         is_visit = len(steps) == 1 and isinstance(steps[0], GoToPreset) and steps[0].how == "bare"
-        if is_visit and clause.is_question and first is not None and first.has("BE"):
+        if is_visit and first is not None and first.has("BE"):
             return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
+        if is_visit and match_start("(FILLER)* (this|that|it|SELF) BE ", clause.lexemes):
+            return (Unclear("Shall I go there?"),)  # "this is the gate"
         if is_visit and first is not None and first.word in {"what_about", "how_about"} and self.last is None:
             return (Unclear("What shall I look for there?"),)
         words = [x.word for x in clause.lexemes]

@@ -95,6 +95,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             r"(show|display|see|let_me_see|let_us_see|showing|watch|view) (me|us|SELF)? (?P<thing>_+?) (up|close|"
             r"(LITTLE|LOT)? CLOSER|from_close|closer|close up|on|screen|in close|in more detail)*"
         ),
+        r"(SHOW|FIND|show|let_me_see|let_us_see) (me|us)* where ((?P<thing>_+?) BE|BE (?P<thing>_+))",
         (
             r"(AIM|AIM-ING|(PAN|TILT|turn) (?=_*? (to|towards|toward|to face))|(TURN|SCAN|RAISE) (?=_* (LEFT|RIGHT|UP|"
             r"DOWN))|SHOW at) (DET (?=CAMERA|VIEWNOUN|PICTURE)|CAMERA|FILLER|it|SELF|over|across|AROUND|LEFT|RIGHT|UP|"
@@ -116,6 +117,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             r"middle|frame|view|shot|VISIBLE|middle|sharp focus|focus|PICTURE)+ (of|FILLER|DET|PICTURE|VIEWNOUN|"
             r"frame)*"
         ),
+        r"(put|get|CARRY|have|bring|TAKE) (?P<thing>(DET|it) _*?) CENTREWORD",
         r"(fill) (DET)? (PICTURE|VIEWNOUN|frame) with (?P<thing>_+)",
     )
     for pattern in patterns:

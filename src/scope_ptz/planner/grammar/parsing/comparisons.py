@@ -77,7 +77,7 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         rf"{_SKIP} {_WHICH} (?P<places>_+?) {_SHOWS} {_WAY} (?P<thing>_+?)",
         rf"{_SKIP} (between|out of|of|among|DET presets) (?P<places>_+?) COMMA? {_WHICH} {_SHOWS} {_WAY} (?P<thing>_+?)",
         (
-            rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+?) (at|in|on|from) (?P<places>_+? (than|than_at|than_in|or|OR|THAN) "
+            rf"{_SKIP} ({_SEE})? {_WAY} (?P<thing>_+?) (at|in|on|from) (?P<places>_+? (than|than_at|than_in|or|OR|THAN) "
             rf"(at|in|on|from)* _+)"
         ),
         rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+) (at|in|on|from) (?P<places>_+? (than_at|than_in|or|THAN) (at|in|on|from)* _+)",
@@ -273,13 +273,13 @@ def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
 def _first_with(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read "go through the presets and stop at the first with a crane"."""
     stop = (
-        r"(STAY|stop|pause|STOP|CARRY|remain|halt|TAKE|end) (at|on|up)? (the)? first (one|PRESETNOUN|place)? "
+        r"(STAY|stop|stopping|HALT-ING|pause|STOP|CARRY|remain|halt|TAKE|end) (at|on|up)? (the)? first (one|PRESETNOUN|place)? "
         r"(with|that has|that shows|which has|showing|where SELF SEE|where there BE|that HAVEV|where SELF FIND|"
         r"where SELF can SEE|with_a|that SHOW-S|that SELF SEE) (?P<thing>_+)"
     )
     match = full_match(
         (
-            rf"{_SKIP} (SWITCH|CARRY|try|check|through|to|at|AIM|SCAN|visit|TRY|SHOW)* (?P<places>_+?) (INTURN|COMMA|"
+            rf"{_SKIP} (SWITCH|CARRY|step|try|check|through|to|at|AIM|SCAN|visit|TRY|SHOW)* (?P<places>_+?) (INTURN|COMMA|"
             rf"AND|and|FILLER|until)* {stop}"
         ),
         lexemes,

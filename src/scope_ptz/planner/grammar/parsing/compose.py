@@ -175,9 +175,11 @@ def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
 
 def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
     """Add a step to the steps that run at each of several presets."""
+    if isinstance(step, Home | GoToPreset | AtPlaces) or (isinstance(step, Back) and not last.body):
+        return None  # "visit every preset and come home"
     if not last.body and (link == "and" or not last.places):
         return [replace(last, body=(step,))]
-    if last.body and link == "and" and not isinstance(step, GoToPreset | Home | AtPlaces):
+    if last.body and link == "and":
         return [replace(last, body=tuple(compose([Linked("and", step)], last.body)))]
     return None
 

@@ -33,6 +33,9 @@ _SEEING = (
 )
 
 
+_IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
+
+
 def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | tuple[Step, ...] | None:
     """Read "count the cars", "how many cars are there" and "the number of cars"."""
     if match := full_match(rf"{SKIP} {_LOOKING}* {ME} HOWMANYMORE (?P<first>_+) than (?P<second>_+)", lexemes):
@@ -60,6 +63,8 @@ def _counted(
     """Return the count of what follows "how many" or "count"."""
     if view is None and has_full_scope(lexemes):
         view = "full"
+    if (aside := full_match(f"(?P<thing>_+?) COMMA (?P<sum>{_IN_ALL}) COMMA (?P<rest>_+)", rest)) is not None:
+        rest = (*aside["thing"], *aside["rest"])  # "how many vans, in total, can be seen?"
     rest, inner = without_view(trimmed(rest, "FILLER", "COMMA", "AMOUNTISH"))
     view = view or inner
     if full_match(r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again)*", rest) and not any(

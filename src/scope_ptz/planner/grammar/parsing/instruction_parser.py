@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step, Sweep
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
-from scope_ptz.planner.grammar.parsing.clause import MARKERS, NotUnderstoodError, Source
+from scope_ptz.planner.grammar.parsing.clause import MARKERS, Clause, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.sentences import Sentences
@@ -42,20 +42,30 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
     try:
-        steps = Sentences(Reader(Source(text, presets)), clauses_of(lexemes)).steps()
+        clauses = clauses_of(lexemes)
+        steps = Sentences(Reader(Source(text, presets)), clauses).steps()
     except NotUnderstoodError as error:
         return Parsed(text, None, _quoted(text, error.lexemes))
-    return Parsed(text, tuple(_with_preset_first(steps))) if steps else Parsed(text, None)
+    return Parsed(text, tuple(_with_preset_first(steps, is_vantage=_is_vantage(clauses, lexemes)))) if steps else Parsed(text, None)
 
 
-def _with_preset_first(steps: list[Step]) -> list[Step]:
+def _is_vantage(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the last clause only says from where the question before it is asked: "is it open? Look from the yard."."""
+    is_asked = clauses[-1].is_question and not any(x.has("OPEN") for x in lexemes)
+    if len(clauses) < 2 or is_asked or any(x.has("THEN") for x in lexemes):
+        return False
+    asks = clauses[-2].is_question and clauses[-1].link == "."
+    goes = any(x.has("SWITCH", "CARRY", "TURN", "PAN") for x in clauses[-1].lexemes)
+    return asks and not goes
+
+
+def _with_preset_first(steps: list[Step], *, is_vantage: bool) -> list[Step]:
     """Move a preset that is named after its question to the front: "how many are there? Use the yard preset."."""
     *before, last = steps
-    if isinstance(last, Sweep) and before and all(isinstance(s, Count | Ask | Read) for s in before):
-        return [last, *before]  # "has a ladder been left out? Check all around."
-    if isinstance(last, GoToPreset) and last.how == "use" and before and all(isinstance(s, Count | Ask | Read) for s in before):
-        return [last, *before]
-    return steps
+    if not before or not all(isinstance(s, Count | Ask | Read) for s in before):
+        return steps
+    is_place = isinstance(last, GoToPreset) and (last.how == "use" or (is_vantage and last.how != "look"))
+    return [last, *before] if is_place or isinstance(last, Sweep) else steps  # "has a ladder been left out? Check all around."
 
 
 def is_too_complex(lexemes: Sequence[Lexeme]) -> bool:

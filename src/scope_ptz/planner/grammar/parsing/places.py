@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Home,
     ListPresets,
     PresetRef,
+    Snap,
     Step,
     Unclear,
 )
@@ -99,11 +100,16 @@ def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, .
     ) is not None:
         first, second = place_of(source, match["first"]), place_of(source, match["second"])
         return (GoToPreset(first), GoToPreset(second)) if first and second else None
+    if (match := full_match(r"(FILLER|SWITCH|CARRY)* (via|through) (?P<first>_+?) (to|on to) (?P<second>_+)", lexemes)) is not None:
+        first, second = place_of(source, match["first"]), place_of(source, match["second"])
+        return (GoToPreset(first), GoToPreset(second)) if first and second else None
+    if full_match(rf"(FILLER)* (SNAP) (of)? {EVERY_PLACE} (INTURN|FILLER)*", lexemes):
+        return AtPlaces((), (Snap(),))  # "photograph each preset in turn"
     match = full_match(
         (
             rf"(SWITCH|CARRY|SCAN|SHOW|AIM|TURN|SWITCH-ING|CARRY-ING|through|to|at|in|me|SELF|CAMERA|FILLER|over|on|"
-            rf"for|from|up|DET tour of|tour|around|round|FIRSTLY|around|AROUND|a tour of|of|TAKE|it|TRACK|do|run|"
-            rf"each)* (?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
+            rf"for|from|up|DET (tour|round|lap|circuit) of|tour|around|round|FIRSTLY|around|AROUND|a tour of|of|TAKE|it|TRACK|do|"
+            rf"run|each)* (?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
         ),
         lexemes,
     )

@@ -29,6 +29,7 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.camera_state import state_step
 from scope_ptz.planner.grammar.parsing.clause import VERBS, NotUnderstoodError, Source, text_of
 from scope_ptz.planner.grammar.parsing.comparisons import comparison_step, sum_step
+from scope_ptz.planner.grammar.parsing.counting import check_places_step
 from scope_ptz.planner.grammar.parsing.looks import look_step
 from scope_ptz.planner.grammar.parsing.motion import turn_step
 from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
@@ -52,6 +53,7 @@ _WRAPPERS = (
         r"PICTURE|LITTLE|COUNTNOUN|CARRY|PAN|TILT|ZOOM)|SELF (will|would)? (need|want|love|like) (SELF to|"
         r"to)?(?=DET|NUM|PICTURE|PAN|TILT|ZOOM|TURN|CARRY|SWITCH|SNAP|COUNT)|SELF would (be FREE|appreciate it) "
         r"(if SELF MODAL|WRAPPER)|"
+        r"SELF would be (grateful|thankful|glad) for (?=DET|NUM|PICTURE)|"
         r"(FILLER|LEADFILLER(?! NUM)|FIRSTLY|COMMA|QUOTE|AND|BUT|INSTEAD|PURPOSE))"
     ),
 )
@@ -161,7 +163,7 @@ class Reader:
             "(SNAP|TAKE|SNAP-ING|TAKE-ING) (DET)? (PICTURE)? (of)? (both|EVERY|all|each) (of them|one|PRON|of)*", lexemes
         ) and any(x.has("SNAP", "PICTURE", "SNAP-ING") for x in lexemes):
             return (EachTime((Snap(),)),)
-        if full_match("(HALT|HALT-ING|hold|wait) (there|here|FILLER|moving|CAMERA|it)*", lexemes):
+        if full_match("(HALT|HALT-ING|hold|wait|pause) (there|here|FILLER|moving|CAMERA|it)*", lexemes):
             return (Forbid(any_move=True),)
         if full_match(
             (
@@ -325,6 +327,8 @@ class Reader:
                     return (step,)
             except NotUnderstoodError as error:
                 failed = failed or error
+        if (checked := check_places_step(self.source, lexemes)) is not None:
+            return (checked,)
         if (place := unknown_place(self.source, lexemes)) is not None:
             return (place,)
         try:

@@ -84,7 +84,8 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
         lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to) (?P<place>_+)", tail)
-        if not lead or (before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB")):
+        is_likeness = before.word == "like" and lexemes[0].has("WHQ")  # "what is the queue like at the gate?"
+        if not lead or (before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB") and not is_likeness):
             continue
         if lead["place"][0].has("PREP"):
             continue
@@ -94,7 +95,10 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
         is_certain = (
             not places or lead["prep"][0].word in {"at", "from", "in", "using"} or any(x.has("PRESETNOUN") for x in lead["place"])
         )
-        if is_certain and not search(r"(near|by|behind|sign|word|text|written|of) \Z", lexemes[: len(lexemes) - size]):
+        nouns = (
+            "" if len(places) > 1 else "sign|word|text|"
+        )  # "the sign at the gate" may be a description; at two presets it is not
+        if is_certain and not search(rf"(near|by|behind|{nouns}written|of) \Z", lexemes[: len(lexemes) - size]):
             return trimmed(lexemes[: len(lexemes) - size], "COMMA", "AND"), places
     return lexemes, None
 

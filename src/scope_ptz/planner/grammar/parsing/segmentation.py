@@ -42,6 +42,10 @@ class _Splitter(ClauseBoundaries):
         if "COLON" in ends and self._continues_after_colon(i):
             self.now.append(lexeme)
             return i + 1
+        if self._is_question() and match_start("OPEN (at|in|from|DET|PRESETNOUN)* PRESET PRESETNOUN? CLOSE", self.lexemes[i:]):
+            self._close(True)
+            self.link = "."
+            return i + 1  # "is the barrier open (gate preset)"
         if ends:
             self._close("QUESTION" in ends)
             self.link = "." if ends[0] != "COLON" else ":"

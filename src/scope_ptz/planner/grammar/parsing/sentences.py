@@ -7,9 +7,11 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.conditions import Answered, Condition, Negated, PresetOutnumbers, Quantity, Seen
 from scope_ptz.planner.grammar.instruction_tree import (
+    Ask,
     AtIntervals,
     AtPlaces,
     Bound,
+    Count,
     DoAgain,
     EachTime,
     FirstWith,
@@ -18,13 +20,18 @@ from scope_ptz.planner.grammar.instruction_tree import (
     If,
     Linked,
     Loop,
+    Mention,
     Move,
+    Read,
     Repeat,
     Report,
+    Snap,
     Step,
+    Track,
     Turn,
     Unclear,
     Zoom,
+    ZoomTo,
 )
 from scope_ptz.planner.grammar.parsing.asides import (
     elliptical_condition,
@@ -33,18 +40,24 @@ from scope_ptz.planner.grammar.parsing.asides import (
     is_reason,
     is_wish,
 )
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MOTION_VERBS, Clause, NotUnderstoodError
+from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MOTION_VERBS, Clause, NotUnderstoodError, Source, trimmed
 from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
 from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.reader import bare_clause
 from scope_ptz.planner.grammar.parsing.scopes import place_after
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
 """A condition about a preset, such as "the gate has fewer than 3 cars"."""
+
+_LOOKS = (Ask, Count, Read, Snap)
+"""What is done at each of several presets that are visited one by one."""
+
+_CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
+"""The end of a turn that puts a thing in the middle, such as "the van is in the centre of the picture"."""
 
 _SAME_MOVE = Unclear("Is that part of the same move, or another one? Please give each move its amount.")
 
@@ -109,6 +122,10 @@ class Sentences(ClauseReading):
         if times := self._times_of_all(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:
+            is_told = not clause.is_question and match_start("SOMEONE BE", clause.lexemes)
+            if is_told and isinstance(condition, Seen) and after is not None and search("them|him|her|it|PRON", after.lexemes):
+                self.last = Mention(condition.thing)  # "someone is at the door - zoom in on them"
+                return [Linked(clause.link, self.last)]
             return [Linked(clause.link, self._branches(condition, replace(clause, lexemes=(), marker="IF")))]
         before = self.last
         steps = self._read(clause)
@@ -118,13 +135,8 @@ class Sentences(ClauseReading):
             and not any(x.has("AGAINWORD", "ANOTHER") or x.word == "more" for x in clause.lexemes)
         ):
             return [Linked("then", _SAME_MOVE)]
-        if after is not None and after.link == ":" and not after.marker and any(x.has("INTURN") for x in clause.lexemes):
-            each = EachTime(self._read(self._take()))  # "visit the gate and the yard one by one: are there any cracks?"
-            return [*self._ended(clause, steps), Linked(",", each)]
-        is_each = len(steps) > 1 and all(isinstance(s, GoToPreset) for s in steps) and any(x.has("EVERY") for x in clause.lexemes)
-        if is_each and after is not None and after.link in {",", "and", "then"} and not after.marker:
-            each = EachTime(self._read(self._take()))  # "look at each of gate and yard and count the people there"
-            return [*self._ended(clause, steps), Linked(",", each)]
+        if (tour := self._tour(clause, steps)) is not None:
+            return tour
         if (
             steps
             and isinstance(steps[0], AtIntervals)
@@ -168,6 +180,34 @@ class Sentences(ClauseReading):
             self._take()
         return self._ended(clause, steps)
 
+    def _tour(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked] | None:
+        """Return the steps of a clause that visits presets one by one, with what is to be done at each; None for other clauses."""
+        if not steps or not all(isinstance(step, GoToPreset) for step in steps):
+            return None
+        size = 0  # of the list of presets that the clause begins
+        while (other := self._peek(size)) is not None and _lists_place(self.reader.source, other):
+            size += 1
+        listed = self.clauses[self.next : self.next + size]
+        act = self._peek(size)
+        is_each = any(x.has("EVERY") for x in clause.lexemes)
+        is_in_turn = any(x.has("INTURN") for part in (clause, *listed) for x in part.lexemes)
+        links = {",", "and", ":", "then"} if is_each else {",", "and", ":"} if is_in_turn else set[str]()
+        if len(steps) + size < 2 or act is None or act.marker or act.link not in links:
+            return None
+        visits = list(steps)
+        for _ in range(size):
+            visits += self._read(self._take())
+        each = list(self._read(self._take()))  # "look at each of gate and yard and count the people there"
+        if any(isinstance(step, Move | ZoomTo | Track) for step in each):
+            return [Linked(clause.link, Unclear("Shall I do that at each of them, or only at the last one?"))]
+        if not all(isinstance(step, _LOOKS) for step in each):
+            return [*self._ended(clause, tuple(visits)), *(Linked(act.link, step) for step in each)]
+        rest: list[Step] = []
+        while not rest and (more := self._peek()) is not None and more.link == "and" and not more.marker:
+            steps = self._read(self._take())
+            (each if all(isinstance(step, _LOOKS) for step in steps) else rest).extend(steps)
+        return [*self._ended(clause, tuple(visits)), Linked(",", EachTime(tuple(each))), *(Linked("and", step) for step in rest)]
+
     def _times_of_all(self, clause: Clause) -> Step | None:
         """Return the repetition of "three times: pan left 20 and count the cars"."""
         match = full_match(
@@ -200,8 +240,8 @@ class Sentences(ClauseReading):
             inner = Seen(thing)  # "the gate has people"
         if inner is not None and found is not None:
             condition, places = inner, found
-        if condition is None:
-            raise NotUnderstoodError(clause.lexemes)
+        if condition is None or (isinstance(condition, Seen) and condition.thing.text in {"something", "anything"}):
+            raise NotUnderstoodError(clause.lexemes)  # "until something moves" describes nothing that a picture shows
         if clause.marker == "UNLESS" or clause.marker == "NEVER":
             condition = Negated(condition)
         return condition, places
@@ -258,6 +298,11 @@ class Sentences(ClauseReading):
     def _loop(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
         """Return the loop of a clause and the "until ..." that follows it."""
         until = self._take()
+        is_turn = full_match("(KEEP|FILLER|CAMERA|DET)* (PAN|TURN|PAN-ING|TURN-ING) (AROUND|FILLER|CAMERA|DET)*", clause.lexemes)
+        if is_turn and self._peek() is None and (centred := full_match(_CENTRED, until.lexemes)):
+            thing = thing_of(self.reader.source, centred["thing"])
+            if thing is not None and thing.text:
+                return ZoomTo(thing)  # "pan until the excavator is in the middle"
         condition, places = self._condition(until)
         if places or not steps:
             raise NotUnderstoodError(until.lexemes)
@@ -321,6 +366,12 @@ def _opens(clause: Clause) -> bool:
             clause.is_question or not clause.lexemes[0].has("NUM", "LITTLE", "LOT", "MORE", "AMOUNTISH", "DET", "PREP", *DIRECTIONS)
         )
     )
+
+
+def _lists_place(source: Source, clause: Clause) -> bool:
+    """Return whether a clause only names another preset of a list: "..., yard and reception"."""
+    lexemes = trimmed(clause.lexemes, "INTURN", "FILLER", "COMMA")
+    return clause.link in {",", "and"} and not clause.marker and not clause.is_question and bool(places_of(source, lexemes))
 
 
 def _says_again(before: Step | None, steps: Sequence[Step]) -> bool:

@@ -26,6 +26,11 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
         return Unclear("Which way shall I turn, and how far?")  # "too far left" is a complaint
     if full_match(f"{glue} RIGHT AROUND {glue}", lexemes):
         return Unclear("Shall I turn right, or all the way round?")
+    if search("EVERY (LEFT|RIGHT|UP|DOWN)", lexemes):
+        return Unclear("Shall I turn all the way, or by how many degrees?")  # "all left"
+    if (match := full_match("(FILLER)* (crank|turn) (it|DET CAMERA) (?P<way>UP|DOWN) (FILLER)*", lexemes)) is not None:
+        way, zoom = ("up", "in") if match["way"][0].has("UP") else ("down", "out")
+        return Unclear(f"Shall I tilt {way}, or zoom {zoom}?")  # "crank it up" may ask for more of anything
     if full_match("(FILLER)* BACK UP (FILLER|LITTLE|LOT)*", lexemes):
         return Unclear("Shall I zoom out, tilt up, or go back to where I was?")
     if full_match(r"(FILLER)* go to the (LEFT|RIGHT) (FILLER)*", lexemes):
