@@ -12,7 +12,7 @@ _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
     r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
-    r"|\b(?:are|is|were|was) there (?:at|by|from)\b.*",
+    r"|\b(?:are|is|were|was) there (?:at|by|from)\b.*|\bin the (?:whole|entire|full) (?:scene|area|site|view)\b.*",
     re.IGNORECASE,
 )
 _JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
@@ -28,6 +28,8 @@ _SWALLOWED = tuple(
         rf"{_JOINED}(?:go|return|move|come|switch) (?:back )?(?:to )?(?:the )?(?:home|preset)\b.*",
         r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*",
         r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*",
+        rf"{_JOINED}(?:stop|stay|remain) (?:at|on|when|once|where)\b.*",
+        r"^(?:the )?(?:sum|total) of\b.*",
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
         r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )

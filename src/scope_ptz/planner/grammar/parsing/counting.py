@@ -41,6 +41,8 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     if match := full_match(rf"{SKIP} {_LOOKING}* {ME} HOWMANYMORE (?P<first>_+) than (?P<second>_+)", lexemes):
         return None
     if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ|BE|DET|that)* (?P<how>HOWMANY) (?P<rest>_+)", lexemes):
+        if match["how"][0].word in {"how much", "how_much"} and match["rest"][0].word == "of":
+            return None  # "how much of the blade is iced" asks for a share
         return _counted(source, match["rest"], view, lexemes, match["how"][0])
     if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
         return Count((Thing(),), view)

@@ -76,7 +76,7 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
 
 def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether lexemes are one noun phrase, or several joined by "and", "or" or commas."""
-    if any((x.has("LIMIT", "INTURN") and "_" in x.word) or x.word in {"than", "nor", "neither"} for x in lexemes):
+    if any((x.has("LIMIT", "INTURN") and "_" in x.word) or x.word in {"than", "nor", "neither", "minus"} for x in lexemes):
         return False
     if any(x.has(*_NEVER) or (x.has(*MARKERS) and not x.has("DET", "PREP", "REL", "SOMEONE")) for x in lexemes):
         return False
@@ -90,7 +90,7 @@ def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
         "ADVERB", "PRON", "ANY", "VISIBLE", *DIRECTIONS
     ):
         return False
-    if search("as (PRON|SELF)", lexemes) or match_start("NUM OR NUM|(it|them|him|her) PREP", lexemes):
+    if search("as (PRON|SELF)", lexemes) or match_start("NUM OR NUM|NUM DEG? (the|a|an)|(it|them|him|her) PREP", lexemes):
         return False
     if search(r"EVERY (of)? (DET)* PRESETNOUN", lexemes):
         return False

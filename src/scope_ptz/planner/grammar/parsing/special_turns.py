@@ -12,10 +12,16 @@ from scope_ptz.planner.grammar.parsing.turn_words import SILENT_IN_TURNS, TURN_V
 
 AXIS_TARGET = r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|is)? (?P<number>NUM) (DEG|X)?"
 
+_NO_COMPASS = Unclear(
+    "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
+)
+
 
 def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a turn whose words name no direction and amount: "turn around", "level the camera"."""
     glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
+    if any(x.word in {"bearing", "heading"} for x in lexemes) and any(x.has("NUM") for x in lexemes):
+        return _NO_COMPASS
     if full_match(rf"{glue} (REVERSE|(TURN|TURN-ING|CARRY|AIM) {glue} (AROUND|REVERSE)) {glue}", lexemes):
         return Move((Turn("pan", 1, Amount("degrees", 180.0)),))
     if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) {glue}", lexemes):
@@ -63,9 +69,7 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
             return Unclear("The camera cannot travel; it turns and zooms. Shall I zoom in?")
         return Move((Aim("pan", 0.0),))
     if any(x.has("COMPASS") for x in lexemes) and any(x.has(*TURN_VERBS) for x in lexemes):
-        return Unclear(
-            "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
-        )
+        return _NO_COMPASS
     return None
 
 
