@@ -6,12 +6,12 @@ import pytest
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
-from scope_ptz.planner.grammar.parsing.clause import Source
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of, things_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, search
-from scope_ptz.planner.grammar.parsing.segmentation import clauses_of
+from scope_ptz.planner.grammar.parsing.parts.clause import Source
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.plan import plan
 
 PRESETS = ("gate", "yard", "loading-dock")

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.conditions import Condition, Seen, Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import VERBS, Clause, Source
-from scope_ptz.planner.grammar.parsing.clause_starts import STATEMENT
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, Clause, Source
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
 _WISH = r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at) _+"
 _FAILING = r"(SELF|PRON) (MODAL|DOV) (not|hardly|barely) _+|SELF (be|HAVEV|BE|LOWER-ED) _+"

@@ -33,12 +33,12 @@ from scope_ptz.planner.grammar.parsing.asides import (
     pointed_out,
 )
 from scope_ptz.planner.grammar.parsing.calculations import calculated
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
-from scope_ptz.planner.grammar.parsing.clause_starts import GERUNDS
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.reader import Reader, bare_clause
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import GERUNDS
 
 NO_END = Unclear("Until when shall I keep doing that?")
 _SLIPS = frozenset({"er", "erm", "uh", "um", "uhm", "oops", "actually", "sorry", "no", "rather", "i_mean", "i_meant"})

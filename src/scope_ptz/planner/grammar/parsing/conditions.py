@@ -20,11 +20,11 @@ from scope_ptz.planner.grammar.conditions import (
     Thing,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.noun_phrases import described, is_noun_phrase, thing_of, things_of
-from scope_ptz.planner.grammar.parsing.patterns import Match, full_match, search
-from scope_ptz.planner.grammar.parsing.preset_refs import place_of
-from scope_ptz.planner.grammar.parsing.scopes import has_full_scope, without_view
+from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, is_noun_phrase, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View

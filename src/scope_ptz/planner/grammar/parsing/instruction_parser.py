@@ -8,9 +8,9 @@ from functools import lru_cache
 
 from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step, Sweep
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
-from scope_ptz.planner.grammar.parsing.clause import MARKERS, Clause, NotUnderstoodError, Source
+from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.reader import Reader
-from scope_ptz.planner.grammar.parsing.segmentation import clauses_of
+from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.sentences import Sentences
 
 MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone

@@ -26,18 +26,18 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.camera_state import state_step
-from scope_ptz.planner.grammar.parsing.clause import VERBS, NotUnderstoodError, Source, text_of
-from scope_ptz.planner.grammar.parsing.comparisons import comparison_step, sum_step
-from scope_ptz.planner.grammar.parsing.counting import check_places_step
-from scope_ptz.planner.grammar.parsing.looks import look_step
-from scope_ptz.planner.grammar.parsing.motion import turn_step
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.places import go_step, tour_step, unknown_place
-from scope_ptz.planner.grammar.parsing.preset_refs import places_of
-from scope_ptz.planner.grammar.parsing.questions import is_question
-from scope_ptz.planner.grammar.parsing.scopes import place_after, place_before, without_times
-from scope_ptz.planner.grammar.parsing.zooming import ZOOM_TOPICS, zoom_step
+from scope_ptz.planner.grammar.parsing.looks.camera_state import state_step
+from scope_ptz.planner.grammar.parsing.looks.comparisons import comparison_step, sum_step
+from scope_ptz.planner.grammar.parsing.looks.counting import check_places_step
+from scope_ptz.planner.grammar.parsing.looks.look_clauses import look_step
+from scope_ptz.planner.grammar.parsing.moves.motion import turn_step
+from scope_ptz.planner.grammar.parsing.moves.places import go_step, tour_step, unknown_place
+from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_step
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.questions import is_question
+from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View

@@ -40,15 +40,15 @@ from scope_ptz.planner.grammar.parsing.asides import (
     is_reason,
     is_wish,
 )
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MOTION_VERBS, Clause, NotUnderstoodError, Source, trimmed
 from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause, NotUnderstoodError, Source, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
 from scope_ptz.planner.grammar.parsing.reader import bare_clause
-from scope_ptz.planner.grammar.parsing.scopes import place_after
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
 """A condition about a preset, such as "the gate has fewer than 3 cars"."""

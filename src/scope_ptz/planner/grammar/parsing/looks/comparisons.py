@@ -18,11 +18,11 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhichPreset,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import NotUnderstoodError, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of, things_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
-from scope_ptz.planner.grammar.parsing.preset_refs import place_of, places_of
-from scope_ptz.planner.grammar.parsing.scopes import has_full_scope, place_after, without_view
+from scope_ptz.planner.grammar.parsing.parts.clause import NotUnderstoodError, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, place_after, without_view
 
 _SKIP = "(FILLER|FIRSTLY|LEADFILLER|TELL|me|us|SELF|if|whether|IF|COMMA|and|COMPARE|check|see)*"
 _SEE = r"(BE there|DOV SELF (SEE|have|count)|can SELF SEE|SELF SEE|there BE|BE|can be SEE-ED|HAVEV SELF got)"

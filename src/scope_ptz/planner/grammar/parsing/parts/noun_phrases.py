@@ -11,8 +11,8 @@ from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.instruction_tree import Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MARKERS, VERBS, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 _NEVER = (
     "DEG", "STOP", "QUESTION", "THEN", "UNTIL", "IFNOT", "IFSO", "PAN", "TILT", "ZOOM", "PAN-ING", "TILT-ING", "ZOOM-ING",

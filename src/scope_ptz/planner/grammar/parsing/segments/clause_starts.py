@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
 
 ENDS = {"STOP": ".", "QUESTION": "?", "COLON": ":"}
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import MOTION_VERBS, Clause
-from scope_ptz.planner.grammar.parsing.clause_boundaries import ClauseBoundaries
-from scope_ptz.planner.grammar.parsing.clause_starts import (
+from scope_ptz.planner.grammar.parsing.parts.clause import MOTION_VERBS, Clause
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaries
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ENDS,
     HEADINGS,
     PLACE_LEAD,
     SEPARATORS,
 )
-from scope_ptz.planner.grammar.parsing.noun_phrases import is_noun_phrase
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
 
 
 def clauses_of(lexemes: Sequence[Lexeme]) -> list[Clause]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MARKERS, VERBS
-from scope_ptz.planner.grammar.parsing.clause_starts import (
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ADJECTIVES,
     BEFORE_NOUN,
     FRAGMENT,
@@ -17,8 +18,7 @@ from scope_ptz.planner.grammar.parsing.clause_starts import (
     STARTS,
     STATEMENT,
 )
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.subordinate_clauses import SubordinateClauses
+from scope_ptz.planner.grammar.parsing.segments.subordinate_clauses import SubordinateClauses
 
 
 class ClauseBoundaries(SubordinateClauses):

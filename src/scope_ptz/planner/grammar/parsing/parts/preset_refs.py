@@ -8,8 +8,8 @@ from scope_ptz.planner.grammar.instruction_tree import (
     PresetRef,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import Source, text_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 PLACE = (
     r"((DET)? (PRESETNOUN)? (CALLED)? (QUOTE)? (?P<name>PRESET) (QUOTE)? (PRESETNOUN|one|VIEWNOUN|CAMERA|PICTURE|position)?"

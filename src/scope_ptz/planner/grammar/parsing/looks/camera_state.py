@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 
 def state_step(lexemes: Sequence[Lexeme]) -> Step | None:

@@ -17,9 +17,9 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import Source, text_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
-from scope_ptz.planner.grammar.parsing.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
+from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
 
 _GO = (
     r"(LEAVE (?=CAMERA|it|DET CAMERA)|(can|could|may) (i|we) (please)? (?=SHOW|TAKE)|SWITCH|CARRY|TURN|AIM|"

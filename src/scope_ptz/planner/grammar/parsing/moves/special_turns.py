@@ -7,8 +7,8 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Part, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.turn_words import SILENT_IN_TURNS, TURN_VERBS
+from scope_ptz.planner.grammar.parsing.moves.turn_words import SILENT_IN_TURNS, TURN_VERBS
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 AXIS_TARGET = r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|is)? (?P<number>NUM) (DEG|X)?"
 

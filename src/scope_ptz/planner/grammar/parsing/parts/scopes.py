@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar.instruction_tree import PresetRef
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import Source, trimmed
-from scope_ptz.planner.grammar.parsing.patterns import full_match, search
-from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.clause import Source, trimmed
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Back, Move, Repeat, Step, Unclear, Zoom
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import AS_FAR_AS, DANGLING, DIRECTIONS, NotUnderstoodError, fraction_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, DANGLING, DIRECTIONS, NotUnderstoodError, fraction_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 _MAX_PLAUSIBLE_FACTOR = 20.0  # larger numbers without a unit may be percentages
 LITTLE_FACTOR, LOT_FACTOR, PLAIN_FACTOR = 1.25, 4.0, 2.0  # factors for "a little", "a lot" and no amount

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.patterns import match_start, search
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 
 _LEAD = (
     r"((in|on|at|behind|between|near|under|beside|among) (DET|NUM)* (FREE|PREP|DET|NUM)+ COMMA|from (LEFT|"

@@ -8,8 +8,8 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import AS_FAR_AS, DIRECTIONS, fraction_of
-from scope_ptz.planner.grammar.parsing.patterns import Match, match_start
+from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, DIRECTIONS, fraction_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, match_start
 
 TURN_VERBS = ("PAN", "TILT", "TURN", "CARRY", "DOACT", "AIM", "RAISE", "LOWER", "INCREASE", "DECREASE", "KEEP", "SCAN", "SHOW")
 

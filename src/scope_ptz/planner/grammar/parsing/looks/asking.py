@@ -13,11 +13,11 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhatAbout,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.questions import is_question
-from scope_ptz.planner.grammar.parsing.scopes import has_full_scope
+from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.questions import is_question
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View

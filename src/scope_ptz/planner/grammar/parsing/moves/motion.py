@@ -11,10 +11,17 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Further, Move, Part, Repeat, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import DANGLING, DIRECTIONS, NotUnderstoodError
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.special_turns import AXIS_TARGET, special_turn
-from scope_ptz.planner.grammar.parsing.turn_words import AXES, SILENT_IN_TURNS, TURN_GERUNDS, TURN_VERBS, TurnParts, find_parts
+from scope_ptz.planner.grammar.parsing.moves.special_turns import AXIS_TARGET, special_turn
+from scope_ptz.planner.grammar.parsing.moves.turn_words import (
+    AXES,
+    SILENT_IN_TURNS,
+    TURN_GERUNDS,
+    TURN_VERBS,
+    TurnParts,
+    find_parts,
+)
+from scope_ptz.planner.grammar.parsing.parts.clause import DANGLING, DIRECTIONS, NotUnderstoodError
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 HasClass = Callable[..., bool]
 """Tells whether one of the words that add nothing belongs to a class."""

@@ -16,10 +16,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
-from scope_ptz.planner.grammar.parsing.clause import ME, SKIP, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of, things_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
-from scope_ptz.planner.grammar.parsing.scopes import SECONDS, duration_of
+from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS, duration_of
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, MOTION_VERBS, VERBS, Clause
-from scope_ptz.planner.grammar.parsing.clause_starts import (
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, VERBS, Clause
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     AFTER_VERB,
     GERUNDS,
     NOUNS_TOO,
     PLACE_LEAD,
     QUESTION_FORMS,
 )
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start, search
 
 
 class OpenClause:

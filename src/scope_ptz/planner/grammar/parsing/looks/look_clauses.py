@@ -12,14 +12,14 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Sweep,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.asking import question_step
-from scope_ptz.planner.grammar.parsing.clause import SKIP, Source, text_of
-from scope_ptz.planner.grammar.parsing.closeups import close_up_step, read_step, track_step
-from scope_ptz.planner.grammar.parsing.counting import check_places_step, count_step
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of, things_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match
-from scope_ptz.planner.grammar.parsing.pictures import picture_step
-from scope_ptz.planner.grammar.parsing.scopes import has_full_scope, without_view
+from scope_ptz.planner.grammar.parsing.looks.asking import question_step
+from scope_ptz.planner.grammar.parsing.looks.closeups import close_up_step, read_step, track_step
+from scope_ptz.planner.grammar.parsing.looks.counting import check_places_step, count_step
+from scope_ptz.planner.grammar.parsing.looks.pictures import picture_step
+from scope_ptz.planner.grammar.parsing.parts.clause import SKIP, Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
 if TYPE_CHECKING:
     pass

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import DIRECTIONS, VERBS
-from scope_ptz.planner.grammar.parsing.clause_starts import (
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     GERUNDS,
 )
-from scope_ptz.planner.grammar.parsing.open_clause import OpenClause
-from scope_ptz.planner.grammar.parsing.patterns import match_start, search
+from scope_ptz.planner.grammar.parsing.segments.open_clause import OpenClause
 
 
 class SubordinateClauses(OpenClause):

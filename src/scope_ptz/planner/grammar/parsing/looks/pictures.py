@@ -12,10 +12,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.clause import SKIP, Source, trimmed
-from scope_ptz.planner.grammar.parsing.noun_phrases import thing_of
-from scope_ptz.planner.grammar.parsing.patterns import full_match, match_start
-from scope_ptz.planner.grammar.parsing.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.clause import SKIP, Source, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
 if TYPE_CHECKING:
     pass

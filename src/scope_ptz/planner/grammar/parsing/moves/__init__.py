@@ -1,0 +1,1 @@
+"""Read clauses that move the camera: turns, zooms and presets."""

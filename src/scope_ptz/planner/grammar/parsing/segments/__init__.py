@@ -1,0 +1,1 @@
+"""Split an instruction into clauses."""
