@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.parts.required_words import Requirement, is_met, requirement_of
 
 _NAME = re.compile(r"\\Z|\?P<\w+>|\?P=\w+|\?[:=!]|\?<[=!]|[A-Z][A-Z-]*|[a-z][a-z_']*|_|\s+")
 
@@ -49,8 +50,37 @@ class Match:
         return name in self._found
 
 
-@lru_cache(maxsize=4096)
-def _compiled(pattern: str) -> re.Pattern[str]:
+class _Pattern:
+    """A pattern that is compiled when it can first match."""
+
+    def __init__(self, source: str) -> None:
+        self._source, self._is_compiled = source, False
+
+    def may_match(self, names: frozenset[str]) -> bool:
+        """Return False if the names of all words and classes lack one that the pattern needs."""
+        return self._is_compiled or is_met(self._requirement, names)
+
+    @cached_property
+    def _requirement(self) -> Requirement:
+        return requirement_of(self._source)
+
+    @cached_property
+    def at_start(self) -> re.Pattern[str]:
+        """The regular expression, to be matched at the first lexeme."""
+        self._is_compiled = True
+        return re.compile(_regular_expression(self._source))
+
+    @cached_property
+    def anywhere(self) -> re.Pattern[str]:
+        """The regular expression that begins at any lexeme."""
+        self._is_compiled = True
+        return re.compile(f"(?:(?<= )|^)(?:{_regular_expression(self._source)})")
+
+
+_pattern = lru_cache(maxsize=4096)(_Pattern)
+
+
+def _regular_expression(pattern: str) -> str:
     seen: dict[str, int] = {}
 
     def element(match: re.Match[str]) -> str:
@@ -69,43 +99,48 @@ def _compiled(pattern: str) -> re.Pattern[str]:
             return rf"(?:[^ |]*\|(?:[^ ]*\|)?{name}\|[^ ]* )"
         return rf"(?:{re.escape(name)}\|[^ ]* )"
 
-    return re.compile(_NAME.sub(element, pattern))
-
-
-@lru_cache(maxsize=4096)
-def _compiled_anywhere(pattern: str) -> re.Pattern[str]:
-    """Return a pattern that begins at any lexeme."""
-    return re.compile(f"(?:(?<= )|^)(?:{_compiled(pattern).pattern})")
+    return _NAME.sub(element, pattern)
 
 
 @lru_cache(maxsize=2048)
-def _rendered(lexemes: tuple[Lexeme, ...]) -> tuple[str, dict[int, int]]:
+def _rendered(lexemes: tuple[Lexeme, ...]) -> tuple[str, dict[int, int], frozenset[str]]:
+    """Return the text that patterns are matched against, the number of lexemes before each offset, and all words and classes."""
     text, offsets = [], {0: 0}
+    names: set[str] = set()
     size = 0
     for i, lexeme in enumerate(lexemes, 1):
-        piece = f"{lexeme.word.replace(' ', '_').replace('|', '_')}|{'|'.join(sorted(lexeme.classes))}| "
+        word = lexeme.word.replace(" ", "_").replace("|", "_")
+        names.update(lexeme.classes)
+        names.add(word)
+        piece = f"{word}|{'|'.join(sorted(lexeme.classes))}| "
         text.append(piece)
         size += len(piece)
         offsets[size] = i
-    return "".join(text), offsets
+    return "".join(text), offsets, frozenset(names)
 
 
 def full_match(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
     """Return the match of a pattern with all lexemes; None if it does not match."""
-    text, offsets = _rendered(tuple(lexemes))
-    match = _compiled(pattern).fullmatch(text)
+    text, offsets, names = _rendered(tuple(lexemes))
+    if not (compiled := _pattern(pattern)).may_match(names):
+        return None
+    match = compiled.at_start.fullmatch(text)
     return Match(match, lexemes, offsets) if match else None
 
 
 def match_start(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
     """Return the match of a pattern at the first lexeme; None if it does not match."""
-    text, offsets = _rendered(tuple(lexemes))
-    match = _compiled(pattern).match(text)
+    text, offsets, names = _rendered(tuple(lexemes))
+    if not (compiled := _pattern(pattern)).may_match(names):
+        return None
+    match = compiled.at_start.match(text)
     return Match(match, lexemes, offsets) if match else None
 
 
 def search(pattern: str, lexemes: Sequence[Lexeme]) -> Match | None:
     """Return the first match of a pattern anywhere; None if there is none."""
-    text, offsets = _rendered(tuple(lexemes))
-    match = _compiled_anywhere(pattern).search(text)
+    text, offsets, names = _rendered(tuple(lexemes))
+    if not (compiled := _pattern(pattern)).may_match(names):
+        return None
+    match = compiled.anywhere.search(text)
     return Match(match, lexemes, offsets) if match else None
