@@ -32,4 +32,4 @@ DEFAULT_SCENE = "highway-works"
 """The scene that commands use by default."""
 
 BLENDER_WINDOW = "blender-window"
-"""The camera in the scene that is open in a Blender, to which the add-on connects."""
+"""The camera in the scene that is open in Blender. The add-on connects it to the server."""

@@ -106,13 +106,13 @@ def _call_differences(recorded: tuple[Called, ...], repeated: tuple[Called, ...]
     for before, now in zip(recorded, repeated, strict=False):
         where = f"call {before.index + 1} of step {before.step} ({before.outcome.call.name})"
         if (before.step, before.index) != (now.step, now.index):
-            yield f"{where} was not made in this order"
+            yield f"{where} was made in a different order"
             return
         yield from (f"{where}: {difference}" for difference in _one_call(before, now, messages=messages))
-    for extra in recorded[len(repeated) :]:
-        yield f"call {extra.index + 1} of step {extra.step} ({extra.outcome.call.name}) was never made"
-    for missing in repeated[len(recorded) :]:
-        yield f"call {missing.index + 1} of step {missing.step} ({missing.outcome.call.name}) is missing"
+    for call in recorded[len(repeated) :]:
+        yield f"call {call.index + 1} of step {call.step} ({call.outcome.call.name}) was recorded, but not made in the repeated run"
+    for call in repeated[len(recorded) :]:
+        yield f"call {call.index + 1} of step {call.step} ({call.outcome.call.name}) was made in the repeated run, but not recorded"
 
 
 def _one_call(before: Called, now: Called, *, messages: bool) -> Iterator[str]:
@@ -145,8 +145,10 @@ def _field_differences(what: str, before: Mapping[str, Any], now: Mapping[str, A
 def _end_differences(recorded: Ended, repeated: Ended) -> Iterator[str]:
     if recorded.outcome not in REPRODUCIBLE_OUTCOMES:
         return
-    if (recorded.outcome, recorded.text) != (repeated.outcome, repeated.text):
-        yield f"the run was recorded to end {recorded.outcome}, but ends {repeated.outcome}, or with another answer"
+    if recorded.outcome != repeated.outcome:
+        yield f"the outcome was recorded as {recorded.outcome}, but is {repeated.outcome}"
+    elif recorded.text != repeated.text:
+        yield f"the answer was recorded as {_short(recorded.text)}, but is {_short(repeated.text)}"
     if not _same_pose(recorded.pose, repeated.pose):
         yield f"the pose at the end was recorded as {_plain(recorded.pose)}, but is {_plain(repeated.pose)}"
     if not same(recorded.scene_time_s, repeated.scene_time_s):

@@ -1,4 +1,4 @@
-"""The tools for the function calling of other agents: schemas in the form of an API, and the outcome of a call."""
+"""Function calling for other agents: the tool schemas in the format of an API, and the outcome of a call."""
 
 from __future__ import annotations
 

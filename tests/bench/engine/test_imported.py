@@ -40,8 +40,8 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
         1, None, None, {"single_call": None},
     )  # fmt: skip
     plain = scope(*run[:-1]).out
-    assert "not scored 1 not judged yet: scope bench rescore" in plain
-    assert "%" not in plain.partition("not scored")[0]
+    assert "unscored   1 not judged yet: scope bench rescore" in plain
+    assert "%" not in plain.partition("unscored   ")[0]
     log = Path(done.json["log"])
     (trial,) = read_evaluation(log).trials
     assert (trial.headline, trial.scored_by) == ("unscored", "judge")
@@ -133,6 +133,6 @@ def test_replies_without_a_verdict_are_excluded_from_accuracy_and_gates(scope: S
     mute = evaluation.trials[0].model_copy(update={"scored_by": "judge", "headline": "unscored", "judgements": (said,)})
     trials = (mute, *evaluation.trials[1:])
     assert accuracy(trials) == 2 / 3
-    assert unscored_lines(trials) == ["not scored 1 without a verdict: the judge's replies were unparseable"]
+    assert unscored_lines(trials) == ["unscored   1 without a verdict: the judge's replies were unparseable"]
     found = gate(evaluation.model_copy(update={"trials": trials}), evaluation)
     assert (found.left_out, found.overall.tasks, found.overall.worse) == ((mute.task.id,), 3, ())

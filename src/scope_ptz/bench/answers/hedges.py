@@ -22,14 +22,14 @@ _GUESS = re.compile(
     r"guess(?:ing|ed)?|pick any|any number|at random|arbitrar(?:y|ily)|by default|default$|blindly|"
     r"vielleicht|peut être|peut-être|quiz[áa]s?|tal vez|forse|talvez|misschien|kanske)\b"
 )
-"""Phrases of a guess that leave nothing stated, in English and in other languages."""
+"""Phrases that make an answer a mere guess, in English and other languages."""
 _GUESSED_READING = re.compile(r"\b(?:perhaps|maybe|possibly|conceivably|(?:might|may) (?:say|read|be|have)|could (?:say|be))\b")
 """Words that make a reported text a guess."""
 _DENIED_SPEECH = re.compile(
     r"\b(?:false|wrong|incorrect|untrue|a mistake|a lie) to (?:say|claim|state|think|answer)\b"
     r"|\b(?:anyone|anybody|whoever|people|those|someone) (?:who )?(?:says?|claims?|thinks?|states?)\b"
 )
-"""Phrases that attribute a statement to others, or deny that it may be made."""
+"""Phrases that attribute a statement to others, or call it wrong."""
 _GRADING = re.compile(
     r"\b(?:mark|grade|score|accept|count|treat|rate) (?:this|the|my|any|it|all) (?:\w+ )?(?:answers?|responses?|replies|runs?)\b"
     r"|\b(?:expected|reference|gold|official) (?:answers?|values?|results?|solution)\b|\bexpected \d|\bgrader\b|\banswer key\b"

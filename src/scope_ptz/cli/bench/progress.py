@@ -153,8 +153,8 @@ def unscored_lines(trials: Sequence[Trial]) -> list[str]:
     """Return lines about runs that only a judge can score and that have no verdict. They are excluded from the accuracy."""
     pending = sum(needs_judgement(t) for t in trials)
     unparseable = sum(without_verdict(t) and not needs_judgement(t) for t in trials)
-    lines = [f"not scored {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
-    return lines + ([f"not scored {unparseable} without a verdict: the judge's replies were unparseable"] if unparseable else [])
+    lines = [f"unscored   {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
+    return lines + ([f"unscored   {unparseable} without a verdict: the judge's replies were unparseable"] if unparseable else [])
 
 
 def summary(evaluation: Evaluation) -> RenderableType:

@@ -144,7 +144,7 @@ class HostedEvaluation:
 
         Raises:
             NotYourTurnError: There is no run in progress, or an earlier message is still being worked on.
-            NotReadyError: The worker fails.
+            NotReadyError: The next run was not ready in time, or the worker has failed repeatedly.
         """
         hello = _hello_of(line)
         if hello is None:

@@ -74,7 +74,7 @@ def _overlap(
     placed: Sequence[tuple[float, float]],
     limits: Sequence[float],
 ) -> float:
-    """Return how far a label reaches into points, other labels and the border, in points."""
+    """Return how far a label overlaps points, other labels and the border, as a weighted sum of lengths in pt."""
     (x, y), (half_x, half_y) = label, LABEL_HALF_PT
     total = 0.0
     for (px, py), radius in points:

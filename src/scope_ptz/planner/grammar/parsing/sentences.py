@@ -54,7 +54,7 @@ _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FE
 """A condition about a preset, such as "the gate has fewer than 3 cars"."""
 
 _LOOKS = (Ask, Count, Read, Snap)
-"""What is done at each of several presets that are visited one by one."""
+"""Steps that are carried out at each of several presets visited one by one."""
 
 _CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
 """The end of a turn that puts a thing in the middle, such as "the van is in the centre of the picture"."""
@@ -73,7 +73,7 @@ class Sentences(ClauseReading):
         is_one_move = any(x.has("ATSAMETIME") for clause in self.clauses for x in clause.lexemes)
         axes = [part.axis for step in out if isinstance(step, Move) for part in step.parts if not isinstance(part, Zoom)]
         if is_one_move and len(set(axes)) < len(axes):
-            return [Unclear("That asks for two moves about the same axis at once. Which one shall I make?")]
+            return [Unclear("That asks for two moves on the same axis at once. Which one shall I make?")]
         return out
 
     def _linked(self) -> list[Linked]:
@@ -116,7 +116,7 @@ class Sentences(ClauseReading):
             self.next == 1
             and [x.word for x in clause.lexemes if not x.has("FILLER", "COMMA")] == ["right"]
             and after is not None
-            and _opens(after)
+            and _is_full_sentence(after)
         ):
             return []  # "right, count the cars"
         if times := self._times_of_all(clause):
@@ -331,8 +331,7 @@ class Sentences(ClauseReading):
             if after.lexemes:
                 otherwise = compose([Linked("", s) for s in self.reader.read(after.lexemes)], otherwise)
             otherwise = self._block(otherwise)
-        body = tuple(step.body[0] if isinstance(step, Repeat) and False else step for step in steps)
-        return Loop(body, condition, bound, tuple(otherwise))
+        return Loop(tuple(steps), condition, bound, tuple(otherwise))
 
     def _loop_ahead(self, clause: Clause) -> Step:
         """Return the loop of "while there are no cars, pan right 10"."""
@@ -357,8 +356,8 @@ class Sentences(ClauseReading):
         return [Linked("then", s) for s in (*other, *block)]
 
 
-def _opens(clause: Clause) -> bool:
-    """Return whether a clause is a sentence of its own, so that the word before it only opens it."""
+def _is_full_sentence(clause: Clause) -> bool:
+    """Return whether a clause is a sentence of its own, so that a word before it, such as "right,", is only an opener."""
     return (
         clause.link in {",", ".", ":"}
         and bool(clause.lexemes)
@@ -377,7 +376,7 @@ def _lists_place(source: Source, clause: Clause) -> bool:
 def _says_again(before: Step | None, steps: Sequence[Step]) -> bool:
     """Return whether a move goes the same way as the move before it: "pan left 10, ten degrees to the left".
 
-    It may only say the same in other words, so it must not be made as another move.
+    It may just be a rewording of that move, so it must not be carried out as a second one.
     """
     if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
         return False
