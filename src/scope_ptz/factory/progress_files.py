@@ -55,7 +55,7 @@ class ProgressFiles(EvaluationProgress):
             raise OutputError(f"The progress cannot be written to {folder}: {error.strerror}. Choose another folder.") from error
         if not lock_file(self._lock):
             self._lock.close()
-            raise InputError(f"Another evaluation writes its progress to {folder}. Wait for it, or choose another folder.")
+            raise InputError(f"Another evaluation is writing its progress to {folder}. Wait for it, or choose another folder.")
         self._write()
 
     def close(self) -> None:

@@ -13,7 +13,7 @@ from scope_ptz.perception.ground_truth import GroundTruthPerception
 CENTRAL_OFFSET = 1 / 6
 """A target is near the centre if its middle is at most this fraction of the width and height from it: in the middle third."""
 
-MAX_START_TILT_DEG = 10.0  # searches start with at most this tilt up or down from START_TILT_DEG
+MAX_START_TILT_OFFSET_DEG = 10.0  # a search starts at most this far above or below START_TILT_DEG
 START_TILT_DEG = -10.0
 MAX_ATTEMPTS = 200  # starts and targets that are tried before a scene is said to have no suitable target
 
@@ -32,7 +32,7 @@ def true_boxes(world: World, pose: Pose, description: str) -> tuple[Box, ...]:
 
 
 class Targets:
-    """The things of the scenes that can be searched for. What was found out about a thing is kept for later episodes.
+    """The things of the scenes that can be searched for. Findings about each thing are cached for later episodes.
 
     Args:
         world: The world. Its camera determines the scene, the viewpoint and the time.
@@ -104,5 +104,5 @@ class Targets:
 
 def _random_start(rng: np.random.Generator, limits: Limits) -> Pose:
     pan = rng.uniform(limits.min_pan_deg, limits.max_pan_deg)
-    tilt = START_TILT_DEG + rng.uniform(-MAX_START_TILT_DEG, MAX_START_TILT_DEG)
+    tilt = START_TILT_DEG + rng.uniform(-MAX_START_TILT_OFFSET_DEG, MAX_START_TILT_OFFSET_DEG)
     return limits.clamp(Pose(float(pan), float(tilt), limits.min_zoom))[0]

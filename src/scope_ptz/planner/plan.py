@@ -65,7 +65,7 @@ def plan(
     """Return the plan for an instruction.
 
     Args:
-        instruction: The text of the user.
+        instruction: The user's instruction, as text.
         presets: The camera's presets; without any, preset names are accepted as written.
         pose: The camera's pose at the start.
         preset_poses: Poses of the presets. A preset that is not listed is assumed to have the home pose.

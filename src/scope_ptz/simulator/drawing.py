@@ -89,7 +89,7 @@ def _remove_hidden(
     alpha: Mask,
     steepest_rise: float,
 ) -> None:
-    """Set the pixels of each layer's colour at which the actor or its shadow is hidden to 0."""
+    """Set to 0 the pixels of each layer's colour where the actor or its shadow is hidden."""
     doubtful = viewpoint.clearance.doubtful(
         projection,
         part,

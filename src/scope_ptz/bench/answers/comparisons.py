@@ -1,4 +1,4 @@
-"""Find comparatives ("more", "closer"), the thing that each of them describes, and the thing that this is compared with."""
+"""Find comparatives ("more", "closer"), the thing that each one describes, and the thing with which it is compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words that do not give a refusal a subject of its own: "I cannot tell how many of them there are"."""
+"""Words that a refusal can contain without naming a subject, as in "I cannot tell how many of them there are"."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMON_WORDS = frozenset({
     "visible", "available", "unavailable", "failed", "error", "take", "word", "put", "simply", "frankly", "truly", "none",
     "zero", "nothing", "yes", "0", "go", "moment", "today", "possible", "able", "given", "need",
 })  # fmt: skip
-"""Words that do not name a subject of their own, whatever the question asks."""
+"""Words that never name a subject, whatever the question asks."""
 
 WORDS_OF_KIND: dict[str, frozenset[str]] = {
     "choice": frozenset({
@@ -41,4 +41,4 @@ WORDS_OF_KIND: dict[str, frozenset[str]] = {
         "count", "counts", "number", "sum", "difference",
     }),
 }  # fmt: skip
-"""Words for what questions of each kind ask."""
+"""Further such words for each kind of question: words for what it asks about."""

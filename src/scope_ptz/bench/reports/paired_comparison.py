@@ -38,8 +38,8 @@ class PairedComparison:
         shared: Number of shared tasks.
         macro: Macro accuracy of the first run minus that of the second.
         bootstrap: Bootstrap interval of the difference; None with fewer than two viewpoints.
-        only_first: Tasks on which the first run is better.
-        only_second: Tasks on which the second run is better.
+        only_first: Number of tasks on which the first run is better.
+        only_second: Number of tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
         p_clustered: P value of the t test with clustered standard errors; None if unknown.
         smallest_detectable: The smallest true difference that the clustered test detects with 80% power; None if unknown.
@@ -194,7 +194,7 @@ def _unpaired_table(runs: Sequence[ReportRun]) -> ReportTable:
         clusters = run.macro.clusters if run.macro else 0
         rows.append((run.label, se, clusters, None if not se else detectable_difference(sqrt(2) * se, clusters)))
     notes = (
-        "The smallest difference from an equally precise run over other tasks that is detected with 80% power. Paired comparisons "
+        "The smallest difference that is detected with 80% power if the other run is equally precise but covers other tasks. Paired comparisons "
         "usually detect smaller differences.",
     )
     return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

@@ -1,6 +1,6 @@
-"""The connection between a server and the add-on in a Blender: requests to the add-on, and its replies.
+"""The connection between a server and the add-on in a Blender instance: requests to the add-on, and its replies.
 
-The add-on opens the connection and reads requests from a stream. It sends each reply, or a picture, as a request of its own.
+The add-on opens the connection and reads requests from a stream. It sends each reply, which may be a picture, in a separate HTTP request.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ class AddOnConnection:
 
 
 class AddOnSlot:
-    """Holds the current connection between a camera and the add-on in a Blender. One Blender at a time can be connected.
+    """Holds the current connection between a camera and the add-on in a Blender instance. One Blender at a time can be connected.
 
     Attributes:
         changes: Number of times that the connection or its scene has changed so far.
@@ -161,7 +161,7 @@ class AddOnSlot:
         return self.current
 
     def connect(self, description: SceneDescription, owner: str) -> AddOnConnection:
-        """Create the connection of a Blender. An earlier one ends."""
+        """Create the connection to a Blender instance. An earlier one ends."""
         if self._current is not None:
             self._current.end()
         self._current = AddOnConnection(description, owner)

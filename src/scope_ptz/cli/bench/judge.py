@@ -116,7 +116,8 @@ def retry_message(tally: JudgementTally) -> str:
 
 def agree(
     logs: Annotated[
-        list[Path], typer.Argument(help="Logs with judgements or labels, and verdicts on gold runs (.jsonl of judge-gold).")
+        list[Path],
+        typer.Argument(help="Logs with judgements or labels, and verdicts on gold runs (.jsonl files written by judge-gold)."),
     ],
     as_json: JsonOption = False,
     seed: Annotated[int, typer.Option(help="Seed for the bootstrap.")] = 1,

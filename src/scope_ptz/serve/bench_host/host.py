@@ -170,7 +170,7 @@ def locked(folder: Path) -> Iterator[None]:
         raise OutputError(f"The folder {folder} cannot be written: {error.strerror}. Choose another one with --out.") from error
     with lock:
         if not lock_file(lock):
-            raise InputError(f"Another host uses {folder}. Stop it first, or choose another folder with --out.")
+            raise InputError(f"Another host is using {folder}. Stop it first, or choose another folder with --out.")
         yield
 
 

@@ -18,8 +18,8 @@ from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
 from scope_ptz.tools.registry import TOOLS
 
-SUCCESSES = ("answered", "clarification", "refused")
-"""Outcomes of runs that ended by the planner's decision."""
+PLANNER_ENDINGS = ("answered", "clarification", "refused")
+"""Outcomes of runs that the planner itself ended."""
 
 
 MAX_STEPS = 64  # a report of a longer run contains only the last steps

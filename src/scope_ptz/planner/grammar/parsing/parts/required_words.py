@@ -1,4 +1,4 @@
-"""Decide without compiling a pattern that it cannot match, because words or classes that it needs are missing.
+"""Rule out patterns that cannot match, without compiling them, because words or classes that they need are missing.
 
 Compiling a regular expression takes about a millisecond, and most patterns need a word that an instruction does not contain.
 """
@@ -13,7 +13,7 @@ _NAME = re.compile(r"[A-Za-z]")
 _OPTIONAL = ("?", "*", "{0", "{,")
 
 Requirement = bool | str | tuple[str, tuple["Requirement", ...]]
-"""True if nothing is needed, a name that is needed, or ("all" | "any", requirements)."""
+"""True if nothing is needed, False if nothing can match, a required name, or ("all" | "any", requirements)."""
 
 
 def requirement_of(pattern: str) -> Requirement:
@@ -53,10 +53,10 @@ def _alternatives(tokens: Iterator[re.Match[str]]) -> Requirement:
 
 
 def _joined(kind: str, parts: list[Requirement]) -> Requirement:
-    decisive = kind == "any"
-    if decisive and True in parts:
+    is_any = kind == "any"
+    if is_any and True in parts:
         return True
     parts = [part for part in parts if part is not True]
     if not parts:
-        return not decisive
+        return not is_any
     return parts[0] if len(parts) == 1 else (kind, tuple(parts))
