@@ -43,7 +43,9 @@ class ModelOptions:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPlanner:
-    """The result of resolving the options for a planner: the grammar, a chat model or a plug-in. ``make_planner`` creates the planner from this result.
+    """The result of resolving the options for a planner: the grammar, a chat model or a plug-in.
+
+    ``make_planner`` creates the planner from this result.
 
     Attributes:
         name: The name in traces and reports.

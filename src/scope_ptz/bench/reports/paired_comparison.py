@@ -194,7 +194,7 @@ def _unpaired_table(runs: Sequence[ReportRun]) -> ReportTable:
         clusters = run.macro.clusters if run.macro else 0
         rows.append((run.label, se, clusters, None if not se else detectable_difference(sqrt(2) * se, clusters)))
     notes = (
-        "The smallest difference that is detected with 80% power if the other run is equally precise but covers other tasks. Paired comparisons "
-        "usually detect smaller differences.",
+        "The smallest difference that is detected with 80% power if the other run is equally precise but covers other tasks. "
+        "Paired comparisons usually detect smaller differences.",
     )
     return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

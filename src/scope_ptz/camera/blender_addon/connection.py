@@ -1,6 +1,7 @@
 """The connection between a server and the add-on in a Blender instance: requests to the add-on, and its replies.
 
-The add-on opens the connection and reads requests from a stream. It sends each reply, which may be a picture, in a separate HTTP request.
+The add-on opens the connection and reads requests from a stream. It sends each reply, which may be a picture, in a separate HTTP
+request.
 """
 
 from __future__ import annotations

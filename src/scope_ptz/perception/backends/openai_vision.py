@@ -145,7 +145,10 @@ _FIELD_ALIASES = {"response_format": ("response_format", "json_schema", "json sc
 
 
 def rejected_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
-    """Return the request fields that an error message rejects. If a bad-request error names no field, the JSON schema is assumed to be the cause."""
+    """Return the request fields that an error message rejects.
+
+    If a bad-request error names no field, the JSON schema is assumed to be the cause.
+    """
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
     words = str(error).lower()
