@@ -149,6 +149,11 @@ async def test_renewed_drive_goes_on_and_a_move_after_it_is_not_cut_short(driver
         assert (await camera.move(there)).pose.pan_deg == pytest.approx(there.pan_deg, abs=0.15)
 
 
+def _heed_hang_up() -> None:
+    """Undo what ``nohup`` sets: a program that is started by a test would otherwise ignore the signal too."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 PROGRAM = """
 import anyio, sys
 from scope_ptz.factory.cameras import open_camera
@@ -171,7 +176,7 @@ async def test_program_that_drives_is_ended(driver: Driver, device: VirtualDevic
         stream = "" if driver.name == "axis" else "?stream=snapshot"
         process = await asyncio.create_subprocess_exec(
             sys.executable, "-c", PROGRAM, f"{driver.name}://{USER}@127.0.0.1:{camera_server.port}{stream}",
-            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path),
+            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path), preexec_fn=_heed_hang_up,
         )  # fmt: skip
         assert process.stdout is not None
         with anyio.fail_after(60):
@@ -195,7 +200,7 @@ async def test_command_that_moves_is_ended(driver: Driver, device: VirtualDevice
                 sys.executable, "-m", "scope_ptz.cli", "ask", "pan right 170 degrees",
                 "--camera", f"{driver.name}://{USER}@127.0.0.1:{camera_server.port}?width={WIDTH}&height={HEIGHT}{stream}",
                 "--perception", "moondream2", "--perception-url", server.url,
-                stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path),
+                stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path), preexec_fn=_heed_hang_up,
             )  # fmt: skip
             await until(lambda: device.moving() or process.returncode is not None, 60.0)
             process.send_signal(number)

@@ -14,7 +14,7 @@ from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.sentences import Sentences
 
 MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
-MAX_LEXEMES = 120  # maximum number of lexemes in a text that is parsed
+MAX_LEXEMES = 250  # maximum number of lexemes in a text that is parsed
 MAX_CONDITIONS = 12  # maximum number of conditions in a text that is parsed
 _MAX_QUOTATIONS = 3
 _MAX_QUOTED_WORDS = 8  # longer clauses are quoted by their first words
