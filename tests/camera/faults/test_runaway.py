@@ -200,7 +200,8 @@ async def test_command_that_moves_is_ended(driver: Driver, device: VirtualDevice
                 sys.executable, "-m", "scope_ptz.cli", "ask", "pan right 170 degrees",
                 "--camera", f"{driver.name}://{USER}@127.0.0.1:{camera_server.port}?width={WIDTH}&height={HEIGHT}{stream}",
                 "--perception", "moondream2", "--perception-url", server.url,
-                stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path), preexec_fn=_heed_hang_up,
+                stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path),
+                preexec_fn=_heed_hang_up,
             )  # fmt: skip
             await until(lambda: device.moving() or process.returncode is not None, 60.0)
             process.send_signal(number)
