@@ -1,10 +1,10 @@
-"""Count how many test instructions the grammar planner plans as expected, asks back, or plans wrongly.
+"""Count the test instructions that the grammar planner plans correctly, answers with a question, or plans wrongly.
 
     python -m benchmarks.plan_correctness [--show VERDICT] [--lot NAME]
 
 A wrong move is a plan that moves the camera otherwise than expected, or makes only the first part of the moves. A wrong look is a
-plan with other counts or questions, and with the expected moves or none. Rows of the split ``held-out`` are counted apart and never
-shown.
+plan with other counts or questions, and with the expected moves or none. Rows of the split ``held-out`` are counted separately and
+never listed.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ def main() -> None:
         for split in ("dev", "held-out"):
             counts: Counter[str] = Counter()
             for row in rows(lot, split):
-                made = planned(row)
-                name = verdict(row, made)
+                plan = planned(row)
+                name = verdict(row, plan)
                 counts[name] += 1
                 if name in options.show and split == "dev":
-                    calls = "; ".join(f"{c.name}({c.arguments})" for c in made.calls)
-                    shown.append(f"[{name}] {row.instruction}\n    {made.clarification or calls}")
+                    calls = "; ".join(f"{c.name}({c.arguments})" for c in plan.calls)
+                    shown.append(f"[{name}] {row.instruction}\n    {plan.clarification or calls}")
             if counts:
-                _print(f"{lot} {split}", counts)
+                _print_counts(f"{lot} {split}", counts)
                 total += counts
-    _print("all", total)
+    _print_counts("all", total)
     print("\n".join(shown))
 
 
-def _print(label: str, counts: Counter[str]) -> None:
+def _print_counts(label: str, counts: Counter[str]) -> None:
     size = sum(counts.values())
     print(f"{label:<24}{size:>6}" + "".join(f"{counts[name]:>6} {counts[name] / size:>6.1%} " for name in VERDICTS))
 

@@ -27,7 +27,7 @@ from zipfile import ZipFile
 ROOT = Path(__file__).parents[2]
 PACKAGE = "scope_ptz"
 MODEL_PROVIDER = "scope_ptz/scope_ptz"
-"""Name in Inspect's registry of the provider of models whose names begin with ``scope_ptz/``."""
+"""Registry name, in Inspect, of the provider for models whose names begin with ``scope_ptz/``."""
 PROMPTS = {
     "planner": "planner/chat/prompts",
     "judge": "bench/judging/prompts",
@@ -37,8 +37,8 @@ DATASET = "data/bench"
 SCENES = "data/scenes"
 SCHEMAS = ("data/tasks.schema.json", "data/submission.schema.json")
 DATASET_FILES = ("tasks", "unseen", "paraphrase", "reaction")
-LANGUAGE_FILES = ("planner/grammar/lexing", "planner/grammar/parsing", "perception/ground_truth/language", "english/grammar")
-"""Folders with the grammars and word lists for instructions and for perception questions."""
+LANGUAGE_FILES = {"english/grammar/questions": "perception", "english/grammar": "english"}
+"""Folders with the grammars and word lists for instructions and for perception questions, with their names in the stored data."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ def run(*arguments: str, stdin: str = "") -> CommandResult:
     """Run ``scope`` in this process with a clean environment."""
     from scope_ptz.cli import main
 
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("SCOPE_")}
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith("SCOPE_")}
     out, err, code = io.StringIO(), io.StringIO(), 0
     with (
-        mock.patch.dict(os.environ, {**kept, "COLUMNS": "200"}, clear=True),
+        mock.patch.dict(os.environ, {**inherited, "COLUMNS": "200"}, clear=True),
         mock.patch.object(sys, "argv", ["scope", *arguments]),
         mock.patch.object(sys, "stdin", io.StringIO(stdin)),
         redirect_stdout(out),
@@ -97,7 +97,7 @@ def replay(folder: Path) -> tuple[int, dict[str, Any]]:
 
 
 def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = None, perception: str = "") -> list[dict[str, Any]]:
-    """Carry out an instruction and return the records of its trace.
+    """Execute an instruction and return the records of its trace.
 
     Args:
         planner: URL ("url") and options of a chat model. Without it, the grammar planner is used.
@@ -119,7 +119,7 @@ def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = Non
 
 def plan(instructions: Iterable[tuple[str, Sequence[str]]], scratch: Path) -> list[dict[str, Any]]:
     """Return the plan of each instruction, given with its presets. Keys: instruction, understood, calls, clarification."""
-    lines = (json.dumps({"instruction": words, "presets": list(presets)}) for words, presets in instructions)
+    lines = (json.dumps({"instruction": instruction, "presets": list(presets)}) for instruction, presets in instructions)
     scratch.write_text("\n".join(lines) + "\n", "utf-8")
     result = run("plan", "--from", str(scratch), "--json")
     assert result.code == 0, result.err
@@ -162,7 +162,7 @@ def report_tables(logs: Sequence[Path], out: Path) -> dict[str, str]:
 
 
 def make_submission(log: Path, out: Path) -> list[dict[str, Any]]:
-    """Make a submission without traces, as version 0.1.0 did, from a log and return its lines."""
+    """Make a submission from a log without traces, as version 0.1.0 did, and return its lines."""
     result = run("bench", "submission", "make", str(log), "--out", str(out), "--no-traces")
     assert result.code == 0, result.err
     return [json.loads(line) for line in out.read_text("utf-8").splitlines()]
@@ -213,8 +213,8 @@ def digests() -> dict[str, dict[str, str]]:
     return {
         **{f"prompts/{name}": group(folder, "*.md") for name, folder in PROMPTS.items()},
         "language": {
-            f"{Path(folder).parts[0]}/{name}": digest
-            for folder in LANGUAGE_FILES
+            f"{label}/{name}": digest
+            for folder, label in LANGUAGE_FILES.items()
             for suffix in ("lark", "txt", "rules")
             for name, digest in group(folder, f"*.{suffix}").items()
         },
@@ -294,7 +294,7 @@ def _is_nan(value: Any) -> bool:
 
 
 @contextmanager
-def copied(log: Path, folder: Path) -> Iterator[Path]:
+def copied_log(log: Path, folder: Path) -> Iterator[Path]:
     """Yield a copy of a log in ``folder``, which the test may modify."""
     folder.mkdir(parents=True, exist_ok=True)
     yield Path(shutil.copy2(log, folder / log.name))

@@ -17,17 +17,21 @@ from tests.frozen.server import Reply, ScriptedServer, calls_message, text_messa
 DATA = Path(__file__).parent / "v0_1_0"
 RUNS, LOGS = DATA / "traces", DATA / "logs"
 SUBMISSION = DATA / "submission.jsonl"
-SUBMITTED = LOGS / "reaction.eval"
+SUBMITTED_LOG = LOGS / "reaction.eval"
 RUN_NAMES = sorted(path.name for path in RUNS.iterdir())
 LOG_NAMES = sorted(path.stem for path in LOGS.glob("*.eval"))
-REPORTED = ("truth", "noisy", "repeats", "judged", "served", "agent")
-RANKED = {"judged": ("qwen3-4b", "moondream2"), "truth": ("qwen3-30b-a3b", "moondream2"), "noisy": ("qwen3-4b", "qwen2.5-vl-7b")}
+REPORTED_LOGS = ("truth", "noisy", "repeats", "judged", "served", "agent")
+RANKED_LOGS = {
+    "judged": ("qwen3-4b", "moondream2"),
+    "truth": ("qwen3-30b-a3b", "moondream2"),
+    "noisy": ("qwen3-4b", "qwen2.5-vl-7b"),
+}
 """Logs that are also reported as copies under the names of these models (planner, perception), so that they are ranked."""
 JUDGED_LOG = "truth"
 """The log whose runs a scripted judge evaluates. It has runs of all eight categories."""
 
 
-def stored(name: str) -> Any:
+def stored_result(name: str) -> Any:
     """Return an expected result from the stored data."""
     return json.loads((DATA / name).read_text("utf-8"))
 
@@ -96,17 +100,17 @@ CONVERSATIONS: dict[str, tuple[dict[str, str], list[list[dict[str, Any]]]]] = {
 def conversation(name: str, scratch: Path) -> dict[str, Any]:
     """Run a scripted chat model and return its last request, which contains all earlier messages, and the results of its calls."""
     options, steps = CONVERSATIONS[name]
-    written = options.get("tools") == "text"
+    calls_as_text = options.get("tools") == "text"
 
     def script(body: dict[str, Any]) -> dict[str, Any]:
-        done = sum(message["role"] == "assistant" for message in body["messages"])
-        first = next(at for at, m in enumerate(body["messages"]) if m["role"] == "user" and "every tool" in str(m["content"]))
-        done -= sum(message["role"] == "assistant" for message in body["messages"][:first])
-        if done >= len(steps):
+        step_index = sum(message["role"] == "assistant" for message in body["messages"])
+        first = next(index for index, m in enumerate(body["messages"]) if m["role"] == "user" and "every tool" in str(m["content"]))
+        step_index -= sum(message["role"] == "assistant" for message in body["messages"][:first])
+        if step_index >= len(steps):
             return text_message("All done.")
-        if written:
-            return text_message("\n".join(f"<tool_call>\n{json.dumps(tool_call)}\n</tool_call>" for tool_call in steps[done]))
-        return calls_message(steps[done])
+        if calls_as_text:
+            return text_message("\n".join(f"<tool_call>\n{json.dumps(tool_call)}\n</tool_call>" for tool_call in steps[step_index]))
+        return calls_message(steps[step_index])
 
     with ScriptedServer(script) as server:
         trace = adapter.ask("use every tool", scratch, planner={"url": server.url, **options})
@@ -155,9 +159,9 @@ def verdict(body: dict[str, Any]) -> dict[str, Any] | Reply:
     return text_message(json.dumps(bad if remainder < 3 else good))
 
 
-def judging(scratch: Path) -> dict[str, Any]:
+def judge_results(scratch: Path) -> dict[str, Any]:
     """Rescore a log with a scripted judge, and return the requests, the judgements and the scores."""
-    with adapter.copied(LOGS / f"{JUDGED_LOG}.eval", scratch) as log, ScriptedServer(verdict, "the-judge") as server:
+    with adapter.copied_log(LOGS / f"{JUDGED_LOG}.eval", scratch) as log, ScriptedServer(verdict, "the-judge") as server:
         result = adapter.rescore_judge(log, server.url)
         assert result.code == 0, result.err
         systems = dict[str, str]()
@@ -180,23 +184,23 @@ def replays(names: Iterable[str]) -> dict[str, Any]:
     return {name: dict(zip(("code", "found"), adapter.replay(RUNS / name), strict=True)) for name in names}
 
 
-def log_read(name: str) -> dict[str, Any]:
+def log_content(name: str) -> dict[str, Any]:
     """Return the content of a log and its scores."""
     return {"evaluation": adapter.read_log(LOGS / f"{name}.eval"), "scores": adapter.scores_of(LOGS / f"{name}.eval")}
 
 
-def log_rescored(name: str, scratch: Path) -> dict[str, Any]:
+def rescored_log(name: str, scratch: Path) -> dict[str, Any]:
     """Rescore the checks of a copy of a log, and return its content and its scores, which include the new one."""
-    with adapter.copied(LOGS / f"{name}.eval", scratch) as log:
+    with adapter.copied_log(LOGS / f"{name}.eval", scratch) as log:
         result = adapter.rescore_checks(log)
         assert result.code == 0, result.err
         return {"evaluation": adapter.read_log(log), "scores": adapter.scores_of(log)}
 
 
 def tables(scratch: Path) -> dict[str, str]:
-    """Return the tables of a report of stored logs and of the copies in ``RANKED``."""
-    logs = [LOGS / f"{name}.eval" for name in REPORTED]
-    for name, pair in RANKED.items():
+    """Return the tables of a report of stored logs and of the copies in ``RANKED_LOGS``."""
+    logs = [LOGS / f"{name}.eval" for name in REPORTED_LOGS]
+    for name, pair in RANKED_LOGS.items():
         logs.append(as_models(LOGS / f"{name}.eval", scratch / f"{name}.eval", *pair))
     return adapter.report_tables(logs, scratch / "report")
 
@@ -217,7 +221,7 @@ def as_models(log: Path, copy: Path, planner: str, perception: str) -> Path:
 
 def submission(scratch: Path) -> list[dict[str, Any]]:
     """Make a submission from a log and return its lines."""
-    return adapter.make_submission(SUBMITTED, scratch)
+    return adapter.make_submission(SUBMITTED_LOG, scratch)
 
 
 def submission_checks(scratch: Path) -> dict[str, Any]:
@@ -232,7 +236,7 @@ def submission_checks(scratch: Path) -> dict[str, Any]:
 
 def plan_inputs() -> list[dict[str, Any]]:
     """Return the name, instruction and presets of every task, with its plan by version 0.1.0."""
-    presets = stored("presets.json")
+    presets = stored_result("presets.json")
     with gzip.open(DATA / "plans.jsonl.gz", "rt", encoding="utf-8") as file:
         rows = [json.loads(line) for line in file]
     return [{**row, "presets": presets[row["world"]]} for row in rows]

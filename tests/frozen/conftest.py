@@ -20,7 +20,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def garbage_collection() -> Iterator[None]:
-    """Collect objects that the engine left after each module, so that this does not happen during another test."""
+def collect_garbage() -> Iterator[None]:
+    """Collect the engine's garbage after each module, and not during another module's tests."""
     yield
     gc.collect()

@@ -1,4 +1,4 @@
-"""A scripted chat server on loopback that keeps every request. It does not import the program under test."""
+"""A scripted chat server on loopback that records every request. It does not import the program under test."""
 
 from __future__ import annotations
 

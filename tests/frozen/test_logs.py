@@ -15,7 +15,7 @@ from tests.frozen import adapter, cases
 FAST_RESCORED_LOGS = ("agent",)
 
 
-def recomputed(stored: dict[str, Any]) -> Any:
+def with_current_error_modes(stored: dict[str, Any]) -> Any:
     """Return the stored evaluation with the error modes of the current rules, which do not blame exact perception."""
     modes = stored.get("rescored_error_modes", {})
     for trial in stored["evaluation"]["trials"]:
@@ -25,10 +25,10 @@ def recomputed(stored: dict[str, Any]) -> Any:
 
 @pytest.mark.parametrize("name", cases.LOG_NAMES)
 def test_reading_a_log_gives_the_stored_content(name: str) -> None:
-    expected = cases.stored(f"logs/{name}.json")
-    read = cases.log_read(name)
-    assert read["evaluation"] == recomputed(expected)
-    assert read["scores"] == expected["scores"]
+    expected = cases.stored_result(f"logs/{name}.json")
+    content = cases.log_content(name)
+    assert content["evaluation"] == with_current_error_modes(expected)
+    assert content["scores"] == expected["scores"]
 
 
 @pytest.mark.parametrize(
@@ -36,14 +36,14 @@ def test_reading_a_log_gives_the_stored_content(name: str) -> None:
     [name if name in FAST_RESCORED_LOGS else pytest.param(name, marks=pytest.mark.full) for name in cases.LOG_NAMES],
 )
 def test_rescoring_checks_gives_the_stored_scores(name: str, tmp_path: Path) -> None:
-    expected = cases.stored(f"logs/{name}.json")
-    rescored = cases.log_rescored(name, tmp_path)
+    expected = cases.stored_result(f"logs/{name}.json")
+    rescored = cases.rescored_log(name, tmp_path)
     assert rescored["scores"] == expected["rescored"]
-    assert rescored["evaluation"] == recomputed(expected)
+    assert rescored["evaluation"] == with_current_error_modes(expected)
 
 
 def test_a_judge_gets_the_stored_requests(tmp_path: Path) -> None:
-    expected, found = cases.stored("judging.json"), cases.judging(tmp_path)
+    expected, found = cases.stored_result("judging.json"), cases.judge_results(tmp_path)
     assert found["systems"] == expected["systems"]
     assert found["requests"] == expected["requests"]
     assert found["judgements"] == expected["judgements"]
@@ -52,12 +52,12 @@ def test_a_judge_gets_the_stored_requests(tmp_path: Path) -> None:
 
 def test_report_tables_have_the_stored_cells(tmp_path: Path) -> None:
     """Later versions may add tables, and columns after the stored ones."""
-    found = cases.tables(tmp_path)
+    tables = cases.tables(tmp_path)
     stored = {path.name: path.read_text("utf-8") for path in (cases.DATA / "tables").glob("*.csv")}
-    assert stored.keys() <= found.keys()
+    assert stored.keys() <= tables.keys()
     for name, text in stored.items():
         rows = list(csv.reader(io.StringIO(text)))
-        assert [row[: len(rows[0])] for row in csv.reader(io.StringIO(found[name]))] == rows, name
+        assert [row[: len(rows[0])] for row in csv.reader(io.StringIO(tables[name]))] == rows, name
 
 
 def test_making_a_submission_gives_the_stored_lines(tmp_path: Path) -> None:
@@ -67,12 +67,12 @@ def test_making_a_submission_gives_the_stored_lines(tmp_path: Path) -> None:
 
 
 def test_validating_a_submission_gives_the_stored_result(tmp_path: Path) -> None:
-    assert cases.submission_checks(tmp_path) == cases.stored("submission.json")
+    assert cases.submission_checks(tmp_path) == cases.stored_result("submission.json")
 
 
 def test_names_in_logs_are_registered() -> None:
     names = cases.names()
-    assert names == cases.stored("names.json")
+    assert names == cases.stored_result("names.json")
     for kind in ("task", "solver", "scorer", "metric"):
         for name in names[kind]:
             known = name if "/" in name else f"{adapter.PACKAGE}/{name}"

@@ -12,7 +12,7 @@ SLOW = sorted(set(cases.RUN_NAMES) - set(FAST))
 
 @pytest.mark.parametrize("name", [*FAST, *(pytest.param(name, marks=pytest.mark.full) for name in SLOW)])
 def test_replaying_a_run_gives_the_stored_result(name: str) -> None:
-    assert cases.replays([name])[name] == cases.stored("replays.json")[name]
+    assert cases.replays([name])[name] == cases.stored_result("replays.json")[name]
 
 
 def test_stored_runs_have_every_outcome() -> None:

@@ -21,7 +21,7 @@ def tiers(names: Iterable[str], fast: str) -> list[Any]:
 
 @pytest.mark.parametrize("name", tiers(cases.CONVERSATIONS, "written"))
 def test_a_chat_model_gets_the_stored_messages(name: str, tmp_path: Path) -> None:
-    expected, found = cases.stored(f"conversations/{name}.json"), cases.conversation(name, tmp_path)
+    expected, found = cases.stored_result(f"conversations/{name}.json"), cases.conversation(name, tmp_path)
     assert sorted(found) == sorted(expected)
     assert found["calls"] == expected["calls"]
     for key, value in expected.items():
@@ -30,16 +30,16 @@ def test_a_chat_model_gets_the_stored_messages(name: str, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", tiers(cases.VISION_INSTRUCTIONS, "detect"))
 def test_a_vision_model_gets_the_stored_requests(name: str, tmp_path: Path) -> None:
-    assert cases.vision_requests(name, tmp_path) == cases.stored("looks.json")[name]
+    assert cases.vision_requests(name, tmp_path) == cases.stored_result("looks.json")[name]
 
 
 def test_tool_schemas_are_unchanged() -> None:
-    assert adapter.tool_schemas() == cases.stored("tools.json")
+    assert adapter.tool_schemas() == cases.stored_result("tools.json")
 
 
-@pytest.mark.parametrize("group", cases.stored("digests.json"))
+@pytest.mark.parametrize("group", cases.stored_result("digests.json"))
 def test_files_are_unchanged(group: str) -> None:
-    expected, found = cases.stored("digests.json")[group], adapter.digests()[group]
+    expected, found = cases.stored_result("digests.json")[group], adapter.digests()[group]
     # Additional files, such as a new version of a prompt, are allowed.
     assert {name: found.get(name) for name in expected} == expected
 
@@ -64,10 +64,10 @@ def test_all_instructions_have_the_stored_plans(tmp_path: Path) -> None:
 def test_validating_tasks_gives_the_stored_report() -> None:
     code, report = adapter.validate_tasks()
     assert code == 0 and report["sound"]
-    assert {"code": code, "report": report} == cases.stored("validate.json")
+    assert {"code": code, "report": report} == cases.stored_result("validate.json")
 
 
 @pytest.mark.full
 def test_checking_gold_runs_gives_the_stored_report() -> None:
     code, report = adapter.check_gold()
-    assert {"code": code, "report": report} == cases.stored("gold.json")
+    assert {"code": code, "report": report} == cases.stored_result("gold.json")

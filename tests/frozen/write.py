@@ -29,10 +29,10 @@ def write(out: Path, scratch: Path, *, slow: bool) -> None:
         put(out / "conversations" / f"{name}.json", cases.conversation(name, scratch / name))
     put(out / "looks.json", {name: cases.vision_requests(name, scratch / f"look-{name}") for name in cases.VISION_INSTRUCTIONS})
     for name in cases.LOG_NAMES:
-        read, rescored = cases.log_read(name), cases.log_rescored(name, scratch / "logs")
-        assert read["evaluation"] == rescored["evaluation"]
-        put(out / "logs" / f"{name}.json", {**read, "rescored": rescored["scores"]})
-    put(out / "judging.json", cases.judging(scratch / "judging"))
+        content, rescored = cases.log_content(name), cases.rescored_log(name, scratch / "logs")
+        assert content["evaluation"] == rescored["evaluation"]
+        put(out / "logs" / f"{name}.json", {**content, "rescored": rescored["scores"]})
+    put(out / "judging.json", cases.judge_results(scratch / "judging"))
     for name, text in cases.tables(scratch / "tables").items():
         (out / "tables").mkdir(exist_ok=True)
         (out / "tables" / name).write_text(text, "utf-8", newline="")

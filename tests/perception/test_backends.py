@@ -63,7 +63,7 @@ async def test_real_frames_are_refused_with_a_reason() -> None:
 
 
 @pytest.mark.anyio
-async def test_damaged_packs_are_errors() -> None:
+async def test_damaged_scene_packs_are_errors() -> None:
     def broken(*_: object) -> Any:
         raise PackError("ids.png is damaged")
 
@@ -150,9 +150,9 @@ async def test_small_objects_are_missed_more_often() -> None:
 @pytest.mark.anyio
 async def test_noise_duplicates_objects_and_misreads_texts() -> None:
     bad = Noise(miss=0.0, duplicate=1.0, misread=1.0)
-    eyes = NoisyPerception(ground_truth(), seed=1, noise=bad)
-    assert len((await eyes.detect(yard.frame(), "excavator")).boxes) == 2
-    assert "Northgate" not in (await eyes.query(yard.frame(), "what does the van say?")).text
+    noisy = NoisyPerception(ground_truth(), seed=1, noise=bad)
+    assert len((await noisy.detect(yard.frame(), "excavator")).boxes) == 2
+    assert "Northgate" not in (await noisy.query(yard.frame(), "what does the van say?")).text
 
 
 @pytest.mark.anyio

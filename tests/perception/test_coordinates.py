@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from scope_ptz.errors import PerceptionError, UnknownNameError
 from scope_ptz.perception.models.coordinates import (
     CONVENTIONS,
-    MAX_THINGS,
-    RawThing,
-    convention,
-    fit,
-    places_in_frame,
+    MAX_LOCATIONS,
+    RawLocation,
+    fit_size,
+    get_convention,
+    locations_in_frame,
     smart_resize,
 )
 
@@ -29,12 +29,12 @@ SENT = (1288, 728)
 def test_resized_sides_are_multiples_within_the_budget(width: int, height: int, factor: int, budget: tuple[int, int]) -> None:
     assume(max(width, height) / min(width, height) <= 200)
     low, high = budget
-    wide, tall = smart_resize(width, height, factor=factor, min_pixels=low, max_pixels=high)
-    assert wide % factor == 0 and tall % factor == 0 and min(wide, tall) >= factor
-    # A side cannot fall below one factor, which a very long picture needs more pixels for.
-    if min(wide, tall) > factor:
-        assert wide * tall <= high
-    assert wide * tall >= low
+    new_width, new_height = smart_resize(width, height, factor=factor, min_pixels=low, max_pixels=high)
+    assert new_width % factor == 0 and new_height % factor == 0 and min(new_width, new_height) >= factor
+    # Each side has at least one factor of pixels. A very long picture exceeds the budget for this reason.
+    if min(new_width, new_height) > factor:
+        assert new_width * new_height <= high
+    assert new_width * new_height >= low
 
 
 @given(sides, sides, factors, budgets)
@@ -48,9 +48,9 @@ def test_a_resized_picture_keeps_its_size(width: int, height: int, factor: int, 
 
 @given(st.integers(200, 4000), st.integers(200, 4000), factors)
 def test_resizing_keeps_the_aspect_ratio_within_one_step(width: int, height: int, factor: int) -> None:
-    wide, tall = smart_resize(width, height, factor=factor, min_pixels=56 * 56, max_pixels=1280 * 28 * 28)
-    scale = wide / width
-    assert abs(height * scale - tall) <= factor * (1 + height / width)
+    new_width, new_height = smart_resize(width, height, factor=factor, min_pixels=56 * 56, max_pixels=1280 * 28 * 28)
+    scale = new_width / width
+    assert abs(height * scale - new_height) <= factor * (1 + height / width)
 
 
 @pytest.mark.parametrize(
@@ -70,10 +70,10 @@ def test_pictures_that_are_too_narrow_are_errors(size: tuple[int, int]) -> None:
 
 @given(sides, sides, st.integers(64 * 64, 4_000_000))
 def test_fit_respects_the_budget_and_never_enlarges(width: int, height: int, budget: int) -> None:
-    wide, tall = fit(width, height, budget)
-    assert wide <= width and tall <= height and min(wide, tall) >= 1
-    if min(wide, tall) > 1:
-        assert wide * tall <= budget
+    new_width, new_height = fit_size(width, height, budget)
+    assert new_width <= width and new_height <= height and min(new_width, new_height) >= 1
+    if min(new_width, new_height) > 1:
+        assert new_width * new_height <= budget
 
 
 unit = st.floats(0, 1)
@@ -82,10 +82,10 @@ boxes = st.tuples(unit, unit, unit, unit).map(lambda v: (min(v[0], v[2]), min(v[
 
 def written(box: tuple[float, ...], name: str) -> tuple[float, ...]:
     """A box as a model of that convention writes it."""
-    style = convention(name)
+    style = get_convention(name)
     scale = {"unit": (1.0, 1.0), "percent": (100.0, 100.0), "thousand": (1000.0, 1000.0), "guess": (1000.0, 1000.0), "pixels": SENT}
-    wide, tall = scale[style.space]
-    numbers = [v * (wide if i % 2 == 0 else tall) for i, v in enumerate(box)]
+    new_width, new_height = scale[style.space]
+    numbers = [v * (new_width if i % 2 == 0 else new_height) for i, v in enumerate(box)]
     return (numbers[1], numbers[0], numbers[3], numbers[2]) if style.y_first else tuple(numbers)
 
 
@@ -93,21 +93,21 @@ def written(box: tuple[float, ...], name: str) -> tuple[float, ...]:
 @given(box=boxes)
 def test_every_convention_gives_back_the_box(name: str, box: tuple[float, float, float, float]) -> None:
     assume(box[2] - box[0] > 0.01 and box[3] - box[1] > 0.01)
-    (found,) = places_in_frame([RawThing(written(box, name))], convention(name), SENT).boxes
+    (found,) = locations_in_frame([RawLocation(written(box, name))], get_convention(name), SENT).boxes
     assert (found.x_min, found.y_min, found.x_max, found.y_max) == pytest.approx(box, abs=1e-9)
 
 
 numbers = st.floats(allow_nan=True, allow_infinity=True, width=64)
-raw_things = st.lists(
+raw_locations_strategy = st.lists(
     st.one_of(st.tuples(*[numbers] * 4), st.tuples(*[numbers] * 2), st.lists(numbers, max_size=6).map(tuple)), max_size=20
 )
 
 
 @pytest.mark.parametrize("name", sorted(CONVENTIONS))
-@given(raw=raw_things)
-def test_any_numbers_become_valid_places_or_an_error(name: str, raw: list[tuple[float, ...]]) -> None:
+@given(raw=raw_locations_strategy)
+def test_any_numbers_become_valid_locations_or_an_error(name: str, raw: list[tuple[float, ...]]) -> None:
     try:
-        found = places_in_frame([RawThing(n) for n in raw], convention(name), SENT)
+        found = locations_in_frame([RawLocation(n) for n in raw], get_convention(name), SENT)
     except PerceptionError as error:
         assert error.kind == "malformed" and raw
         return
@@ -119,49 +119,49 @@ def test_any_numbers_become_valid_places_or_an_error(name: str, raw: list[tuple[
 
 
 def test_boxes_beyond_the_border_are_clipped_and_noted() -> None:
-    found = places_in_frame([RawThing((-50, 100, 1500, 600))], convention("qwen2.5-vl"), SENT)
+    found = locations_in_frame([RawLocation((-50, 100, 1500, 600))], get_convention("qwen2.5-vl"), SENT)
     assert found.boxes[0].x_min == 0 and found.boxes[0].x_max == 1
     assert "1 cut at the border" in found.notes[0]
 
 
-def test_invalid_places_are_dropped_and_counted() -> None:
+def test_invalid_locations_are_dropped_and_counted() -> None:
     things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
-    found = places_in_frame([RawThing(t) for t in things], convention("thousand"), SENT)
+    found = locations_in_frame([RawLocation(t) for t in things], get_convention("thousand"), SENT)
     assert len(found.boxes) == 1
     for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 no place"):
         assert what in found.notes[0]
 
 
-def test_an_object_without_a_place_makes_the_result_incomplete() -> None:
-    cone, lost = RawThing((10, 10, 500, 500)), RawThing((math.nan, 0, 5, 5))
-    assert not places_in_frame([cone, lost], convention("thousand"), SENT).complete
-    assert not places_in_frame([cone, RawThing(())], convention("thousand"), SENT).complete
-    # What lies outside or was named before is nothing more to count.
-    assert places_in_frame([cone, cone, RawThing((1200, 10, 1500, 90))], convention("thousand"), SENT).complete
+def test_an_object_without_a_location_makes_the_result_incomplete() -> None:
+    cone, lost = RawLocation((10, 10, 500, 500)), RawLocation((math.nan, 0, 5, 5))
+    assert not locations_in_frame([cone, lost], get_convention("thousand"), SENT).complete
+    assert not locations_in_frame([cone, RawLocation(())], get_convention("thousand"), SENT).complete
+    # Locations outside the picture and repeated locations are not counted as missing.
+    assert locations_in_frame([cone, cone, RawLocation((1200, 10, 1500, 90))], get_convention("thousand"), SENT).complete
 
 
 @pytest.mark.parametrize("numbers", [(1500, 10, 1900, 90), (math.nan,) * 4, (math.inf, 1), (5, 5, 5, 5), ()])
-def test_a_reply_without_any_valid_place_is_an_error(numbers: tuple[float, ...]) -> None:
+def test_a_reply_without_any_valid_location_is_an_error(numbers: tuple[float, ...]) -> None:
     with pytest.raises(PerceptionError) as caught:
-        places_in_frame([RawThing(numbers)], convention("thousand"), SENT)
+        locations_in_frame([RawLocation(numbers)], get_convention("thousand"), SENT)
     assert caught.value.kind == "malformed"
 
 
 def test_too_many_objects_are_truncated_and_incomplete() -> None:
-    found = places_in_frame(
-        [RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT
+    found = locations_in_frame(
+        [RawLocation((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], get_convention("thousand"), SENT
     )
-    assert len(found.points) == MAX_THINGS and not found.complete
+    assert len(found.points) == MAX_LOCATIONS and not found.complete
     assert "500 things" in found.notes[-1]
 
 
 def test_swapped_corners_are_corrected() -> None:
-    (box,) = places_in_frame([RawThing((900, 800, 100, 200))], convention("thousand"), SENT).boxes
+    (box,) = locations_in_frame([RawLocation((900, 800, 100, 200))], get_convention("thousand"), SENT).boxes
     assert (box.x_min, box.y_min, box.x_max, box.y_max) == (0.1, 0.2, 0.9, 0.8)
 
 
-def test_named_numbers_need_no_order() -> None:
-    (box,) = places_in_frame([RawThing((100, 200, 300, 400), named=True)], convention("gemini"), SENT).boxes
+def test_numbers_with_names_may_be_in_any_order() -> None:
+    (box,) = locations_in_frame([RawLocation((100, 200, 300, 400), named=True)], get_convention("gemini"), SENT).boxes
     assert box.x_min == 0.1
 
 
@@ -170,19 +170,19 @@ def test_named_numbers_need_no_order() -> None:
     [((0.1, 0.2, 0.5, 0.6), 0.1), ((100, 200, 500, 600), 0.1), ((128.8, 72.8, 1280, 700), 0.1), ((0, 0, 1, 1), 0.0)],
 )
 def test_the_convention_of_a_reply_is_guessed_from_its_largest_number(box: tuple[float, ...], expected: float) -> None:
-    assert places_in_frame([RawThing(box)], convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
+    assert locations_in_frame([RawLocation(box)], get_convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
 
 
 def test_numbers_beyond_the_picture_are_an_error() -> None:
     with pytest.raises(PerceptionError, match="convention is unknown"):
-        places_in_frame([RawThing((10, 10, 5000, 600))], convention("generic"), SENT)
+        locations_in_frame([RawLocation((10, 10, 5000, 600))], get_convention("generic"), SENT)
 
 
 def test_invalid_scores_are_dropped() -> None:
-    found = places_in_frame([RawThing((1, 1, 9, 9), score=s) for s in (7.0,)], convention("thousand"), SENT)
+    found = locations_in_frame([RawLocation((1, 1, 9, 9), score=s) for s in (7.0,)], get_convention("thousand"), SENT)
     assert found.boxes[0].score is None
 
 
 def test_an_unknown_convention_is_an_error() -> None:
     with pytest.raises(UnknownNameError, match="qwen3-vl"):
-        convention("qwen3")
+        get_convention("qwen3")

@@ -15,7 +15,7 @@ from scope_ptz.perception.backends.spec import BackendSpec
 ONE_FILE = """
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 
-class Blindfold(Perception):
+class EmptyPerception(Perception):
     def __init__(self, name):
         self.name = name
     async def caption(self, frame):
@@ -28,7 +28,7 @@ class Blindfold(Perception):
         return Points(points=(), source=self.name)
 
 def make(spec):
-    return Blindfold(spec.name)
+    return EmptyPerception(spec.name)
 """
 
 
@@ -56,7 +56,7 @@ def test_built_in_backends_are_listed() -> None:
         backends.make_backend(BackendSpec(name="x", backend="moondreem"))
 
 
-def test_nothing_heavy_is_imported_before_it_is_used() -> None:
+def test_large_packages_are_imported_only_when_they_are_used() -> None:
     """A backend that asks a server loads neither its HTTP client nor a model library when it is made."""
     script = """
 import sys

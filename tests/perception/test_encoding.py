@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.models.encoding import EncodedPicture, Size, encode, picture_of
+from scope_ptz.perception.models.encoding import EncodedPicture, Size, encode, encode_frame
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
 from tests.perception import pictures
 
 
-def test_colours_survive() -> None:
+def test_encoding_keeps_colours() -> None:
     picture = encode(pictures.frame().image)
     back: Any = cv2.imdecode(np.frombuffer(picture.jpeg, np.uint8), cv2.IMREAD_COLOR_RGB)
     assert picture.size == (640, 360)
@@ -49,7 +49,7 @@ async def test_concurrent_callers_share_one_encoding() -> None:
     got: list[EncodedPicture] = []
 
     async def ask(size: Size | None) -> None:
-        got.append(await picture_of(frame, size, memo))
+        got.append(await encode_frame(frame, size, memo))
 
     async with anyio.create_task_group() as group:
         for _ in range(6):

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from scope_ptz import english
+from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
 from scope_ptz.perception.ground_truth.answers import answer
-from scope_ptz.perception.ground_truth.language import parse_description, parse_question
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import concepts_of, read_view
 from scope_ptz.simulator.models import SceneInstance

@@ -16,7 +16,7 @@ from scope_ptz.perception.backends import zero_shot
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.models.coordinates import convention
+from scope_ptz.perception.models.coordinates import get_convention
 from scope_ptz.perception.models.frame_memo import Image
 from tests.perception import pictures
 
@@ -109,16 +109,16 @@ def chat(image: Image, prompt: str) -> tuple[str, bool]:
 class TestChatInProcess(PerceptionConformance):
     @asynccontextmanager
     async def perception(self) -> AsyncIterator[Perception]:
-        yield local.LocalChatPerception(chat, convention("qwen2.5-vl"))
+        yield local.LocalChatPerception(chat, get_convention("qwen2.5-vl"))
 
     def frame(self) -> Frame:
         return pictures.frame()
 
 
 @pytest.mark.anyio
-async def test_places_are_scaled_from_the_size_that_the_model_received() -> None:
-    eyes = local.LocalChatPerception(chat, convention("qwen2.5-vl"), local.LocalOptions(max_pixels=100_000))
-    (box,) = (await eyes.detect(pictures.frame(width=1280, height=720), "thing")).boxes
+async def test_locations_are_scaled_from_the_size_that_the_model_received() -> None:
+    perception = local.LocalChatPerception(chat, get_convention("qwen2.5-vl"), local.LocalOptions(max_pixels=100_000))
+    (box,) = (await perception.detect(pictures.frame(width=1280, height=720), "thing")).boxes
     assert (box.x_min, box.y_min, box.x_max, box.y_max) == pytest.approx((0.25, 0.25, 0.5, 0.5), abs=0.01)
 
 
@@ -127,8 +127,15 @@ async def test_any_exception_of_a_model_is_a_perception_error() -> None:
     def load() -> Any:
         raise OSError("no such repository")
 
-    for eyes in (local.LocalMoondreamPerception(load), local.LocalChatPerception(lambda image, prompt: 1 / 0, convention("unit"))):  # type: ignore[arg-type]
-        for ask in (eyes.caption(pictures.frame()), eyes.query(pictures.frame(), "what?"), eyes.detect(pictures.frame(), "thing")):
+    for perception in (
+        local.LocalMoondreamPerception(load),
+        local.LocalChatPerception(lambda image, prompt: 1 / 0, get_convention("unit")),  # type: ignore[arg-type]
+    ):
+        for ask in (
+            perception.caption(pictures.frame()),
+            perception.query(pictures.frame(), "what?"),
+            perception.detect(pictures.frame(), "thing"),
+        ):
             with pytest.raises(PerceptionError, match="failed"):
                 await ask
 

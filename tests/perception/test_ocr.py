@@ -19,7 +19,7 @@ from tests.perception import pictures
 
 
 @pytest.fixture(scope="module")
-def eyes() -> Perception:
+def perception_backend() -> Perception:
     return make_backend(BackendSpec(name="ocr", backend="ocr"))
 
 
@@ -43,38 +43,38 @@ class TestOcr(PerceptionConformance):
 
 
 @pytest.mark.anyio
-async def test_text_is_read_row_by_row(eyes: Perception) -> None:
-    answer = await eyes.query(BOARD, "read the text")
+async def test_text_is_read_row_by_row(perception_backend: Perception) -> None:
+    answer = await perception_backend.query(BOARD, "read the text")
     assert answer.known
     assert answer.text.replace(" ", "") == 'Itreads:"EXIT14","Airport","SITEOFFICE".'
-    assert "EXIT" in (await eyes.caption(BOARD)).text
+    assert "EXIT" in (await perception_backend.caption(BOARD)).text
 
 
 @pytest.mark.anyio
-async def test_a_text_is_found_where_it_is(eyes: Perception) -> None:
-    (box,) = (await eyes.detect(BOARD, "the sign that says Airport")).boxes
+async def test_a_text_is_found_where_it_is(perception_backend: Perception) -> None:
+    (box,) = (await perception_backend.detect(BOARD, "the sign that says Airport")).boxes
     assert 0.55 < box.x_min < 0.62 and 0.8 < box.x_max < 0.95 and 0.1 < box.y_min < box.y_max < 0.3
     assert box.label == "Airport" and box.score is not None and box.score > 0.8
-    (point,) = (await eyes.point(BOARD, '"site office"')).points
+    (point,) = (await perception_backend.point(BOARD, '"site office"')).points
     assert 0.1 < point.x < 0.5 and 0.6 < point.y < 0.8
 
 
 @pytest.mark.anyio
-async def test_a_wall_without_text_gives_no_texts_and_no_answer(eyes: Perception) -> None:
+async def test_a_wall_without_text_gives_no_texts_and_no_answer(perception_backend: Perception) -> None:
     frame = pictures.frame()
-    answer = await eyes.query(frame, "what does it say?")
+    answer = await perception_backend.query(frame, "what does it say?")
     assert not answer.known and "no readable text" in answer.text
-    assert (await eyes.detect(frame, "text")).boxes == ()
+    assert (await perception_backend.detect(frame, "text")).boxes == ()
 
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("description", ["traffic cone", "cars", "sign"])
-async def test_descriptions_of_other_objects_are_errors(eyes: Perception, description: str) -> None:
-    for look in (eyes.detect, eyes.point):
+async def test_descriptions_of_other_objects_are_errors(perception_backend: Perception, description: str) -> None:
+    for look in (perception_backend.detect, perception_backend.point):
         with pytest.raises(PerceptionError, match="only finds text"):
             await look(BOARD, description)
     with pytest.raises(PerceptionError, match="only reads text"):
-        await eyes.query(BOARD, f"how many of these are there: {description}?")
+        await perception_backend.query(BOARD, f"how many of these are there: {description}?")
 
 
 def line(text: str, x: float, y: float) -> ocr.Line:
@@ -89,12 +89,12 @@ async def test_a_frame_is_read_once() -> None:
         seen.append(image.shape)
         return [line("EXIT", 0.1, 0.1)]
 
-    eyes, frame = ocr.OcrPerception(reader), pictures.frame()
+    perception_backend, frame = ocr.OcrPerception(reader), pictures.frame()
     for _ in range(2):
-        await eyes.query(frame, "read it")
-        await eyes.detect(frame, "text")
+        await perception_backend.query(frame, "read it")
+        await perception_backend.detect(frame, "text")
     assert len(seen) == 1
-    await eyes.caption(pictures.frame())
+    await perception_backend.caption(pictures.frame())
     assert len(seen) == 2
 
 
@@ -126,4 +126,4 @@ async def test_a_failing_reader_is_an_error() -> None:
 
 
 def test_quotes_within_texts_are_replaced() -> None:
-    assert ocr.quoted([line('say "hi"', 0.1, 0.1)]) == "\"say 'hi'\""
+    assert ocr.quote_lines([line('say "hi"', 0.1, 0.1)]) == "\"say 'hi'\""

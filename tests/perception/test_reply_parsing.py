@@ -1,4 +1,4 @@
-"""Parsing of model replies to requests for places and answers."""
+"""Parsing of model replies to requests for locations and answers."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.reply_parsing import (
     MAX_ANSWER_CHARS,
     MAX_REPLY_CHARS,
-    cannot_tell,
-    read_answer,
-    read_places,
-    without_reasoning,
+    is_unknown_answer,
+    parse_answer,
+    parse_locations,
+    remove_reasoning,
 )
 
 ONE = [(1.0, 2.0, 3.0, 4.0)]
@@ -46,9 +46,9 @@ TWO = [*ONE, (5.0, 6.0, 7.0, 8.0)]
         ('{"points":[{"x":1,"y":2}]}', [(1.0, 2.0)]),
     ],
 )  # fmt: skip
-def test_places_in_any_wrapping(text: str, expected: list[tuple[float, ...]]) -> None:
-    read = read_places(text)
-    assert [t.numbers for t in read.things] == expected
+def test_locations_are_found_in_any_surrounding_text(text: str, expected: list[tuple[float, ...]]) -> None:
+    read = parse_locations(text)
+    assert [t.numbers for t in read.locations] == expected
 
 
 @pytest.mark.parametrize(
@@ -61,21 +61,21 @@ def test_places_in_any_wrapping(text: str, expected: list[tuple[float, ...]]) ->
         "[[1,2,3,4],[5,6,7,8",
     ],
 )
-def test_only_complete_places_of_a_list_count(text: str) -> None:
-    read = read_places(text)
-    assert [t.numbers for t in read.things] == ONE and not read.complete
+def test_only_complete_locations_of_a_list_count(text: str) -> None:
+    read = parse_locations(text)
+    assert [t.numbers for t in read.locations] == ONE and not read.complete
 
 
 @given(st.integers(0, 400))
-def test_a_reply_cut_anywhere_never_gives_other_places(at: int) -> None:
+def test_a_reply_truncated_anywhere_never_gives_other_locations(at: int) -> None:
     allowed = [tuple(float(v + i) for v in (100, 200, 300, 400)) for i in range(7)]
     text = json.dumps([{"bbox_2d": box, "label": f"cone {i}"} for i, box in enumerate(allowed)])
     try:
-        read = read_places(text[:at])
+        read = parse_locations(text[:at])
     except PerceptionError as error:
         assert error.kind == "malformed"
         return
-    assert [t.numbers for t in read.things] == allowed[: len(read.things)]
+    assert [t.numbers for t in read.locations] == allowed[: len(read.locations)]
     assert read.complete == (at >= len(text))
 
 
@@ -86,7 +86,7 @@ def test_a_reply_cut_anywhere_never_gives_other_places(at: int) -> None:
      "I see no dogs here.", "Nothing fits the description", "<think>hm</think>[]"],
 )  # fmt: skip
 def test_nothing_found_counts_when_the_reply_says_so(text: str) -> None:
-    assert read_places(text).things == ()
+    assert parse_locations(text).locations == ()
 
 
 @pytest.mark.parametrize(
@@ -99,24 +99,24 @@ def test_nothing_found_counts_when_the_reply_says_so(text: str) -> None:
 )  # fmt: skip
 def test_unreadable_replies_are_errors(text: str) -> None:
     with pytest.raises(PerceptionError) as caught:
-        read_places(text)
+        parse_locations(text)
     assert caught.value.kind == "malformed"
     assert len(str(caught.value)) < 400
 
 
 def test_nan_and_infinity_are_kept_for_validation() -> None:
-    read = read_places(
+    read = parse_locations(
         '[{"bbox_2d": [NaN, 2, Infinity, 4]}, {"bbox_2d": [1, 2, 3, 4]}, {"bbox_2d": [1' + "0" * 500 + ", 2, 3, 4]}]"
     )
-    assert len(read.things) == 3
+    assert len(read.locations) == 3
 
 
-def test_an_object_without_a_place_is_counted() -> None:
-    assert [t.numbers for t in read_places('[{"bbox_2d": [1,2,3,4]}, {"label": "cone"}]').things] == [*ONE, ()]
+def test_an_object_without_a_location_is_counted() -> None:
+    assert [t.numbers for t in parse_locations('[{"bbox_2d": [1,2,3,4]}, {"label": "cone"}]').locations] == [*ONE, ()]
 
 
 def test_labels_and_scores_are_kept() -> None:
-    (thing,) = read_places('[{"bbox_2d": [1,2,3,4], "label": "cone", "confidence": 0.75}]').things
+    (thing,) = parse_locations('[{"bbox_2d": [1,2,3,4], "label": "cone", "confidence": 0.75}]').locations
     assert (thing.label, thing.score) == ("cone", 0.75)
 
 
@@ -135,7 +135,7 @@ def test_labels_and_scores_are_kept() -> None:
 def test_huge_replies_are_read(text: str) -> None:
     """Quadratic parsing would not finish."""
     try:
-        read = read_places(text)
+        read = parse_locations(text)
     except PerceptionError as error:
         assert error.kind == "malformed"
     else:
@@ -143,9 +143,9 @@ def test_huge_replies_are_read(text: str) -> None:
 
 
 @given(st.text(max_size=300))
-def test_any_text_is_places_or_a_perception_error(text: str) -> None:
+def test_any_text_gives_locations_or_a_perception_error(text: str) -> None:
     try:
-        read_places(text)
+        parse_locations(text)
     except PerceptionError as error:
         assert error.kind == "malformed"
 
@@ -156,9 +156,9 @@ values = st.recursive(leaves, lambda v: st.one_of(st.lists(v, max_size=5), st.di
 
 
 @given(values)
-def test_any_json_is_places_or_a_perception_error(value: object) -> None:
+def test_any_json_gives_locations_or_a_perception_error(value: object) -> None:
     try:
-        read_places(json.dumps(value))
+        parse_locations(json.dumps(value))
     except PerceptionError as error:
         assert error.kind == "malformed"
 
@@ -177,18 +177,18 @@ def test_any_json_is_places_or_a_perception_error(value: object) -> None:
     ],
 )
 def test_answers(text: str, expected: str) -> None:
-    assert read_answer(text) == expected
+    assert parse_answer(text) == expected
 
 
 @pytest.mark.parametrize("text", ["", " \n ", "<think>on and on", "<think></think>", '""', "\x00"])
 def test_an_empty_answer_is_an_error(text: str) -> None:
     with pytest.raises(PerceptionError) as caught:
-        read_answer(text)
+        parse_answer(text)
     assert caught.value.kind == "empty"
 
 
 def test_long_answers_are_truncated() -> None:
-    assert len(read_answer("blah " * MAX_REPLY_CHARS)) <= MAX_ANSWER_CHARS + 2
+    assert len(parse_answer("blah " * MAX_REPLY_CHARS)) <= MAX_ANSWER_CHARS + 2
 
 
 @pytest.mark.parametrize(
@@ -204,8 +204,8 @@ def test_long_answers_are_truncated() -> None:
         "Sorry, I cannot help with that.",
     ],
 )
-def test_answers_that_say_cannot_tell(text: str) -> None:
-    assert cannot_tell(text)
+def test_answers_that_state_that_nothing_is_known(text: str) -> None:
+    assert is_unknown_answer(text)
 
 
 @pytest.mark.parametrize(
@@ -213,17 +213,17 @@ def test_answers_that_say_cannot_tell(text: str) -> None:
     ["Red.", "No.", "There is no car.", "Three.", "The text reads UNKNOWN ROAD", "I can't see any dogs.", "A cannot tell sign"],
 )
 def test_answers_that_state_something(text: str) -> None:
-    assert not cannot_tell(text)
+    assert not is_unknown_answer(text)
 
 
 def test_reasoning_is_removed() -> None:
-    assert without_reasoning("<think>a</think>b<thinking>c</thinking>d") == "bd"
+    assert remove_reasoning("<think>a</think>b<thinking>c</thinking>d") == "bd"
 
 
 @pytest.mark.parametrize("unit", ['[{"bbox_2d":[100,200,300,400]},', '{"objects":[', "[", "{'a':", "[[1,2,3,4],"])
 def test_endless_opening_brackets_are_an_error(unit: str) -> None:
     try:
-        read = read_places(unit * 5000)
+        read = parse_locations(unit * 5000)
     except PerceptionError as error:
         assert error.kind == "malformed"
     else:

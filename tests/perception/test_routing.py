@@ -19,7 +19,7 @@ from scope_ptz.perception.models.routing import RouterPerception
 from tests.perception import pictures
 
 
-class Stand(Perception):
+class FixedPerception(Perception):
     """Perception with fixed results that records its requests."""
 
     def __init__(
@@ -35,11 +35,11 @@ class Stand(Perception):
     ) -> None:
         self.name, self.skills = name, skills
         self.boxes, self.text, self.known, self.broken, self.wait_s = boxes, text, known, broken, wait_s
-        self.asked: list[str] = []
+        self.requests: list[str] = []
         self.closed = False
 
-    async def _look(self, asked: str) -> tuple[Attempt, ...]:
-        self.asked.append(asked)
+    async def _record(self, request: str) -> tuple[Attempt, ...]:
+        self.requests.append(request)
         await anyio.sleep(self.wait_s)
         if self.broken:
             failed = Attempt(kind=FailureKind.SERVER_ERROR)
@@ -47,19 +47,19 @@ class Stand(Perception):
         return (Attempt(),)
 
     async def caption(self, frame: Frame) -> Caption:
-        return Caption(text=self.text, source=self.name, attempts=await self._look("caption"), latency_s=0.1)
+        return Caption(text=self.text, source=self.name, attempts=await self._record("caption"), latency_s=0.1)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        attempts = await self._look(f"query {question}")
+        attempts = await self._record(f"query {question}")
         return Answer(text=self.text, known=self.known, source=self.name, attempts=attempts, latency_s=0.1)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        attempts = await self._look(f"detect {description}")
+        attempts = await self._record(f"detect {description}")
         boxes = () if "unicorn" in description else self.boxes
         return Detections(boxes=boxes, source=self.name, attempts=attempts, latency_s=0.1)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        attempts = await self._look(f"point {description}")
+        attempts = await self._record(f"point {description}")
         boxes = () if "unicorn" in description else self.boxes
         points = tuple(Point(x=b.centre[0], y=b.centre[1]) for b in boxes)
         return Points(points=points, source=self.name, attempts=attempts, latency_s=0.1)
@@ -72,7 +72,7 @@ def box(x: float, y: float = 0.1, label: str | None = None) -> Box:
     return Box(x_min=x, y_min=y, x_max=x + 0.2, y_max=y + 0.2, label=label)
 
 
-FINDS = frozenset[Skill](("detect", "point"))
+FIND_SKILLS = frozenset[Skill](("detect", "point"))
 FRAME = pictures.frame()
 
 
@@ -81,7 +81,9 @@ class TestRouter(PerceptionConformance):
     @asynccontextmanager
     async def perception(self) -> AsyncIterator[Perception]:
         yield RouterPerception(
-            reader=Stand("ocr"), detector=Stand("owl", FINDS, boxes=(box(0.1),)), answerer=Stand("vlm", boxes=(box(0.1),))
+            reader=FixedPerception("ocr"),
+            detector=FixedPerception("owl", FIND_SKILLS, boxes=(box(0.1),)),
+            answerer=FixedPerception("vlm", boxes=(box(0.1),)),
         )
 
     def frame(self) -> Frame:
@@ -90,22 +92,22 @@ class TestRouter(PerceptionConformance):
 
 @pytest.mark.anyio
 async def test_each_question_type_goes_to_its_backend() -> None:
-    ocr, owl, vlm = Stand("ocr"), Stand("owl", FINDS, boxes=(box(0.1),)), Stand("vlm")
-    eyes = RouterPerception(reader=ocr, detector=owl, answerer=vlm, compare=False)
-    assert (await eyes.query(FRAME, "what colour is the door?")).source == "vlm"
-    assert (await eyes.query(FRAME, "read the text")).source == "ocr"
-    assert (await eyes.detect(FRAME, "cone")).source == "owl"
-    assert (await eyes.point(FRAME, "cone")).source == "owl"
-    assert (await eyes.detect(FRAME, 'the text "EXIT"')).source == "ocr"
-    assert (await eyes.caption(FRAME)).source == "vlm"
-    assert ocr.asked == ["query read the text", 'detect the text "EXIT"']
-    assert vlm.asked == ["query what colour is the door?", "caption"]
+    ocr, owl, vlm = FixedPerception("ocr"), FixedPerception("owl", FIND_SKILLS, boxes=(box(0.1),)), FixedPerception("vlm")
+    router = RouterPerception(reader=ocr, detector=owl, answerer=vlm, compare=False)
+    assert (await router.query(FRAME, "what colour is the door?")).source == "vlm"
+    assert (await router.query(FRAME, "read the text")).source == "ocr"
+    assert (await router.detect(FRAME, "cone")).source == "owl"
+    assert (await router.point(FRAME, "cone")).source == "owl"
+    assert (await router.detect(FRAME, 'the text "EXIT"')).source == "ocr"
+    assert (await router.caption(FRAME)).source == "vlm"
+    assert ocr.requests == ["query read the text", 'detect the text "EXIT"']
+    assert vlm.requests == ["query what colour is the door?", "caption"]
 
 
 @pytest.mark.anyio
 async def test_two_backends_are_asked_at_once_and_their_agreement_is_recorded() -> None:
-    owl = Stand("owl", FINDS, boxes=(box(0.1), box(0.5)), wait_s=0.2)
-    vlm = Stand("vlm", boxes=(box(0.11),), wait_s=0.2)
+    owl = FixedPerception("owl", FIND_SKILLS, boxes=(box(0.1), box(0.5)), wait_s=0.2)
+    vlm = FixedPerception("vlm", boxes=(box(0.11),), wait_s=0.2)
     with anyio.fail_after(0.35):
         found = await RouterPerception(detector=owl, answerer=vlm).detect(FRAME, "cone")
     assert found.source == "owl" and len(found.boxes) == 2
@@ -125,15 +127,17 @@ async def test_two_backends_are_asked_at_once_and_their_agreement_is_recorded() 
         ((box(0.1),), (box(0.1), box(0.12)), 2 / 3),
     ],
 )
-async def test_agreement_on_places(mine: tuple[Box, ...], other: tuple[Box, ...], share: float) -> None:
-    eyes = RouterPerception(detector=Stand("owl", FINDS, boxes=mine), answerer=Stand("vlm", boxes=other))
-    for found in (await eyes.detect(FRAME, "cone"), await eyes.point(FRAME, "cone")):
+async def test_agreement_on_locations(mine: tuple[Box, ...], other: tuple[Box, ...], share: float) -> None:
+    router = RouterPerception(
+        detector=FixedPerception("owl", FIND_SKILLS, boxes=mine), answerer=FixedPerception("vlm", boxes=other)
+    )
+    for found in (await router.detect(FRAME, "cone"), await router.point(FRAME, "cone")):
         assert found.agreement is not None and found.agreement.share == pytest.approx(share)
 
 
 @pytest.mark.anyio
 async def test_the_next_backend_replaces_a_failed_one_with_a_note() -> None:
-    owl, vlm = Stand("owl", FINDS, broken=True), Stand("vlm", boxes=(box(0.3),))
+    owl, vlm = FixedPerception("owl", FIND_SKILLS, broken=True), FixedPerception("vlm", boxes=(box(0.3),))
     for compare in (True, False):
         found = await RouterPerception(detector=owl, answerer=vlm, compare=compare).detect(FRAME, "cone")
         assert found.source == "vlm" and found.notes == ("owl failed: owl is broken",)
@@ -142,15 +146,17 @@ async def test_the_next_backend_replaces_a_failed_one_with_a_note() -> None:
 
 @pytest.mark.anyio
 async def test_when_all_backends_fail_the_error_has_all_attempts() -> None:
-    eyes = RouterPerception(detector=Stand("owl", FINDS, broken=True), answerer=Stand("vlm", broken=True))
+    router = RouterPerception(
+        detector=FixedPerception("owl", FIND_SKILLS, broken=True), answerer=FixedPerception("vlm", broken=True)
+    )
     with pytest.raises(PerceptionError, match=r"owl is broken vlm is broken") as caught:
-        await eyes.detect(FRAME, "cone")
+        await router.detect(FRAME, "cone")
     assert caught.value.kind == "server-error" and len(caught.value.attempts) == 2
 
 
 @pytest.mark.anyio
 async def test_the_model_answers_when_the_reader_finds_no_text() -> None:
-    ocr, vlm = Stand("ocr", text="nothing", known=False), Stand("vlm", text="EXIT 14")
+    ocr, vlm = FixedPerception("ocr", text="nothing", known=False), FixedPerception("vlm", text="EXIT 14")
     answer = await RouterPerception(reader=ocr, answerer=vlm, compare=False).query(FRAME, "read the text")
     assert (answer.source, answer.text) == ("vlm", "EXIT 14")
     alone = await RouterPerception(reader=ocr).query(FRAME, "read the text")
@@ -159,45 +165,49 @@ async def test_the_model_answers_when_the_reader_finds_no_text() -> None:
 
 @pytest.mark.anyio
 async def test_only_text_on_the_named_object_is_read() -> None:
-    ocr = Stand("ocr", text="everything", boxes=(box(0.15, 0.1, "EXIT"), box(0.6, 0.6, "CAFE")))
-    owl = Stand("owl", FINDS, boxes=(Box(x_min=0.1, y_min=0.0, x_max=0.4, y_max=0.4),))
-    eyes = RouterPerception(reader=ocr, detector=owl, answerer=Stand("vlm", text="The sign says exit."))
-    answer = await eyes.query(FRAME, "what does the gantry sign say?")
+    ocr = FixedPerception("ocr", text="everything", boxes=(box(0.15, 0.1, "EXIT"), box(0.6, 0.6, "CAFE")))
+    owl = FixedPerception("owl", FIND_SKILLS, boxes=(Box(x_min=0.1, y_min=0.0, x_max=0.4, y_max=0.4),))
+    router = RouterPerception(reader=ocr, detector=owl, answerer=FixedPerception("vlm", text="The sign says exit."))
+    answer = await router.query(FRAME, "what does the gantry sign say?")
     assert answer.text == 'It reads: "EXIT".'
-    assert owl.asked == ["detect gantry sign"]
+    assert owl.requests == ["detect gantry sign"]
     assert answer.agreement is not None and answer.agreement.share == 1.0
 
 
 @pytest.mark.anyio
 async def test_a_sign_that_is_not_found_is_noted_and_all_text_is_given() -> None:
-    ocr = Stand("ocr", text='It reads: "CAFE".', boxes=(box(0.6, 0.6, "CAFE"),))
-    for owl in (Stand("owl", FINDS), Stand("owl", FINDS, broken=True), Stand("owl", FINDS, boxes=(box(0.0),))):
+    ocr = FixedPerception("ocr", text='It reads: "CAFE".', boxes=(box(0.6, 0.6, "CAFE"),))
+    for owl in (
+        FixedPerception("owl", FIND_SKILLS),
+        FixedPerception("owl", FIND_SKILLS, broken=True),
+        FixedPerception("owl", FIND_SKILLS, boxes=(box(0.0),)),
+    ):
         answer = await RouterPerception(reader=ocr, detector=owl).query(FRAME, "what does the gantry sign say?")
         assert answer.text == 'It reads: "CAFE".' and "gantry sign" in answer.notes[0]
 
 
 @pytest.mark.anyio
 async def test_a_skill_that_no_part_has_is_an_error() -> None:
-    eyes = RouterPerception(detector=Stand("owl", FINDS))
-    assert eyes.skills == FINDS
+    router = RouterPerception(detector=FixedPerception("owl", FIND_SKILLS))
+    assert router.skills == FIND_SKILLS
     with pytest.raises(PerceptionError, match="None of the backends"):
-        await eyes.query(FRAME, "what colour is the door?")
+        await router.query(FRAME, "what colour is the door?")
 
 
 @pytest.mark.anyio
 async def test_all_parts_are_closed_once() -> None:
-    one = Stand("vlm")
+    one = FixedPerception("vlm")
     await RouterPerception(detector=one, answerer=one).close()
     assert one.closed
 
 
-def test_made_from_a_spec() -> None:
+def test_a_router_is_created_from_a_spec() -> None:
     endpoint = {"url": "http://127.0.0.1:9/v1", "model": "m"}
     parts = {
         "answerer": {"name": "vlm", "backend": "openai_vision", "endpoint": endpoint},
         "reader": {"name": "ocr", "backend": "ocr"},
     }
-    eyes = make_backend(BackendSpec(name="composed", backend="router", options=parts))
-    assert isinstance(eyes, RouterPerception) and eyes.name == "composed" and eyes.skills == ALL_SKILLS
+    router = make_backend(BackendSpec(name="composed", backend="router", options=parts))
+    assert isinstance(router, RouterPerception) and router.name == "composed" and router.skills == ALL_SKILLS
     with pytest.raises(ConfigError, match="combines no backends"):
         make_backend(BackendSpec(name="composed", backend="router"))

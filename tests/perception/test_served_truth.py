@@ -14,7 +14,7 @@ from scope_ptz.camera.base import Camera
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.onvif.camera import OnvifCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import InputError, PerceptionError
@@ -32,7 +32,7 @@ from scope_ptz.virtual_camera.onvif.app import OnvifApp
 pytestmark = pytest.mark.anyio
 
 OPERATOR = Credentials("operator", "on-loopback")
-QUICK = Settling(poll_s=0.005, start_s=0.15, picture_interval_s=0.0)
+QUICK = SettlingCriteria(poll_s=0.005, start_s=0.15, picture_interval_s=0.0)
 WIDTH, HEIGHT = 320, 180
 POSE = Pose(2.2, -8.7, 1.1)
 
@@ -73,7 +73,7 @@ async def perception(camera: ServedCamera, opened: Camera, scene: Scene) -> Asyn
 
 
 @pytest.mark.parametrize("name", ["axis", pytest.param("onvif", marks=pytest.mark.full)])
-async def test_it_answers_as_ground_truth_does_in_process(analytic_scene: Scene, name: str) -> None:
+async def test_answers_equal_those_of_ground_truth_in_process(analytic_scene: Scene, name: str) -> None:
     own = SimulatedCamera(analytic_scene, clock=SceneClock(3.0), width=WIDTH, height=HEIGHT)
     with own.clock.hold():
         await own.move(POSE)
@@ -99,7 +99,7 @@ async def test_it_answers_as_ground_truth_does_in_process(analytic_scene: Scene,
             assert len((await backend.point(two, "ball")).points) == len(boxes.boxes)
 
 
-async def test_it_reads_what_the_picture_shows_and_not_what_the_driver_believes(analytic_scene: Scene) -> None:
+async def test_the_truth_is_that_of_the_picture_and_not_of_the_pose_of_the_driver(analytic_scene: Scene) -> None:
     async with served(analytic_scene) as camera, driver(camera) as opened, perception(camera, opened, analytic_scene) as backend:
         await opened.move(POSE)
         frame = await opened.frame()
@@ -130,7 +130,7 @@ async def test_a_camera_without_truth_is_refused(analytic_scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("host", ["10.0.0.7", "camera.example", "127.0.0.1.example.org", "[2001:db8::1]"])
-async def test_only_this_machine_is_asked(host: str) -> None:
+async def test_only_cameras_on_this_machine_are_asked(host: str) -> None:
     far = DeviceHttp(DeviceAddress(host, 80), OPERATOR)
     try:
         with pytest.raises(InputError, match="virtual cameras on this machine"):

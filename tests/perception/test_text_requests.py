@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts, similarity, text_matches
+from scope_ptz.perception.models.text_requests import is_reading_request, reading_target, requested_texts, similarity, text_matches
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ from scope_ptz.perception.models.text_requests import is_reading, reading_target
     ],
 )
 def test_reading_questions_and_their_targets(question: str, target: str | None) -> None:
-    assert is_reading(question)
+    assert is_reading_request(question)
     assert reading_target(question) == target
 
 
@@ -48,7 +48,7 @@ def test_reading_questions_and_their_targets(question: str, target: str | None) 
     ],
 )
 def test_questions_that_are_not_only_about_reading(question: str) -> None:
-    assert not is_reading(question)
+    assert not is_reading_request(question)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_questions_that_are_not_only_about_reading(question: str) -> None:
         ("speed limit sign", None),
     ],
 )
-def test_texts_that_a_description_names(description: str, wanted: tuple[str, ...] | None) -> None:
+def test_texts_that_a_description_quotes(description: str, wanted: tuple[str, ...] | None) -> None:
     assert requested_texts(description) == wanted
 
 

@@ -33,7 +33,7 @@ class Blobs(Perception):
     def __init__(self, *, fails_on: int | None = None) -> None:
         self.shown: list[tuple[int, int]] = []
         self.spans: list[float] = []
-        self.at_once = self.most_at_once = 0
+        self.at_once = self.max_concurrent = 0
         self.fails_on = fails_on
 
     async def _boxes(self, frame: Frame) -> tuple[Box, ...]:
@@ -41,7 +41,7 @@ class Blobs(Perception):
         self.spans.append(frame.hfov_deg)
         number = len(self.shown)
         self.at_once += 1
-        self.most_at_once = max(self.most_at_once, self.at_once)
+        self.max_concurrent = max(self.max_concurrent, self.at_once)
         await anyio.sleep(0.01)
         self.at_once -= 1
         if self.fails_on == number:
@@ -99,9 +99,9 @@ def test_tiles_cover_the_picture_and_overlap(width: int, height: int) -> None:
     ],
     ids=["apart", "in an overlap", "across a border", "across all", "at the end", "neighbours", "none"],
 )
-async def test_objects_in_a_panorama_are_found_once_at_their_place(spans: list[tuple[int, int]]) -> None:
-    eyes = TiledPerception(Blobs())
-    found = await eyes.detect(panorama(*spans), "blob")
+async def test_objects_in_a_panorama_are_found_once_at_their_location(spans: list[tuple[int, int]]) -> None:
+    tiled = TiledPerception(Blobs())
+    found = await tiled.detect(panorama(*spans), "blob")
     seen = sorted((b.x_min * WIDTH, b.x_max * WIDTH) for b in found.boxes)
     assert np.allclose(seen, sorted(spans), atol=1.0) if spans else seen == []
     assert found.complete and found.latency_s > 0
@@ -112,7 +112,7 @@ async def test_parts_are_frames_that_are_processed_together() -> None:
     blobs = Blobs()
     found = await TiledPerception(blobs).detect(panorama((10, 30)), "blob")
     assert set(blobs.shown) == {(320, HEIGHT)} and blobs.spans[0] == pytest.approx(280 * 320 / WIDTH)
-    assert 1 < blobs.most_at_once <= 4
+    assert 1 < blobs.max_concurrent <= 4
     assert len(found.attempts) == len(blobs.shown) and found.notes == ("as seen",)
 
 
@@ -130,7 +130,7 @@ async def test_a_failing_part_fails_the_call() -> None:
 
 
 @pytest.mark.anyio
-async def test_an_object_at_the_seam_of_a_full_turn_is_one_object() -> None:
+async def test_an_object_across_the_ends_of_a_full_turn_is_one_object() -> None:
     spans = [(0, 30), (1580, WIDTH), (700, 720)]
     around = await TiledPerception(Blobs()).detect(panorama(*spans, full_turn=True), "blob")
     assert len(around.boxes) == 2
@@ -140,11 +140,11 @@ async def test_an_object_at_the_seam_of_a_full_turn_is_one_object() -> None:
 @pytest.mark.anyio
 async def test_ordinary_frames_and_questions_are_not_split() -> None:
     blobs = Blobs()
-    eyes = TiledPerception(blobs)
-    await eyes.detect(pictures.frame(), "blob")
-    await eyes.point(pictures.frame(), "blob")
+    tiled = TiledPerception(blobs)
+    await tiled.detect(pictures.frame(), "blob")
+    await tiled.point(pictures.frame(), "blob")
     assert blobs.shown == [(640, 360)] * 2
-    assert (await eyes.query(panorama(), "what?")).text == (await eyes.caption(panorama())).text == f"{WIDTH} wide"
+    assert (await tiled.query(panorama(), "what?")).text == (await tiled.caption(panorama())).text == f"{WIDTH} wide"
 
 
 def test_backends_that_cannot_handle_panoramas_are_wrapped() -> None:

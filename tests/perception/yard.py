@@ -119,7 +119,7 @@ SCENE = SceneFile(
 
 
 def _sighting(instance: SceneInstance | SceneActor, low: Any, high: Any, projection: Projection) -> Sighting:
-    """A box as it shows: everything unhidden, its pixels half of its box."""
+    """A sighting of a box that nothing hides; its pixels fill half of the box."""
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]) - CAMERA_M
     points = projection.points(corners / np.linalg.norm(corners, axis=1, keepdims=True))
     x0, y0 = np.clip(np.nanmin(points, axis=0), 0, 1)

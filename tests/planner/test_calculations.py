@@ -9,7 +9,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.execution.run_state import AssumedOutcome
 
-GATE, YARD, DOCKS = (ast.PresetRef(name) for name in ("gate", "yard", "docks"))
+GATE, YARD, DOCKS, ROAD = (ast.PresetRef(name) for name in ("gate", "yard", "docks", "road"))
 CARS, VANS = ast.Thing("cars"), ast.Thing("vans")
 
 
@@ -49,7 +49,25 @@ HERE = (ast.Tally(CARS), ast.Tally(VANS))
         ),
         (
             ast.Difference(*at(CARS, GATE, YARD)), (3, 0),
-            "I can see 3 cars at gate and none at yard. There are 3 more at gate than at yard.",
+            "I can see 3 cars at gate and none at yard, so there are 3 more at gate.",
+        ),
+        (
+            ast.Difference(*(ast.Tally(ast.Thing(f"people in the {side} half")) for side in ("right", "left"))), (3, 2),
+            "I can see 3 people in the right half and 2 people in the left half in this view. "
+            "There is 1 more person in the right half than in the left half.",
+        ),
+        (
+            ast.Total(at(CARS, GATE, YARD, DOCKS, ROAD)), (2, 0, 0, 0),
+            "I can see 2 cars at gate, and none at the other 3 presets, which makes 2 altogether.",
+        ),
+        (ast.RankCounts(HERE), (0, 0), "I can see no cars and no vans in this view. That is the same number of both."),
+        (
+            ast.RankCounts(at(CARS, GATE, YARD, DOCKS)), (2, 2, 2),
+            "I can see 2 cars at gate, 2 at yard and 2 at docks. All three numbers are the same.",
+        ),
+        (
+            ast.RankCounts(at(CARS, GATE, YARD, DOCKS)), (0, 1, 0),
+            "From most to fewest: 1 car at yard, no cars at gate and no cars at docks.",
         ),
         (ast.RankCounts(HERE), (1, 4), "From most to fewest: 4 vans and 1 car."),
         (ast.RankCounts(HERE, "fewer"), (1, 4), "From fewest to most: 1 car and 4 vans."),
@@ -79,6 +97,11 @@ def test_places_are_visited_in_their_order() -> None:
         (ast.WhichPreset(CARS, "fewer", (GATE, YARD, DOCKS)), (1, 4, 2), "Preset gate shows the fewest cars."),
         (ast.WhichPreset(CARS, "more", (GATE, YARD), rank=3), (1, 4), "There are only 2 presets to compare."),
         (ast.WhichPreset(CARS, "more", (GATE, YARD, DOCKS), rank=2), (1, 4, 1), "It is a tie between gate and docks."),
+        (
+            ast.WhichPreset(CARS, "more", (GATE, YARD, DOCKS, ROAD)),
+            (0, 3, 0, 0),
+            "I can see 3 cars at yard, and none at the other 3 presets. Preset yard shows the most cars.",
+        ),
         (
             ast.WhichPreset(CARS, any_of=True, yes_no=True, places=(GATE, YARD)),
             (1, 0),

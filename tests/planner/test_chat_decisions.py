@@ -13,9 +13,9 @@ from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Finish
 from scope_ptz.planner.chat import ChatOptions, prompt_names
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.families import family_of, switch_for, temperature_for, usual_server
+from scope_ptz.planner.chat.families import family_of, reasoning_switch, temperature_for, usual_server
 from scope_ptz.planner.chat.interpret import MAX_CALLS, decide
-from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.planner.chat.schemas import simplify_schemas
 from scope_ptz.tools.registry import schemas
 from tests.planner.test_chat_messages import exchanges, state
 
@@ -47,7 +47,7 @@ def test_several_native_calls_with_text() -> None:
 
 
 @pytest.mark.parametrize("arguments", ['{"pan_deg": 20', "[1]", "right", '{"pan_deg": NaN}', '{"pan_deg": 1e999}', "{" * 5000])
-def test_arguments_that_are_no_object_become_a_call_with_a_problem(arguments: str) -> None:
+def test_arguments_that_are_not_an_object_give_a_call_with_an_error(arguments: str) -> None:
     decision = decide(reply("", ("a", "adjust_ptz", arguments)), state())
     assert isinstance(decision, CallTools)
     (call,) = decision.calls
@@ -64,8 +64,8 @@ def test_calls_that_the_server_left_in_the_text_are_removed() -> None:
     assert (len(decision.calls), decision.thought) == (1, "I go.")
 
 
-def test_plain_schemas_keep_their_meaning() -> None:
-    for plain, full in zip(plain_schemas(schemas()), schemas(), strict=True):
+def test_simplified_schemas_keep_their_meaning() -> None:
+    for plain, full in zip(simplify_schemas(schemas()), schemas(), strict=True):
         assert plain["function"]["name"] == full["function"]["name"]
         theirs, ours = plain["function"]["parameters"], full["function"]["parameters"]
         assert (theirs.get("required"), theirs["additionalProperties"]) == (ours.get("required"), False)
@@ -76,7 +76,7 @@ def test_plain_schemas_keep_their_meaning() -> None:
             assert prop["description"] == ours["properties"][name]["description"]
 
 
-def test_ids_are_made_where_the_server_gives_none() -> None:
+def test_calls_without_an_id_from_the_server_get_one() -> None:
     decision = decide(reply("", ("", "go_home", "{}"), ("", "go_home", "{}")), state(*exchanges(2)))
     assert isinstance(decision, CallTools)
     assert [c.id for c in decision.calls] == ["s0003c001", "s0003c002"]
@@ -90,7 +90,7 @@ def test_the_number_of_calls_is_limited() -> None:
     assert [c.problem is None for c in decision.calls[-2:]] == [True, False]
 
 
-def test_calls_in_reasoning_count_only_when_nothing_was_said() -> None:
+def test_calls_in_reasoning_count_only_without_other_text() -> None:
     thought = 'I go. <tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
     decision = decide(reply("", reasoning=thought), state())
     assert isinstance(decision, CallTools)
@@ -139,7 +139,7 @@ def test_an_endless_answer_is_truncated_and_marked() -> None:
     assert text.endswith("more characters)")
 
 
-def test_complete_calls_of_a_cut_reply_are_made() -> None:
+def test_complete_calls_of_a_truncated_reply_are_carried_out() -> None:
     cut = reply("", ("a", "go_home", "{}"), ("b", "adjust_ptz", '{"pan_'), finish_reason="length")
     decision = decide(cut, state())
     assert isinstance(decision, CallTools)
@@ -166,16 +166,18 @@ def test_families(model: str, family: str) -> None:
     assert family_of(model).name == family
 
 
-def test_reasoning_is_switched_as_each_family_requires() -> None:
-    off = switch_for("Qwen/Qwen3-32B", "off", "vllm")
+def test_reasoning_is_switched_on_and_off_as_each_family_requires() -> None:
+    off = reasoning_switch("Qwen/Qwen3-32B", "off", "vllm")
     assert (off.fields, off.words) == ({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think")
-    assert switch_for("Qwen/Qwen3.5-9B", "on", None).fields == {"chat_template_kwargs": {"enable_thinking": True}}
-    assert switch_for("qwen3.5:9b", "off", usual_server("http://localhost:11434/v1")).fields == {"reasoning_effort": "none"}
-    assert switch_for("openai/gpt-oss-20b", "off", "vllm").fields == {"reasoning_effort": "low"}
-    assert switch_for("ibm-granite/granite-3.3-8b-instruct", "on", "vllm").fields == {"chat_template_kwargs": {"thinking": True}}
+    assert reasoning_switch("Qwen/Qwen3.5-9B", "on", None).fields == {"chat_template_kwargs": {"enable_thinking": True}}
+    assert reasoning_switch("qwen3.5:9b", "off", usual_server("http://localhost:11434/v1")).fields == {"reasoning_effort": "none"}
+    assert reasoning_switch("openai/gpt-oss-20b", "off", "vllm").fields == {"reasoning_effort": "low"}
+    assert reasoning_switch("ibm-granite/granite-3.3-8b-instruct", "on", "vllm").fields == {
+        "chat_template_kwargs": {"thinking": True}
+    }
     for model in ("Qwen/Qwen3-4B-Instruct-2507", "my-own-model"):
-        assert switch_for(model, "off", None) == switch_for(model, "default", None)
-    assert not switch_for("Qwen/Qwen3-32B", "default", None).fields
+        assert reasoning_switch(model, "off", None) == reasoning_switch(model, "default", None)
+    assert not reasoning_switch("Qwen/Qwen3-32B", "default", None).fields
     assert temperature_for("Qwen/Qwen3-32B", "off") == 0.0
     assert temperature_for("Qwen/Qwen3-32B", "default") == 0.6
 

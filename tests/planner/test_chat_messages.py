@@ -57,13 +57,13 @@ def test_prompts_are_named_and_versioned() -> None:
 
 
 @pytest.mark.parametrize("notation", ["native", "text"])
-@pytest.mark.parametrize("sees", [False, True])
-def test_messages_are_append_only(notation: Any, sees: bool) -> None:
+@pytest.mark.parametrize("has_vision", [False, True])
+def test_messages_are_append_only(notation: Any, has_vision: bool) -> None:
     earlier = PastTurn(instruction="go to gate", exchanges=tuple(exchanges(1)), reply="Done.", start=Pose(1, 2, 3))
     steps = exchanges(5)
     before: list[dict[str, Any]] = []
     for length in range(6):
-        now = build_messages(state(*steps[:length], conversation=(earlier,)), PROMPT, notation=notation, accepts_images=sees)
+        now = build_messages(state(*steps[:length], conversation=(earlier,)), PROMPT, notation=notation, accepts_images=has_vision)
         assert json.dumps(now).startswith(json.dumps(before)[:-1])
         before = now
 
@@ -114,7 +114,7 @@ def test_calls_that_servers_would_reject_are_repaired() -> None:
     assert "oops" in results[0]["content"]
 
 
-def test_tools_can_go_through_the_text() -> None:
+def test_tools_can_be_described_in_the_text() -> None:
     messages = build_messages(state(*exchanges(1)), PROMPT, notation="text")
     assert '"name": "adjust_ptz"' in messages[0]["content"]
     assert messages[2]["content"].startswith('step 0\n<tool_call>\n{"name": "adjust_ptz"')

@@ -46,19 +46,19 @@ async def ask(
 def by_steps(*says: Say) -> Behaviour:
     """A scripted model that depends on the number of its earlier messages, so that retries do not matter."""
 
-    def mind(request: Request) -> Say:
+    def scripted_model(request: Request) -> Say:
         spoken = [message["role"] for message in request.data["messages"]].count("assistant")
         return says[min(spoken, len(says) - 1)]
 
-    return good(mind)
+    return good(scripted_model)
 
 
 @pytest.mark.parametrize("stream", [True, False])
-async def test_a_whole_run(stream: bool) -> None:
+async def test_a_complete_run(stream: bool) -> None:
     records: list[Any] = []
     looking = Say("", "Now I look.", tool_calls=(LOOK, ("get_presets", {})))
-    mind = by_steps(Say("I turn.", tool_calls=(TURN,)), looking, Say("<think>4</think>Four cones."))
-    with Misbehaving(then=mind) as server:
+    scripted_model = by_steps(Say("I turn.", tool_calls=(TURN,)), looking, Say("<think>4</think>Four cones."))
+    with Misbehaving(then=scripted_model) as server:
         run = await ask(server.url, records=records, stream=stream)
         sent = [request.data for request in server.requests]
         assert server.connections == 1
@@ -68,12 +68,12 @@ async def test_a_whole_run(stream: bool) -> None:
     assert run.ended.server_events == {}
     assert (run.ended.usage.input_tokens, run.ended.usage.output_tokens, run.ended.usage.cached_tokens) == (33, 21, 12)
     assert (0 < run.ended.timings.first_token_s <= run.ended.timings.planner_s) if stream else run.ended.timings.first_token_s == 0
-    # Append-only on the wire, nothing that only some servers know.
+    # Requests are append-only and have no fields that only some servers know.
     for before, after in pairwise(sent):
         assert after["messages"][: len(before["messages"])] == before["messages"]
         assert after["tools"] == before["tools"]
     assert set(sent[0]) <= {"model", "messages", "tools", "stream", "stream_options", "temperature"}
-    # Reasoning is in the trace and nowhere else.
+    # Reasoning is stored in the trace only.
     decisions = [r.decision for r in records if isinstance(r, Decided)]
     assert [d.reasoning for d in decisions] == ["", "Now I look.", "4"]
     assert "Now I look." not in json.dumps(sent[-1])
@@ -91,7 +91,7 @@ async def test_tokens_of_unusable_replies_are_counted(stream: bool) -> None:
     with Misbehaving(then=good(Say(text="<think>so</think>"))) as server:
         thought = await ask(server.url, stream=stream)
     assert (mended.ended.outcome, in_vain.ended.outcome, thought.ended.outcome) == ("answered", "planner_error", "planner_error")
-    # 11 tokens in and 7 out a reply; an empty one is asked for again once, one that only thinks is not.
+    # Each reply has 11 input and 7 output tokens. An empty reply is requested again once; a reply with only reasoning is not.
     for run, replies in ((mended, 2), (in_vain, 2), (thought, 1)):
         assert (run.ended.usage.input_tokens, run.ended.usage.output_tokens) == (11 * replies, 7 * replies)
 
@@ -105,7 +105,7 @@ async def test_tokens_of_unusable_replies_are_counted(stream: bool) -> None:
         '```json\n{"name": "adjust_ptz", "arguments": {"pan_deg": 15}}\n```',
     ],
 )
-async def test_calls_that_come_as_text(text: str, stream: bool) -> None:
+async def test_calls_that_are_sent_as_text(text: str, stream: bool) -> None:
     with Misbehaving(then=by_steps(Say(text), Say("Done."))) as server:
         run = await ask(server.url, stream=stream)
         assert server.requests[-1].data["messages"][2]["tool_calls"][0]["function"]["name"] == "adjust_ptz"
@@ -127,7 +127,7 @@ async def test_calls_that_come_as_text(text: str, stream: bool) -> None:
         (("go_to_preset", {"name": "../../etc/passwd"}), "no preset"),
     ],
 )
-async def test_wrong_calls_come_back_to_the_planner(call: tuple[str, Any], words: str, stream: bool) -> None:
+async def test_the_planner_is_told_about_wrong_calls(call: tuple[str, Any], words: str, stream: bool) -> None:
     with Misbehaving(then=by_steps(Say(tool_calls=(call,)), Say(tool_calls=(TURN,)), Say("Done."))) as server:
         run = await ask(server.url, stream=stream)
         told = server.requests[1].data["messages"][-1]
@@ -148,14 +148,14 @@ async def test_an_unreachable_server_is_an_outcome() -> None:
     assert (run.ended.outcome, run.ended.kind, run.ended.server_events) == ("planner_error", "refused", {"refused": 2})
 
 
-async def test_a_server_without_tools_gets_them_in_the_text() -> None:
-    def mind(request: Request) -> Say:
+async def test_a_server_without_tools_gets_their_descriptions_in_the_text() -> None:
+    def scripted_model(request: Request) -> Say:
         last = request.data["messages"][-1]["content"]
         done = "<tool_response>" in last
         return Say("Done.") if done else Say('<tool_call>{"name": "adjust_ptz", "arguments": {"pan_deg": 15}}</tool_call>')
 
     refusal = status(400, '"auto" tool choice requires --enable-auto-tool-choice and --tool-call-parser to be set')
-    with Misbehaving([refusal], then=good(mind)) as server:
+    with Misbehaving([refusal], then=good(scripted_model)) as server:
         run = await ask(server.url)
         assert ["tools" in request.data for request in server.requests] == [True, False, False]
         assert "<tools>" not in server.requests[0].data["messages"][0]["content"]
@@ -205,8 +205,8 @@ async def test_a_full_context_is_an_outcome_or_old_observations_are_shortened(
     summarise: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tests.planner.test_chat_server.ScriptedPerception", Talkative)
-    mind = by_steps(*[LONG] * 6, Say("A car."))
-    with Misbehaving(then=small_window(12_000, mind)) as server:
+    scripted_model = by_steps(*[LONG] * 6, Say("A car."))
+    with Misbehaving(then=small_window(12_000, scripted_model)) as server:
         run = await ask(server.url, summarise=summarise)
     if summarise:
         assert (run.ended.outcome, run.ended.kind) == ("answered", None)
@@ -226,12 +226,12 @@ async def test_a_known_context_size_avoids_failing_requests(monkeypatch: pytest.
 @pytest.mark.parametrize("stream", [True, False])
 async def test_a_planner_with_vision(stream: bool) -> None:
     records: list[Any] = []
-    mind = by_steps(Say(tool_calls=(("take_image", {}),)), Say(tool_calls=(TURN,)), Say("A grey wall."))
-    with Misbehaving(then=mind) as server:
+    scripted_model = by_steps(Say(tool_calls=(("take_image", {}),)), Say(tool_calls=(TURN,)), Say("A grey wall."))
+    with Misbehaving(then=scripted_model) as server:
         run = await ask(server.url, sees=True, stream=stream, records=records)
         sent = [request.data["messages"] for request in server.requests]
     assert run.ended.outcome == "answered"
-    # The view of now is the last image and the only view; the picture that was taken stays.
+    # The current view is the last image and the only view; the captured picture stays.
     assert [json.dumps(messages).count("data:image/jpeg;base64,") for messages in sent] == [1, 2, 2]
     assert [messages[-1]["role"] for messages in sent] == ["user"] * 3
     assert "pan 15" in sent[-1][-1]["content"][-2]["text"]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from scope_ptz.english.grammar.tokens import tokenise
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.lexing.lexicon import phrases, spelling_lists
 from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.lexing.preset_names import preset_at
 from scope_ptz.planner.grammar.lexing.spelling import corrected_word
-from scope_ptz.planner.grammar.lexing.tokens import tokenise
 
 
 def words(text: str) -> list[str]:

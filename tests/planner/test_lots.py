@@ -9,8 +9,9 @@ import pytest
 from tests.planner.lots import FILES, planned, rows, verdict
 
 _DEV_FLOOR = 0.9  # share of right plans in the part that the grammar is developed on
-_HELD_OUT_FLOOR = 0.8  # and in the part that is kept aside
-_MAX_SHARE_OF_WRONG_LOOKS = 0.08
+_HELD_OUT_FLOOR = 0.6  # in the held-out part of one lot, which is small
+_ALL_HELD_OUT_FLOOR = 0.9  # in the held-out parts of all lots together
+_MAX_SHARE_OF_WRONG_LOOKS = {"dev": 0.08, "held-out": 0.15}
 _MIN_ROWS = 20  # the floors apply to parts of at least this many rows
 
 
@@ -24,4 +25,9 @@ def test_lot(lot: str, split: str, floor: float) -> None:
     if size < _MIN_ROWS:
         return
     assert verdicts["right"] >= floor * size, f"{verdicts['right']} of {size} right in {lot} ({split})"
-    assert verdicts["wrong look"] <= _MAX_SHARE_OF_WRONG_LOOKS * size
+    assert verdicts["wrong look"] <= _MAX_SHARE_OF_WRONG_LOOKS[split] * size
+
+
+def test_held_out_instructions_of_all_lots() -> None:
+    verdicts = Counter(verdict(row, planned(row)) for lot in FILES for row in rows(lot, "held-out"))
+    assert verdicts["right"] >= _ALL_HELD_OUT_FLOOR * verdicts.total(), verdicts

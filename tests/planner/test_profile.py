@@ -68,7 +68,7 @@ def test_edits_keep_directions_and_numbers() -> None:
         assert edit.apply(PROMPT.text) != PROMPT.text, edit.name
 
 
-async def test_a_steady_planner_is_reported_as_steady() -> None:
+async def test_a_planner_that_does_not_depend_on_wording_is_reported_as_such() -> None:
     calls: list[tuple[int, int]] = []
     report = await measure(lambda _: Altered(), edits=PROMPT_EDITS, progress=lambda done, of: calls.append((done, of)))
     assert (report.valid.share, report.right.share, report.inverted.count, report.failed.count) == (1.0, 1.0, 0, 0)
@@ -78,16 +78,16 @@ async def test_a_steady_planner_is_reported_as_steady() -> None:
 
 
 async def test_inverted_moves_are_found() -> None:
-    def mirrored(state: State, decision: Decision) -> Decision:
+    def invert_turns(state: State, decision: Decision) -> Decision:
         if not isinstance(decision, CallTools) or "please" not in state.instruction.lower():
             return decision
         turned = {k: -v if k in ("pan_deg", "tilt_deg") else v for k, v in decision.calls[0].arguments.items()}
         return CallTools(calls=(decision.calls[0].model_copy(update={"arguments": turned}),))
 
-    report = await measure(lambda _: Altered(mirrored), rows=(TURN,), edits=INSTRUCTION_EDITS)
+    report = await measure(lambda _: Altered(invert_turns), rows=(TURN,), edits=INSTRUCTION_EDITS)
     assert report.inverted.count == 0
     assert report.inverted_anywhere.count == 2
-    assert {e.edit for e in report.edits if e.inverted.count} == {"please before", "please behind"}
+    assert {e.edit for e in report.edits if e.inverted.count} == {"please first", "please last"}
     assert "adjust_ptz(pan_deg=20)" in report.inversions[0]
 
 
@@ -101,7 +101,7 @@ async def test_a_planner_that_depends_on_its_prompt_is_detected() -> None:
 
     report = await measure(make, rows=ROWS[:5], edits=PROMPT_EDITS)
     changed = {e.edit: e.tools_changed.count for e in report.edits if e.tools_changed.count}
-    assert changed == {"an assistant first": 5}
+    assert changed == {"assistant sentence first": 5}
     assert report.by_prompt.share == round(1 / len(PROMPT_EDITS), 4)
 
 
@@ -109,7 +109,7 @@ async def test_failures_and_wrong_calls_are_counted_separately() -> None:
     def spoil(state: State, decision: Decision) -> Decision:
         assert isinstance(decision, CallTools)
         if "left" in state.instruction:
-            raise PlannerError("gone", kind="refused")
+            raise PlannerError("the connection failed", kind="refused")
         return CallTools(calls=(decision.calls[0].model_copy(update={"arguments": {"speed": 1}}),))
 
     report = await measure(lambda _: Altered(spoil), rows=ROWS[:2], edits=())
@@ -118,16 +118,16 @@ async def test_failures_and_wrong_calls_are_counted_separately() -> None:
 
 
 async def test_a_failing_server_does_not_count_as_a_changed_choice() -> None:
-    def gone(state: State, decision: Decision) -> Decision:
-        raise PlannerError("gone", kind="refused")
+    def fail_to_connect(state: State, decision: Decision) -> Decision:
+        raise PlannerError("the connection failed", kind="refused")
 
     def make(prompt: Prompt) -> Planner:
-        return Altered(gone) if "assistant" in prompt.text else Altered()
+        return Altered(fail_to_connect) if "assistant" in prompt.text else Altered()
 
     report = await measure(make, rows=ROWS[:5], edits=PROMPT_EDITS)
     assert report.by_prompt.count == 0
     assert report.by_prompt.of == 5 * (len(PROMPT_EDITS) - 1)
-    assert {e.edit: e.tools_changed.of for e in report.edits}["an assistant first"] == 0
+    assert {e.edit: e.tools_changed.of for e in report.edits}["assistant sentence first"] == 0
 
 
 def test_inversion_and_rates() -> None:

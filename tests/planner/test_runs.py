@@ -105,7 +105,7 @@ def test_comparison_gives_both_counts_and_the_winner() -> None:
     finish = Stage([2, 5]).run("are there more cones before or after panning right 50 degrees?")
     assert "2 cones before" in finish.text
     assert "more cones after the move" in finish.text
-    assert "more trucks than cars" in Stage([2, 5]).run("are there more cars than trucks?").text
+    assert "No: I can see 2 cars and 5 trucks" in Stage([2, 5]).run("are there more cars than trucks?").text
 
 
 def test_going_to_the_winner() -> None:

@@ -181,7 +181,7 @@ def test_arguments_of_any_text_are_an_object(text: str) -> None:
         "? ",
     ],
 )
-def test_megabytes_of_marks_are_read(mark: str) -> None:
+def test_megabytes_of_markup_are_parsed_quickly(mark: str) -> None:
     """Quadratic parsing would not finish."""
     parted = separate_reasoning("<tool_call>" + mark * 50_000)
     find_calls(parted.text, TOOLS)

@@ -1,6 +1,6 @@
-"""English words that several packages share: number words, noun forms, colours, lists and sentences.
+"""English number words, noun forms, colour words, lists and sentences.
 
-The package consists of data and pure functions, and is independent of cameras, pictures and tasks.
+The package contains only data and pure functions. It is independent of cameras, pictures and tasks.
 """
 
 from scope_ptz.english.colours import COLOURS

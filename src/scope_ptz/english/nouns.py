@@ -25,7 +25,7 @@ _INVARIANT = frozenset({
     "equipment", "luggage", "furniture", "compass", "canvas", "campus", "bypass", "aircraft", "various", "as", "us", "hi-vis",
     "ppe",
 })  # fmt: skip
-"""Words that end in "s" but are not plurals, and words without a plural form."""
+"""Singular words that end in "s", and words without a plural form."""
 
 _REGULAR_PLURAL = frozenset({"bus", "glass", "cross"})  # words of _INVARIANT whose plural is formed regularly
 _PREPOSITIONS = frozenset({"with", "of", "on", "in", "at", "for", "by", "from", "near", "carrying"})
@@ -74,9 +74,9 @@ def plural_noun(word: str) -> str:
 
 
 def article(phrase: str) -> str:
-    """Return the phrase with "a" or "an" before it; a plural phrase is returned unchanged."""
+    """Return the phrase with "a" or "an" before it. A plural phrase, and one with a number at its end, is returned unchanged."""
     words = phrase.split()
-    if is_plural(words[_head(words)]):
+    if (len(words) > 1 and words[-1].isdigit()) or is_plural(words[_head(words)]):
         return phrase
     vowel = phrase[0].lower() in "aeio" or (phrase[0].lower() == "u" and not phrase.lower().startswith(("uni", "use")))
     return f"{'an' if vowel else 'a'} {phrase}"

@@ -16,25 +16,25 @@ _TENS_WORDS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty
 _ORDINAL_WORDS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 UNITS: Mapping[str, int] = MappingProxyType({word: value for value, word in enumerate(SMALL_NUMBERS)})
-"""Values by word, from 0 to 19."""
+"""Values of the cardinals from 0 to 19."""
 
 TENS: Mapping[str, int] = MappingProxyType({word: 10 * value for value, word in enumerate(_TENS_WORDS, 2)})
-"""Values by word: the multiples of ten from 20 to 90."""
+"""Values of the multiples of ten from 20 to 90."""
 
 SCALES: Mapping[str, int] = MappingProxyType({"hundred": 100, "thousand": 1000})
 """Words that multiply the number before them."""
 
 CARDINALS: Mapping[str, int] = MappingProxyType({**UNITS, **TENS})
-"""Values of the cardinals below one hundred that are a single word."""
+"""Values of the single-word cardinals below one hundred."""
 
 ORDINALS: Mapping[str, int] = MappingProxyType({word: value for value, word in enumerate(_ORDINAL_WORDS, 1)})
-"""Values by word, from first to tenth."""
+"""Values of the ordinals from "first" to "tenth"."""
 
 FRACTIONS: Mapping[str, float] = MappingProxyType({
     "half": 0.5, "third": 1 / 3, "thirds": 1 / 3, "quarter": 0.25, "quarters": 0.25, "fourth": 0.25, "fourths": 0.25, "fifth": 0.2,
     "sixth": 1 / 6, "eighth": 0.125, "eighths": 0.125, "tenth": 0.1, "twelfth": 1 / 12,
 })  # fmt: skip
-"""Values by word, such as 0.5 for "half"."""
+"""Values of fractions by word, such as 0.5 for "half"."""
 
 
 def cardinal(word: str) -> int | None:

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 
 def listing(items: Sequence[str], word: str = "and") -> str:
-    """Join items as "a, b and c". Without items, return an empty string."""
+    """Join items as "a, b and c". No items give an empty string."""
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} {word} {items[-1]}"

@@ -1,4 +1,4 @@
-"""Calls in words can be read back exactly, also from a question in a conversation."""
+"""Descriptions of calls can be parsed back exactly, including those in a question."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.planner.base import ToolCall
-from scope_ptz.planner.hybrid.call_words import named, read
+from scope_ptz.planner.hybrid.call_words import call_from_words, call_in_words
 from scope_ptz.planner.hybrid.confirmation import confirmation_question, proposed_calls
 
 _DEGREES = st.floats(-400, 400, allow_nan=False).filter(bool)
@@ -40,13 +40,13 @@ CALLS = st.one_of(
 
 
 @given(CALLS)
-def test_a_call_in_words_can_be_read_back(call: tuple[str, dict[str, Any]]) -> None:
-    words = named(ToolCall(id="c", name=call[0], arguments=call[1]))
-    assert read(words) == call
+def test_a_described_call_can_be_parsed_back(call: tuple[str, dict[str, Any]]) -> None:
+    words = call_in_words(ToolCall(id="c", name=call[0], arguments=call[1]))
+    assert call_from_words(words) == call
 
 
 @given(st.lists(CALLS, min_size=1, max_size=4))
-def test_the_calls_of_a_question_can_be_read_back(calls: list[tuple[str, dict[str, Any]]]) -> None:
+def test_the_calls_in_a_question_can_be_parsed_back(calls: list[tuple[str, dict[str, Any]]]) -> None:
     question = confirmation_question([ToolCall(id="c", name=n, arguments=a) for n, a in calls], ["left"])
     assert [(call.name, call.arguments) for call in proposed_calls(question)] == calls
 

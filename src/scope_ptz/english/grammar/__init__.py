@@ -1,5 +1,5 @@
-"""Understand English: numerals and nouns, for the built-in planner and for ground-truth perception.
+"""Parse English numerals, nouns, noun phrases and questions, for the built-in planner and for ground-truth perception.
 
-The benchmark may import the words of ``scope_ptz.english``, but not this package, because it must not share mistakes of
-understanding with what it measures.
+The benchmark may import ``scope_ptz.english``, but not this package. Otherwise, a parsing error could affect both the benchmark
+and the planner or perception that it measures, and remain unnoticed.
 """

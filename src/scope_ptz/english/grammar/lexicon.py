@@ -75,7 +75,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], extra_nouns: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return the spans ``[start, end)`` of words that could be the noun of a phrase: those that end last, longest first.
+    """Return the spans ``[start, end)`` of words that could be the noun of a phrase, longest first. All spans have the last end.
 
     Args:
         words: The words of the phrase.

@@ -21,6 +21,7 @@ class NumberPhrase:
     """A number at the start of a list of words.
 
     Attributes:
+        value: The value of the number.
         used: The number of words that form the number; 0 if the words do not begin with one.
         kind: NUM, FRACTION ("half", "quarter") or ORDINAL ("second").
     """
@@ -31,7 +32,7 @@ class NumberPhrase:
 
     @property
     def kinds(self) -> frozenset[str]:
-        """The terminals that the number can match: "third" is an ordinal or a fraction."""
+        """The kinds that the number can have: "third" is an ordinal or a fraction."""
         return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
 
 
@@ -69,6 +70,7 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
 
 
 def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> NumberPhrase:
+    """Return the number that starts with digits, including an ordinal suffix or a fraction after it."""
     value = float(words[0].replace("−", "-"))
     adjacent = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
     if adjacent and words[1] in {"st", "nd", "rd", "th"}:
@@ -119,10 +121,10 @@ def _article_is_one(words: list[str]) -> bool:
     return not (words[1] == "couple" and words[2:3] == ["of"] and words[3:4] in (["times"], ["degrees"]))
 
 
-def _is_number_and(words: list[str], at: int) -> bool:
+def _is_number_and(words: list[str], index: int) -> bool:
     """Return whether the word at a position is the "and" in "one hundred and twenty"."""
-    after = NUMBER_WORDS.get(" ".join(words[at + 1 : at + 2]), 100)
-    return words[at] == "and" and words[at - 1] in {"hundred", "thousand"} and after < 100
+    after = NUMBER_WORDS.get(" ".join(words[index + 1 : index + 2]), 100)
+    return words[index] == "and" and words[index - 1] in {"hundred", "thousand"} and after < 100
 
 
 def _decimals(words: list[str]) -> tuple[float, int]:

@@ -1,4 +1,4 @@
-"""Perception that answers from the simulator's ground truth instead of from pixels."""
+"""Perception from the simulator's ground truth instead of pixels."""
 
 from scope_ptz.perception.ground_truth.backend import GroundTruthPerception, TruthReader
 

@@ -1,4 +1,4 @@
-"""The simulator's ground truth as a perception backend. It reads the scene of a frame, never the frame's pixels."""
+"""The simulator's ground truth as a perception backend. It reads a frame's scene, never the frame's pixels."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import TruthAnswer
     from scope_ptz.perception.ground_truth.view import Thing, View
 
-GROUND_TRUTH_VERSION = 2
-"""Version of ground-truth perception, which traces record. It increases when the same view and request give another reply."""
+GROUND_TRUTH_VERSION = 3
+"""The version of ground-truth perception, which traces record. It increases when replies to the same request and view change."""
 
 TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 
 
 class GroundTruthPerception(Perception):
-    """Perception from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
+    """Perception from the ground truth of simulated frames. Frames from real cameras have none and raise ``PerceptionError``.
 
     Visibility and legibility follow the simulator's definitions. Boxes are sorted by size, largest first, unless the description
-    orders them ("the nearest car"). Their label is the name of the thing, and they have no score. The parsers of questions and
+    orders them ("the nearest car"). A box's label is the thing's name, and boxes have no score. The parsers for questions and
     descriptions are imported on first use, because many instructions need neither.
     """
 
@@ -43,7 +43,7 @@ class GroundTruthPerception(Perception):
         """Set up the backend.
 
         Args:
-            open_scene: Returns the scene of a given name.
+            open_scene: Returns the scene with a given name.
             read_truth: Computes the ground truth of a view.
         """
         self.open_scene = open_scene
@@ -63,18 +63,18 @@ class GroundTruthPerception(Perception):
         began = time.perf_counter()
         things = await to_thread.run_sync(self._find, frame, description)
         boxes = tuple(t.box for t in things)
-        return Detections(boxes=boxes, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
+        return Detections(boxes=boxes, source=self.name, raw=_join_ids(things), latency_s=time.perf_counter() - began)
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = time.perf_counter()
         things = await to_thread.run_sync(self._find, frame, description)
         points = tuple(Point(x=t.sighting.point[0], y=t.sighting.point[1], label=t.name) for t in things)
-        return Points(points=points, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
+        return Points(points=points, source=self.name, raw=_join_ids(things), latency_s=time.perf_counter() - began)
 
     def view(self, frame: Frame, request: str) -> View:
-        """Return everything that a simulated frame shows.
+        """Return the visible contents of a simulated frame.
 
-        ``request`` is the question or description. The truth does not depend on it, but simulated noise does.
+        ``request`` is the question or description. The ground truth does not depend on it, but simulated noise does.
         """
         from scope_ptz.perception.ground_truth.view import read_view
 
@@ -93,22 +93,22 @@ class GroundTruthPerception(Perception):
             truth = self.read_truth(scene, origin.viewpoint, frame.projection, origin.time_s)
         except (PackError, UnknownNameError) as error:
             raise PerceptionError(f"The ground truth of this frame cannot be read: {error}") from error
-        return read_view(self.perceived(truth, frame, request), scene.file, origin.time_s)
+        return read_view(self.perceive(truth, frame, request), scene.file, origin.time_s)
 
-    def perceived(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:  # noqa: ARG002
+    def perceive(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:  # noqa: ARG002
         """Return the ground truth as the backend perceives it. This backend perceives everything; subclasses add errors."""
         return truth
 
     def _describe(self, frame: Frame) -> TruthAnswer:
+        from scope_ptz.english.grammar.questions.question_tree import Describe
         from scope_ptz.perception.ground_truth.answers import answer
-        from scope_ptz.perception.ground_truth.language.question_tree import Describe
 
         return answer(self.view(frame, ""), Describe())
 
     def _answer(self, frame: Frame, question: str) -> TruthAnswer:
+        from scope_ptz.english.grammar.questions.question_parser import parse_question
         from scope_ptz.perception.ground_truth.answers import answer
-        from scope_ptz.perception.ground_truth.language import parse_question
-        from scope_ptz.perception.ground_truth.unknown_words import unknown_nouns
+        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
@@ -118,35 +118,39 @@ class GroundTruthPerception(Perception):
                 f"The question '{question}' is not understood. Ask one question about what the picture shows, in plain words."
             )
         reply = answer(view, parsed)
-        if reply.text.startswith(_ABSENCES) and (unknown := unknown_nouns(view, parsed)):
-            raise NotUnderstoodError(f"I did not understand {_quoted(unknown)} in the question. Name a kind of thing.")
+        if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unknown := find_unknown_nouns(view, parsed)):
+            raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
         return reply
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
-        from scope_ptz.perception.ground_truth.language import is_description, parse_description
+        from scope_ptz.english.grammar.questions.question_parser import parse_description
+        from scope_ptz.english.grammar.questions.recognition import is_description
+        from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
         from scope_ptz.perception.ground_truth.thing_search import find
-        from scope_ptz.perception.ground_truth.unknown_words import unknown_nouns
+        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
         parsed, view = parse_description(description), self.view(frame, description)
         things = find(view, parsed)
+        if not things and (place := unmodelled_place(view, parsed)):
+            raise NotUnderstoodError(f"The scene says nothing about the {place}, so its ground truth cannot tell what is there.")
         if not things and not is_description(description):
             raise NotUnderstoodError(
                 f"The description '{description}' is not understood, because it is not a noun phrase. Name the things to find."
             )
-        if not things and (unknown := unknown_nouns(view, parsed)):
-            raise NotUnderstoodError(f"I did not understand {_quoted(unknown)} in the description. Name a kind of thing.")
+        if not things and (unknown := find_unknown_nouns(view, parsed)):
+            raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the description. Name a kind of thing.")
         return things
 
 
-_ABSENCES = ("There is no ", "There are no ", "I cannot tell: there is no ", "I cannot tell: there are no ")
-"""The beginnings of answers that state that something is absent."""
+_ABSENCE_BEGINNINGS = ("There is no ", "There are no ", "I cannot tell: there is no ", "I cannot tell: there are no ")
+"""How answers begin that state that something is absent."""
 
 
-def _quoted(phrases: Sequence[str]) -> str:
+def _quote_list(phrases: Sequence[str]) -> str:
     return english.listing([f"'{words}'" for words in dict.fromkeys(phrases)])
 
 
-def _ids(things: list[Thing]) -> str:
+def _join_ids(things: list[Thing]) -> str:
     return " ".join(t.id for t in things)

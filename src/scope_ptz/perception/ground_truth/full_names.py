@@ -1,4 +1,4 @@
-"""Search by the full name of a thing in the scene: "mannequin in a red dress", "planter with pink flowers".
+"""Search for things by their full names in the scene: "mannequin in a red dress", "planter with pink flowers".
 
 The parser reads such a name as a noun with a property, but the scene may state that property only in the name.
 """
@@ -6,15 +6,15 @@ The parser reads such a name as a noun with a property, but the scene may state 
 from __future__ import annotations
 
 from scope_ptz import english
+from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.numerals import ORDINALS
-from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _FUNCTION_WORDS = frozenset({"a", "an", "the", "in", "on", "of", "at", "by", "to", "with"})
 
 
-def named_in_full(view: View, phrase: tree.Phrase) -> list[Thing]:
-    """Return the things whose name has exactly the words of a phrase."""
+def find_by_full_name(view: View, phrase: tree.Phrase) -> list[Thing]:
+    """Return the things whose names consist of exactly the words in a phrase."""
     phrase_words = _words(phrase)
     if not phrase_words:
         return []
@@ -24,7 +24,7 @@ def named_in_full(view: View, phrase: tree.Phrase) -> list[Thing]:
 
 
 def _words(phrase: tree.Phrase) -> set[str]:
-    """Return all words of a phrase; an empty set if the phrase states no property, or more than a name can."""
+    """Return all words in a phrase; an empty set if the phrase states no property, or more than a name can contain."""
     if not (phrase.tests or phrase.ordinal) or phrase.order is not None:
         return set()
     words = {*phrase.words, *(word for word, value in ORDINALS.items() if value == phrase.ordinal)}  # "the Second Chance sign"

@@ -15,7 +15,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, Sighting, TextSighting, ViewTruth
 
-# Lookalikes: each character and the one as which it is misread.
+# Characters, each with the similar character for which it may be mistaken.
 _LOOKALIKES = {
     **dict(zip("0O1I5S8B2Z6G", "O0I1S5B8Z2G6", strict=True)),
     **dict(zip("aceoimnrtlhuvy", "oeacjnmvfibvuv", strict=True)),
@@ -26,7 +26,7 @@ _LOOKALIKES = {
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Probabilities and sizes of the simulated errors.
+    """The probabilities and sizes of simulated errors.
 
     Attributes:
         miss: A thing of ``pixels`` pixels is missed with probability ``miss * exp(-pixels / miss_scale_px)``.
@@ -53,19 +53,19 @@ class NoisyPerception(GroundTruthPerception):
         self._seed = seed
         self._noise = noise or Noise()
 
-    def perceived(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:
-        """Return the truth with misses, duplicates, shifted boxes and misread characters."""
+    def perceive(self, truth: ViewTruth, frame: Frame, request: str) -> ViewTruth:
+        """Return the truth with missed and duplicate things, shifted boxes and misread characters."""
         key = f"{self._seed}|{frame.origin}|{frame.projection}|{' '.join(request.lower().split())}"
         rng = random.Random(hashlib.sha256(key.encode()).digest())
         sightings: list[Sighting] = []
         for sighting in truth.sightings:
             missed = rng.random() < self._noise.miss * math.exp(-sighting.pixels / self._noise.miss_scale_px)
             twice = rng.random() < self._noise.duplicate
-            shifted = [self._shifted(sighting, rng) for _ in range(2)]
+            shifted = [self._shift_box(sighting, rng) for _ in range(2)]
             sightings += shifted[: 0 if missed else 2 if twice else 1]
         return ViewTruth(tuple(sightings), tuple(self._misread(t, rng) for t in truth.texts))
 
-    def _shifted(self, sighting: Sighting, rng: random.Random) -> Sighting:
+    def _shift_box(self, sighting: Sighting, rng: random.Random) -> Sighting:
         x0, y0, x1, y1 = sighting.box
         fraction = self._noise.jitter
         dx, dy = ((rng.uniform(-fraction, fraction) * size for _ in range(2)) for size in (x1 - x0, y1 - y0))

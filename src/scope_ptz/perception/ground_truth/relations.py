@@ -18,22 +18,22 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 BACKDROP = frozenset({"surface", "sky"})
-"""Concepts of the background, which do not count as objects."""
+"""Background concepts, which do not count as objects."""
 
 NEAR_M = 4.0  # maximum gap between things that are next to each other
 ON_SLACK_M = 0.3  # tolerance when testing whether one thing stands on another
 FLAT_M = 0.5  # things lower than this are flat, such as a road
-DEPTH_STEP_M = 0.5  # minimum difference in distance at which one thing is behind another
+DEPTH_STEP_M = 0.5  # minimum distance difference at which one thing is behind another
 SIDE_BAND = 0.4  # fraction of the frame that counts as a side
-SIDE_SLACK = 0.05  # tolerance of horizontal overlap, as a fraction of the frame
+SIDE_SLACK = 0.05  # tolerance for horizontal overlap, as a fraction of the frame
 
 
-def in_region(view: View, thing: Thing, region: tree.Region) -> bool:
+def is_in_region(view: View, thing: Thing, region: tree.Region) -> bool:
     """Return whether a thing lies in a part of the frame."""
     x, y = thing.box.centre
     side_fraction = 0.5 if region.half else SIDE_BAND
@@ -43,13 +43,13 @@ def in_region(view: View, thing: Thing, region: tree.Region) -> bool:
         "top": lambda: y < side_fraction,
         "bottom": lambda: y > 1 - side_fraction,
         "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
-        "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
-        "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
+        "near": lambda: thing.distance_m <= _depth_m(view, 1 / 3),
+        "far": lambda: thing.distance_m >= _depth_m(view, 2 / 3),
     }
     return all(checks[side]() for side in region.sides)
 
 
-def _depth(view: View, fraction: float) -> float:
+def _depth_m(view: View, fraction: float) -> float:
     """Return the distance at a fraction of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
     distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
     near, far = min(distances), max(distances)
@@ -59,22 +59,22 @@ def _depth(view: View, fraction: float) -> float:
 def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> bool:
     """Return whether a relation holds between two things."""
     (ax, ay), (bx, by) = a.box.centre, b.box.centre
-    part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
+    is_part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
     match kind:
         case "left":
-            return ax < bx and not part
+            return ax < bx and not is_part
         case "right":
-            return ax > bx and not part
+            return ax > bx and not is_part
         case "above":
             return ay < by and _overlap_horizontally(a, b, 0.1)
         case "below":
             return ay > by and _overlap_horizontally(a, b, 0.1)
         case "front":
-            return not part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
+            return not is_part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
         case "behind":
-            return not part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
+            return not is_part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
         case "near" | "facing":
-            return not part and a.gap_m(b) <= NEAR_M
+            return not is_part and a.gap_m(b) <= NEAR_M
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
 
@@ -84,15 +84,15 @@ def _overlap_horizontally(a: Thing, b: Thing, slack: float) -> bool:
 
 
 def _rests_on(a: Thing, b: Thing) -> bool:
-    """Return whether a thing stands on another.
+    """Return whether ``a`` rests on ``b``.
 
-    It must be the smaller of the two, with its centre within the other's footprint. Its base must lie between the other's base and
-    top, with a tolerance, and above the other's base unless the other is flat like a road.
+    ``a`` must be the smaller of the two, with its centre within the footprint of ``b``. Its base must lie between the base and the
+    top of ``b``, with a tolerance, and above the base of ``b`` unless ``b`` is flat like a road.
     """
-    middle = (a.low_m + a.high_m)[:2] / 2
-    over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))
-    foot, top = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
-    return over and bool(foot - ON_SLACK_M / 2 <= a.low_m[2] <= top) and _volume_m3(a) < _volume_m3(b)
+    centre_m = (a.low_m + a.high_m)[:2] / 2
+    is_within = bool(np.all(centre_m >= b.low_m[:2] - ON_SLACK_M) and np.all(centre_m <= b.high_m[:2] + ON_SLACK_M))
+    lowest_m, highest_m = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
+    return is_within and bool(lowest_m - ON_SLACK_M / 2 <= a.low_m[2] <= highest_m) and _volume_m3(a) < _volume_m3(b)
 
 
 def _volume_m3(thing: Thing) -> float:
@@ -107,21 +107,21 @@ def distance_to_corner(thing: Thing, sides: Sequence[str]) -> float:
     return float(np.hypot(x - to_x, y - to_y))
 
 
-def faces(thing: Thing, side: str) -> bool | None:
-    """Return whether a thing faces a side; None if the scene does not state it."""
+def is_facing(thing: Thing, side: str) -> bool | None:
+    """Return whether a thing faces a side; None if the scene does not state that."""
     for key, value in facts(thing):
         if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
             return side in english.letters(str(value)).split()
     return None
 
 
-def pixels(thing: Thing) -> int:
-    """Return the number of visible pixels of a thing."""
+def visible_pixels(thing: Thing) -> int:
+    """Return a thing's number of visible pixels."""
     return thing.sighting.pixels
 
 
 def rank_key(key: tree.OrderKey) -> Callable[[Thing], float]:
-    """Return the sort key of a superlative. The thing with the lowest value matches best."""
+    """Return the sort key for a superlative. The thing with the lowest value matches best."""
     keys: dict[str, Callable[[Thing], float]] = {
         "left": lambda t: t.box.centre[0],
         "right": lambda t: -t.box.centre[0],
@@ -131,8 +131,8 @@ def rank_key(key: tree.OrderKey) -> Callable[[Thing], float]:
         "furthest": lambda t: -t.distance_m,
         "biggest": lambda t: -_diagonal_m(t),
         "smallest": _diagonal_m,
-        "looks biggest": lambda t: -float(pixels(t)),
-        "looks smallest": lambda t: float(pixels(t)),
+        "looks biggest": lambda t: -float(visible_pixels(t)),
+        "looks smallest": lambda t: float(visible_pixels(t)),
         "tallest": lambda t: -float(t.high_m[2] - t.low_m[2]),
         "widest": lambda t: -float(max(t.high_m[:2] - t.low_m[:2])),
     }
@@ -140,5 +140,5 @@ def rank_key(key: tree.OrderKey) -> Callable[[Thing], float]:
 
 
 def _diagonal_m(thing: Thing) -> float:
-    """Return the diagonal of the box in the world, a measure of size that also works for flat things."""
+    """Return the diagonal of a thing's box in the world, a measure of size that also works for flat things."""
     return float(((thing.high_m - thing.low_m) ** 2).sum() ** 0.5)

@@ -1,7 +1,7 @@
-"""Ground truth for frames that a virtual camera sent over the network. It works in simulation only.
+"""Ground truth for frames that a virtual camera sent over the network. It works only in simulation.
 
-A virtual camera that is served with ``--truth`` reports the pose and time of its pictures to programs on the same machine. The
-ground truth of that view lets drivers of network cameras be tested without the errors of a vision model.
+A virtual camera that is served with ``--truth`` reports the pose and time of its pictures to programs on the same machine. Network
+camera drivers can thus be tested without a vision model's errors.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ MAX_TIME_ERROR_S = 1.0
 """Maximum error of the exposure time that a driver reports, in seconds. The error is usually some tens of milliseconds."""
 
 MAX_TURN_DEG, MAX_ZOOM_DIFFERENCE = 2.0, 0.1
-"""Maximum difference in angle, in degrees, and relative difference in zoom between the poses of a frame and its exposure."""
+"""Maximum angle difference in degrees, and maximum relative zoom difference, between a frame's pose and that at its exposure."""
 
 
 class ServedPose(BaseModel):
-    """A pose in a reply of a virtual camera."""
+    """A pose in a virtual camera's reply."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -46,7 +46,7 @@ class ServedPose(BaseModel):
 
 
 class ServedOrigin(BaseModel):
-    """The reply of a virtual camera: the origin of a picture.
+    """A virtual camera's reply, which states the origin of a picture.
 
     Attributes:
         scene: Name of the scene or variation.
@@ -66,23 +66,23 @@ class ServedOrigin(BaseModel):
 
 
 class TruthSource(Protocol):
-    """A source of ground truth for frames without origin."""
+    """A source that supplies the origins of frames that lack one."""
 
     async def origin(self, frame: Frame) -> ServedOrigin:
-        """Return the origin of a frame. Raises ``PerceptionError``."""
+        """Return a frame's origin, or raise ``PerceptionError``."""
         ...
 
     async def close(self) -> None:
-        """Release the resources of the source."""
+        """Release the source's resources."""
         ...
 
 
 class ServedTruth:
-    """A source that requests the origin of frames from a virtual camera on this machine.
+    """A source that requests frame origins from a virtual camera on this machine.
 
     Args:
-        http: The camera. It is closed with this object.
-        clock: The clock of the driver, which frame times refer to. It follows the wall clock.
+        http: The connection to the camera, which is closed with this object.
+        clock: The driver's clock, to which frame times refer. It follows the wall clock.
 
     Raises:
         InputError: The camera is not on this machine.
@@ -97,7 +97,7 @@ class ServedTruth:
         self._http, self._clock = http, clock
 
     async def origin(self, frame: Frame) -> ServedOrigin:
-        """Return the origin of a frame.
+        """Return a frame's origin.
 
         Raises:
             PerceptionError: The camera offers no ground truth, or has stored no exposure at that time and pose.
@@ -107,18 +107,18 @@ class ServedTruth:
         try:
             reply = await self._http.get(TRUTH_PATH, query, accept=(403, 404))
         except CameraReplyError:
-            raise _not_offered(self._http) from None
+            raise _not_offered_error(self._http) from None
         except CameraError as error:
             raise PerceptionError(f"The ground truth cannot be read: {error}") from error
         if reply.status != 200:
             if reply.content_type == "application/json":
                 raise PerceptionError("The virtual camera has not stored a frame of that time. Take a new picture.")
-            raise _not_offered(self._http)
+            raise _not_offered_error(self._http)
         try:
             origin = ServedOrigin.model_validate_json(reply.body)
         except ValidationError:
-            raise _not_offered(self._http) from None
-        if isinstance(frame.projection, Perspective) and not _is_near(frame.pose, origin.pose):
+            raise _not_offered_error(self._http) from None
+        if isinstance(frame.projection, Perspective) and not _is_close(frame.pose, origin.pose):
             raise PerceptionError(
                 f"The served frame nearest to this one in time was taken at pan {origin.pose.pan_deg:.1f}, tilt "
                 f"{origin.pose.tilt_deg:.1f}, zoom {origin.pose.zoom:.2f}x, which is not the pose that the driver reports. Check "
@@ -132,10 +132,10 @@ class ServedTruth:
 
 
 class ServedTruthPerception(GroundTruthPerception):
-    """Ground-truth perception for frames of a virtual camera on the network. Simulation only: real cameras have no ground truth.
+    """Ground-truth perception for frames from a virtual camera on the network. Simulation only: real cameras have no ground truth.
 
-    It uses the pose and field of view of the exposure, even if the driver assumes different ones. For a panorama, it uses the whole
-    sphere at the time of the first frame.
+    It uses the pose and field of view at the exposure, even if the driver assumes different values. For a panorama, it uses the
+    whole sphere at the time of the first frame.
 
     Args:
         source: The source of the frames' origins.
@@ -153,24 +153,24 @@ class ServedTruthPerception(GroundTruthPerception):
 
     async def caption(self, frame: Frame) -> Caption:
         began = perf_counter()
-        return _since(began, await super().caption(await self._with_origin(frame)))
+        return _add_total_latency(began, await super().caption(await self._add_origin(frame)))
 
     async def query(self, frame: Frame, question: str) -> Answer:
         began = perf_counter()
-        return _since(began, await super().query(await self._with_origin(frame), question))
+        return _add_total_latency(began, await super().query(await self._add_origin(frame), question))
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = perf_counter()
-        return _since(began, await super().detect(await self._with_origin(frame), description))
+        return _add_total_latency(began, await super().detect(await self._add_origin(frame), description))
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = perf_counter()
-        return _since(began, await super().point(await self._with_origin(frame), description))
+        return _add_total_latency(began, await super().point(await self._add_origin(frame), description))
 
     async def close(self) -> None:
         await self._source.close()
 
-    async def _with_origin(self, frame: Frame) -> Frame:
+    async def _add_origin(self, frame: Frame) -> Frame:
         origin = await self._source.origin(frame)
         pose = Pose(origin.pose.pan_deg, origin.pose.tilt_deg, origin.pose.zoom)
         projection = frame.projection
@@ -179,12 +179,12 @@ class ServedTruthPerception(GroundTruthPerception):
         return replace(frame, projection=projection, origin=FrameOrigin(origin.scene, origin.viewpoint, pose, origin.time_s))
 
 
-def _since(began: float, reply: _Reply) -> _Reply:
+def _add_total_latency(began: float, reply: _Reply) -> _Reply:
     """Return a reply whose latency includes the request for the ground truth."""
     return reply.model_copy(update={"latency_s": perf_counter() - began})
 
 
-def _is_near(pose: Pose, other: ServedPose) -> bool:
+def _is_close(pose: Pose, other: ServedPose) -> bool:
     return (
         abs(wrap_pan_deg(pose.pan_deg - other.pan_deg)) <= MAX_TURN_DEG
         and abs(pose.tilt_deg - other.tilt_deg) <= MAX_TURN_DEG
@@ -192,7 +192,7 @@ def _is_near(pose: Pose, other: ServedPose) -> bool:
     )
 
 
-def _not_offered(http: DeviceHttp) -> PerceptionError:
+def _not_offered_error(http: DeviceHttp) -> PerceptionError:
     return PerceptionError(
         f"The camera at {http.address} offers no ground truth. '{SERVED_TRUTH}' works only with virtual cameras. Start one with "
         "`scope camera serve --truth`, or choose a vision model with --perception."

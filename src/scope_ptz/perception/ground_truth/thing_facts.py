@@ -1,4 +1,4 @@
-"""Test whether words, clothes and texts match a thing. The tests return None if the scene does not state the answer."""
+"""Test whether words, clothes and texts match a thing. A test returns None if the scene does not state the answer."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _STATES = [
     "unlit: dark",
     "moving: driving travelling traveling",
     "stationary: parked stopped waiting still standstill idle",
-    "empty: unloaded unoccupied vacant",
+    "empty: unloaded unoccupied vacant free",
     "full: loaded occupied laden",
     "raised: up lifted",
     "lowered: down",
@@ -30,7 +30,7 @@ _STATES = [
     "",
 ]
 """States with their synonyms, in the form ``state: synonyms``."""
-_CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
+_CANONICAL_FORMS = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
     "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
     "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
 }  # fmt: skip
@@ -40,7 +40,7 @@ _OPPOSITES = [
     ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
     ("working", "off"),
 ]  # fmt: skip
-IGNORABLE = frozenset(
+IGNORABLE_WORDS = frozenset(
     [
         "big",
         "large",
@@ -89,8 +89,8 @@ IGNORABLE = frozenset(
         "moving",
     ]
 )
-"""Words of a description that are ignored if the scene states no fact about them."""
-FILLERS = frozenset(
+"""Words in a description that are ignored if the scene states no fact about them."""
+FILLER_WORDS = frozenset(
     [
         "the",
         "a",
@@ -120,21 +120,21 @@ FILLERS = frozenset(
         "parts",
     ]
 )
-"""Words that say nothing about a thing, and are skipped; only "on" or "in" alone is tested ("is the light on?")."""
+"""Words that say nothing about a thing and are skipped. "On" and "in" are tested if no other word remains ("is it on?")."""
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
-"""Attribute values in lower case that mean that a thing lacks the attribute."""
+"""Lower-case attribute values that mean that a thing lacks the attribute."""
 
 
-def canonical(word: str) -> str:
-    """Return the canonical synonym of a word."""
-    return _CANONICAL.get(word, word)
+def canonical_form(word: str) -> str:
+    """Return the canonical synonym of a word, or the word itself."""
+    return _CANONICAL_FORMS.get(word, word)
 
 
-def opposite(a: str, b: str) -> bool:
-    """Return whether two words exclude each other."""
+def are_opposites(a: str, b: str) -> bool:
+    """Return whether two words are mutually exclusive."""
     return (a, b) in _OPPOSITES or (b, a) in _OPPOSITES
 
 
@@ -145,19 +145,19 @@ def key_words(key: str) -> list[str]:
 
 def value_words(value: object) -> list[str]:
     """Return the canonical words of an attribute value."""
-    return [canonical(x) for x in english.letters(str(value)).split()]
+    return [canonical_form(x) for x in english.letters(str(value)).split()]
 
 
 def fact_words(thing: Thing) -> set[str]:
     """Return the words that describe a thing: its name, attribute values, true flags and motion, but not people's clothes."""
-    result = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
+    result = {canonical_form(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
     for key, value in facts(thing):
         words = key_words(key)
         if value is True:
-            result |= {canonical(x) for x in words}
+            result |= {canonical_form(x) for x in words}
             result |= {"on"} if "lit" in words else set()
         elif value is False:
-            result |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical(x) for x in words}}
+            result |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical_form(x) for x in words}}
         elif not (is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)) and not (
             is_worn(key) and "person" in thing.concepts
         ):
@@ -174,7 +174,7 @@ def fact_words(thing: Thing) -> set[str]:
 
 
 def facts(thing: Thing) -> list[tuple[str, Attribute]]:
-    """Return the attributes that may be reported: all except the texts on the thing."""
+    """Return the attributes that may be reported: all but the texts on the thing."""
     return [(k, v) for k, v in thing.attributes.items() if k not in TEXT_KEYS]
 
 
@@ -185,14 +185,14 @@ def is_colour(value: object) -> bool:
 
 
 def is_worn(key: str) -> bool:
-    """Return whether an attribute is about clothes. A colour in it is that of the clothes, not of the person."""
+    """Return whether an attribute is about clothes. A colour in it is that of the clothes, not that of the person."""
     return any(
         lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
     )
 
 
 def colour_of(thing: Thing) -> str | None:
-    """Return the colour that the scene states; None if it states none."""
+    """Return the stated colour; None if the scene states none."""
     for key in COLOUR_KEYS:
         if key in thing.attributes:
             return str(thing.attributes[key])
@@ -206,72 +206,80 @@ def colour_of(thing: Thing) -> str | None:
 
 
 def fits_noun(view: View, thing: Thing, noun: str) -> bool:
-    """Return whether a noun (singular or plural) names the thing.
+    """Return whether a noun (singular or plural) is a name for the thing.
 
     If the scene itself uses a word, such as "pylon" for an electricity pylon, other meanings of the word do not count.
     """
-    one = english.letters(singular_phrase(noun))
+    singular = english.letters(singular_phrase(noun))
     name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
-    if one in (category, name) or name.endswith(f" {one}"):
+    if singular in (category, name) or name.endswith(f" {singular}"):
         return True
     concept = lexicon().concept(noun)
-    return concept is not None and concept in thing.concepts and (concept == one or one not in view.nouns)
+    return concept is not None and concept in thing.concepts and (concept == singular or singular not in view.nouns)
 
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
-    """Return whether words such as "parked", "dark blue" or "a van" hold for a thing; None if the scene does not state this."""
-    rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
+    """Return whether words such as "parked", "dark blue" or "a van" hold for a thing; None if the scene does not state that."""
+    rest = [x for x in words if x not in FILLER_WORDS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
     spans = nouns_in(rest, view.nouns)
     if spans and spans[0][1] == len(rest):
-        answers = [_all([fits_noun(view, thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans]
+        answers = [
+            all_true([fits_noun(view, thing, " ".join(rest[i:])), *(_word_fits(view, thing, x) for x in rest[:i])])
+            for i, _ in spans
+        ]
         if any(answers):
             return True
-    return _all([_fits(view, thing, x) for x in rest])
+    return all_true([_word_fits(view, thing, x) for x in rest])
 
 
-def _all(answers: Iterable[bool | None]) -> bool | None:
-    """Return whether all answers are yes; None stands for unknown."""
+def all_true(answers: Iterable[bool | None]) -> bool | None:
+    """Return True if all answers are yes, False if any is no, and None if that is unknown."""
     result = list(answers)
     return False if False in result else None if None in result else True
 
 
-def _fits(view: View, thing: Thing, word: str) -> bool | None:
-    """Return whether one word holds for a thing; None if the scene does not state this."""
+def _word_fits(view: View, thing: Thing, word: str) -> bool | None:
+    """Return whether one word holds for a thing; None if the scene does not state that."""
     if word.startswith("non-"):
-        answer = _fits(view, thing, word.removeprefix("non-"))
+        answer = _word_fits(view, thing, word.removeprefix("non-"))
         return None if answer is None else not answer
     thing_words = fact_words(thing)
-    canonical_word = canonical(word)
-    if _forms(word) & {f for x in thing_words for f in _forms(x)} or fits_noun(view, thing, word):
+    canonical_word = canonical_form(word)
+    if _word_forms(word) & {f for x in thing_words for f in _word_forms(x)} or fits_noun(view, thing, word):
         return True
     if lexicon().concept(word) is not None and "person" in thing.concepts and has_item(view, thing, [word]):
         return True
-    if _in_context(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
+    if _is_context_word(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
         return True
-    if any(opposite(canonical_word, other) for other in thing_words):
+    if any(are_opposites(canonical_word, other) for other in thing_words):
         return False
     if canonical_word in english.COLOURS and colour_of(thing) is not None:
         return False
-    if any(_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
+    if any(_word_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
     return False if lexicon().concept(word) else None
 
 
 @lru_cache(maxsize=4096)
-def _forms(word: str) -> frozenset[str]:
-    """Return a word with its other forms, so that "kneeling" matches "kneel"."""
+def _word_forms(word: str) -> frozenset[str]:
+    """Return a word and its other forms, so that "kneeling" matches "kneel"."""
     stems = {word, english.singular(word)}
     for ending in ("ing", "ed"):
         if word.endswith(ending) and len(word) > len(ending) + 2:
             base = word.removesuffix(ending)
             stems |= {base, f"{base}e"} | ({base[:-1]} if base[-1] == base[-2] else set())
-    return frozenset(canonical(x) for x in stems) | {word}
+    return frozenset(canonical_form(x) for x in stems) | {word}
 
 
-def _in_context(view: View, thing: Thing, word: str) -> bool:
-    """Return whether the word names something that the thing is a part of ("the gantry sign", "the cabin door")."""
+def has_form_in(word: str, words: Iterable[str]) -> bool:
+    """Return whether a word, or another form of it, is one of several words."""
+    return any(_word_forms(word) & _word_forms(other) for other in words)
+
+
+def _is_context_word(view: View, thing: Thing, word: str) -> bool:
+    """Return whether the word names something that the thing is part of ("the gantry sign", "the cabin door")."""
     holder = thing.parent
     while holder is not None:
         words = english.letters(view.instances[holder].name).split()
@@ -287,17 +295,17 @@ def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None 
 
     ``amount`` is the required number of items ("with two doors"); it is compared only with a number that the scene states.
     """
-    rest = [x for x in words if x not in FILLERS]
+    rest = [x for x in words if x not in FILLER_WORDS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
-    noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
+    noun, others = " ".join(rest[start:end]), [canonical_form(x) for x in (*rest[:start], *rest[end:])]
     if lexicon().concept(noun) == "thing":  # "carrying something"
         carried = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
-        return any(str(v).lower() not in ABSENT_VALUES for v in carried)
+        return any(str(v).lower() not in ABSENT_VALUES and all(x in value_words(v) for x in others) for v in carried)
     if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
         return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
-    if any(fits_noun(view, part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
+    if any(fits_noun(view, part, noun) and all(_word_fits(view, part, x) for x in others) for part in parts):
         return True
     requested = english.letters(" ".join(rest))
     return any(requested in english.letters(text) for text in thing.texts)
@@ -305,29 +313,29 @@ def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None 
 
 def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
     """Return whether an attribute contains one of the names, in its key or its value, together with all other words."""
-    if _key_is(key, names):
+    if _key_matches(key, names):
         stated = value_words(value)
         if str(value).lower() not in ABSENT_VALUES and value is not False and all(x in stated for x in others):
             return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
     return any(
         any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split()
-        for chunk in _chunks(value)
+        for chunk in _split_items(value)
     )
 
 
-def _key_is(key: str, names: frozenset[str]) -> bool:
+def _key_matches(key: str, names: frozenset[str]) -> bool:
     words = [x for x in key_words(key) if x not in COLOUR_KEYS]
     return " ".join(words) in names or (bool(words) and singular_phrase(" ".join(words)) in names)
 
 
 def names_of(noun: str) -> frozenset[str]:
-    """Return all nouns, in the singular, for the concept of a noun."""
+    """Return all nouns, in the singular, that name the same concept as a noun."""
     table = lexicon()
     concept = table.concept(noun)
     return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
 
 
-def _chunks(value: object) -> list[str]:
+def _split_items(value: object) -> list[str]:
     """Split "orange vest and white helmet" into its parts, so that "white" applies only to the helmet."""
     if not isinstance(value, str):
         return []

@@ -1,7 +1,8 @@
-"""Search for the things in a view that match a description.
+"""Search a view for the things that match a description.
 
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
-- *between*: the centre lies horizontally between the centres of the two, and not clearly in front of or behind both.
+- *between*: the centre lies horizontally between the centres of two things, and the thing is not clearly in front of both or behind
+both.
 - Matches are sorted by visible pixels, largest first, unless a superlative or an ordinal orders them. Ordinals without a side
 count from the left. A superlative keeps only the best match ("the two nearest" keeps two).
 """
@@ -14,21 +15,21 @@ from typing import cast
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
-from scope_ptz.perception.ground_truth.full_names import named_in_full
-from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.full_names import find_by_full_name
 from scope_ptz.perception.ground_truth.relations import (
     BACKDROP,
     NEAR_M,
     distance_to_corner,
-    faces,
-    in_region,
-    pixels,
+    is_facing,
+    is_in_region,
     rank_key,
     relation_holds,
+    visible_pixels,
 )
 from scope_ptz.perception.ground_truth.thing_facts import (
-    FILLERS,
-    IGNORABLE,
+    FILLER_WORDS,
+    IGNORABLE_WORDS,
     colour_of,
     facts,
     fits_noun,
@@ -43,31 +44,33 @@ _SIDES: dict[str, tree.OrderKey] = {"left": "left", "right": "right", "top": "to
 
 def find(view: View, description: tree.Description) -> list[Thing]:
     """Return all things that match a description, best first."""
-    matches = things_named(view, description)
+    matches = find_excluding_wearers(view, description)
     if matches or len(description.phrases) != 1:
         return matches
-    return named_in_full(view, description.phrases[0]) or _worn(view, description.phrases[0])
+    return find_by_full_name(view, description.phrases[0]) or _find_wearers(view, description.phrases[0])
 
 
-def things_named(view: View, description: tree.Description) -> list[Thing]:
-    """Return the things that match a description. People who wear the described clothes are not included."""
-    matches = _two_coloured(view, description)
+def find_excluding_wearers(view: View, description: tree.Description) -> list[Thing]:
+    """Return the things that match a description, excluding people who wear the described clothes."""
+    matches = _find_two_coloured(view, description)
     if matches:
         return matches
     for phrase in description.phrases:
         matches += [t for t in find_phrase(view, phrase) if t not in matches]
-    return matches if len(description.phrases) == 1 else sorted(matches, key=pixels, reverse=True)
+    return matches if len(description.phrases) == 1 else sorted(matches, key=visible_pixels, reverse=True)
 
 
-def _worn(view: View, phrase: tree.Phrase) -> list[Thing]:
-    """Return the people who wear what the phrase describes ("hard hats"), because clothes are not things of their own."""
+def _find_wearers(view: View, phrase: tree.Phrase) -> list[Thing]:
+    """Return the people who wear what the phrase describes ("hard hats"), because clothes are not separate things."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
-    return sorted((t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=pixels, reverse=True)
+    return sorted(
+        (t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=visible_pixels, reverse=True
+    )
 
 
-def _two_coloured(view: View, description: tree.Description) -> list[Thing]:
-    """Find "red and white barriers": barriers that have both colours. If there are none, the caller searches for each colour."""
+def _find_two_coloured(view: View, description: tree.Description) -> list[Thing]:
+    """Find "red and white barriers", which have both colours. If there are none, the caller searches for each colour."""
     phrases = description.phrases
     if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in english.COLOURS for p in phrases):
         return []
@@ -75,19 +78,19 @@ def _two_coloured(view: View, description: tree.Description) -> list[Thing]:
     if (first.words[1:], first.tests, first.order) != (second.words[1:], second.tests, second.order):
         return []
     requested = {p.words[0] for p in phrases}
-    both = replace(first, words=first.words[1:])
-    return [t for t in find_phrase(view, both) if requested <= set(english.letters(colour_of(t) or "").split())]
+    without_colour = replace(first, words=first.words[1:])
+    return [t for t in find_phrase(view, without_colour) if requested <= set(english.letters(colour_of(t) or "").split())]
 
 
 def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return all things that match one noun phrase, best first."""
-    core, extra, order = _core(view, phrase)
+    core, extra, order = _match_core(view, phrase)
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
-    return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
+    return _select_by_order(view, sorted(matches, key=visible_pixels, reverse=True), order, phrase)
 
 
-def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Split words into those up to the noun, and those after it (a predicate: "gate open")."""
+def split_after_noun(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Split words into those up to the noun and those after the noun (a predicate, as in "gate open")."""
     spans = nouns_in(words, view.nouns)
     if not spans:
         return (tuple(words[:-1]), tuple(words[-1:])) if len(words) > 1 else (tuple(words), ())
@@ -95,8 +98,15 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
     return tuple(words[:end]), tuple(words[end:])
 
 
-def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
-    """Return the things that match the core words, additional tests, and the order.
+def split_after_numbered_noun(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Split words as ``split_after_noun`` does, but keep a number after the noun with it: "bay 14" and "empty"."""
+    head, after = split_after_noun(view, words)
+    size = 1 if after and english.cardinal(after[0]) is not None else 0
+    return (*head, *after[:size]), after[size:]
+
+
+def _match_core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
+    """Return three values: the things that match the core words, the additional tests that they must pass, and the order.
 
     Words for sides among the core words add a test ("the left signs") or set the order ("the left sign").
     """
@@ -107,20 +117,24 @@ def _core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tree.Test
     carried = any(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
     for start, end in reversed(spans):
         others = [*words[:start], *words[end:]]
-        candidates = _named(view, " ".join(words[start:end]), others, carried)
-        literal = [t for t in candidates if _modified(view, t, others)]
-        if literal:
-            return literal, (), phrase.order
+        candidates = _find_by_noun(view, " ".join(words[start:end]), others, carried)
+        literal_matches = [t for t in candidates if _modifiers_hold(view, t, others)]
+        if literal_matches:
+            return literal_matches, (), phrase.order
     for start, end in spans:
         sides = [x for x in (*words[:start], *words[end:]) if x in _SIDES or x == "middle"]
-        plain = [x for x in (*words[:start], *words[end:]) if x not in sides]
-        matches = [t for t in _named(view, " ".join(words[start:end]), plain, carried) if _modified(view, t, plain)]
+        other_words = [x for x in (*words[:start], *words[end:]) if x not in sides]
+        matches = [
+            t
+            for t in _find_by_noun(view, " ".join(words[start:end]), other_words, carried)
+            if _modifiers_hold(view, t, other_words)
+        ]
         if sides and matches:
-            return _with_sides(matches, sides, english.is_plural(words[end - 1]), phrase)
-    return [] if spans else [t for t in view.things if _all_words(view, t, words)], (), phrase.order
+            return _apply_sides(matches, sides, english.is_plural(words[end - 1]), phrase)
+    return [] if spans else [t for t in view.things if _all_words_hold(view, t, words)], (), phrase.order
 
 
-def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
+def _find_by_noun(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
     """Return the things that a noun names. If no vehicle matches the other words ("yellow vehicle"), machines count as vehicles.
 
     "Thing" names all independent objects and, if ``carried`` is set ("the things on the van"), their parts.
@@ -128,12 +142,12 @@ def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _is_object(view, t) or (carried and not t.concepts & BACKDROP)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
-    if lexicon().concept(noun) == "vehicle" and others and not any(_modified(view, t, others) for t in named):
+    if lexicon().concept(noun) == "vehicle" and others and not any(_modifiers_hold(view, t, others) for t in named):
         return [t for t in view.things if "machine" in t.concepts]
     return named
 
 
-def _with_sides(
+def _apply_sides(
     matches: list[Thing], sides: list[str], many: bool, phrase: tree.Phrase
 ) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
     """Apply words for sides.
@@ -148,34 +162,36 @@ def _with_sides(
 
 
 def _is_object(view: View, thing: Thing) -> bool:
-    """Return whether a thing is an independent object: not background, and not a part of something else in view."""
+    """Return whether a thing is an independent object: neither background nor a part of something else in view."""
     return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
 
 
-def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
-    """Return whether the other words of a phrase hold for a thing."""
+def _modifiers_hold(view: View, thing: Thing, others: Sequence[str]) -> bool:
+    """Return whether the other words in a phrase hold for a thing."""
     if not others:
         return True
     return (
-        all(fits_words(view, thing, [x]) is True or _ignorable(view, thing, x) for x in others)
+        all(fits_words(view, thing, [x]) is True or _is_ignorable(view, thing, x) for x in others)
         or fits_words(view, thing, others) is True
     )
 
 
-def _ignorable(view: View, thing: Thing, word: str) -> bool:
+def _is_ignorable(view: View, thing: Thing, word: str) -> bool:
     """Return whether a word such as "big" is ignored because the scene has no fact about it."""
     return (
-        word in IGNORABLE and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
+        word in IGNORABLE_WORDS
+        and fits_words(view, thing, [word]) is None
+        and not any(word in values for values in view.values.values())
     )
 
 
-def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
+def _all_words_hold(view: View, thing: Thing, words: Sequence[str]) -> bool:
     """Return whether a thing matches a phrase with an unknown noun: every word must hold for it."""
-    return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
+    return not set(words) <= FILLER_WORDS and all(fits_words(view, thing, [x]) is True for x in words)
 
 
 def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
-    """Return whether a test holds for a thing; None if the scene does not state it."""
+    """Return whether a test holds for a thing; None if the scene does not state that."""
     match test:
         case tree.Not(test=inner):
             answer = holds(view, thing, inner)
@@ -185,13 +201,13 @@ def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
             return True if True in answers else None if None in answers else False
         case tree.Is(words=words):
             answer = fits_words(view, thing, words)
-            return True if answer is None and all(_ignorable(view, thing, x) for x in words) else answer
+            return True if answer is None and all(_is_ignorable(view, thing, x) for x in words) else answer
         case tree.Says(words=words):
-            return has_text(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
+            return has_text(thing, words) or (len(words) == 1 and is_facing(thing, words[0]) is True)
         case tree.Has(what=what):
             return _has(view, thing, what)
         case tree.Faces(side=side):
-            return faces(thing, side)
+            return is_facing(thing, side)
         case tree.Order():
             return None
         case _:
@@ -204,9 +220,9 @@ def _holds_in_space(
     """Return whether a test about place, distance or size holds for a thing."""
     match test:
         case tree.Region():
-            return in_region(view, thing, test)
+            return is_in_region(view, thing, test)
         case tree.Between(first=first, second=second):
-            return _between(view, thing, first, second)
+            return _is_between(view, thing, first, second)
         case tree.Relation(kind=kind, other=other):
             return has_relation(view, thing, kind, other)
         case tree.Measured(key=key, other=other):
@@ -228,33 +244,33 @@ def _has(view: View, thing: Thing, what: tree.Description) -> bool:
 
 def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description) -> bool:
     """Return whether a thing has a relation to any thing that matches ``other``."""
-    others = things_named(view, other)
-    if kind == "on" and thing not in others and _stated(view, thing, other):
+    others = find_excluding_wearers(view, other)
+    if kind == "on" and thing not in others and _is_stated(view, thing, other):
         return True
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
 
 
-def _stated(view: View, thing: Thing, other: tree.Description) -> bool:
+def _is_stated(view: View, thing: Thing, other: tree.Description) -> bool:
     """Return whether a fact or clothing states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
-    if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_values(thing))):
+    if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_fact_words(thing))):
         return True
     return has_item(view, thing, words)
 
 
-# Words for lanes by their number.
+# Words for lanes, by lane number.
 _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}
 
 
-def _values(thing: Thing) -> Iterable[list[str]]:
-    """Yield the words of each fact of a thing."""
+def _fact_words(thing: Thing) -> Iterable[list[str]]:
+    """Yield the words in each fact about a thing."""
     for key, value in facts(thing):
         yield english.letters(f"{key.replace('_', ' ')} {value}").split()
         if key == "lane" and isinstance(value, int):
             yield ["lane", *_LANES.get(value, "").split()]
 
 
-def _between(view: View, thing: Thing, first: tree.Description, second: tree.Description) -> bool:
+def _is_between(view: View, thing: Thing, first: tree.Description, second: tree.Description) -> bool:
     """Return whether a thing is between any two things that match the descriptions."""
     ones, others = find(view, first), find(view, second)
     x = thing.box.centre[0]
@@ -269,7 +285,7 @@ def _between(view: View, thing: Thing, first: tree.Description, second: tree.Des
     return False
 
 
-def _ordered(view: View, matches: list[Thing], order: tree.Order | None, phrase: tree.Phrase) -> list[Thing]:
+def _select_by_order(view: View, matches: list[Thing], order: tree.Order | None, phrase: tree.Phrase) -> list[Thing]:
     """Return the matches that a superlative, an ordinal and an amount select, in their order."""
     if order is None and phrase.ordinal is None:
         return matches
@@ -285,5 +301,5 @@ def _ordered(view: View, matches: list[Thing], order: tree.Order | None, phrase:
         matches.sort(key=rank_key(key))
     if phrase.ordinal is None:
         return matches[: phrase.amount or 1]
-    place = phrase.ordinal - 1 if phrase.ordinal > 0 else phrase.ordinal
-    return [matches[place]] if -len(matches) <= place < len(matches) else []
+    index = phrase.ordinal - 1 if phrase.ordinal > 0 else phrase.ordinal
+    return [matches[index]] if -len(matches) <= index < len(matches) else []

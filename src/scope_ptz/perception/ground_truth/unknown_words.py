@@ -1,4 +1,4 @@
-"""Tell nouns that nobody can know from the names of things that are absent."""
+"""Distinguish unknown nouns from the names of things that are not in view."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any
 from scope_ptz import english
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
-from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.thing_facts import FILLERS, IGNORABLE
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS, IGNORABLE_WORDS
 from scope_ptz.perception.ground_truth.view import View
 
 _PRONOUNS = frozenset({("it",), ("them",)})
-"""Pronouns without a thing that they refer to. A question about a picture has no earlier sentence."""
+"""Pronouns that cannot refer to anything, because no sentence precedes a question about a picture."""
 
 
-def unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[str]:
-    """Return the noun phrases of a description or question that have no noun that the lexicon, the scene or common English knows.
+def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[str]:
+    """Return the noun phrases that contain no noun from the lexicon, the scene or common English.
 
     Args:
         view: The view, whose scene adds its own nouns and the words of its facts.
@@ -28,7 +28,7 @@ def unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[
         The words of each phrase, in order.
     """
     stated = frozenset[str]().union(*view.values.values())
-    known = english.COLOURS | FILLERS | IGNORABLE | stated
+    known = english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
     return [
         " ".join(phrase.words)
         for phrase in _phrases(parsed)
@@ -42,7 +42,7 @@ def unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[
 
 
 def _phrases(node: Any) -> Iterator[tree.Phrase]:
-    """Return the noun phrases of a description, with those of its tests. Texts of signs are not noun phrases."""
+    """Yield the noun phrases in a description or question, including those in its tests. Text on signs is excluded."""
     if isinstance(node, tuple):
         for item in node:
             yield from _phrases(item)

@@ -1,4 +1,4 @@
-"""The content of a frame: the visible things with their facts, and the texts on them."""
+"""The contents of a frame: the visible things with their facts, and the texts on them."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Thing:
 
     Attributes:
         sighting: Where and how large the instance appears in the frame.
-        low_m: Lowest corner of its box in the world.
+        low_m: Lowest corner of the instance's box in the world.
         high_m: Highest corner of that box.
-        concepts: Its concept and all kinds that it belongs to.
+        concepts: The instance's concept and all kinds that it belongs to.
         motion: "moving" or "stationary".
         texts: The legible texts on it and its parts.
     """
@@ -90,11 +90,11 @@ class View:
     instances: Mapping[str, SceneInstance | SceneActor]
     """Instances by id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
-    """The words that occur in the values of each attribute, for the whole scene."""
+    """The words that occur in each attribute's values, for the whole scene."""
     nouns: frozenset[str] = field(default=frozenset())
-    """Nouns of the scene in addition to those of the lexicon."""
+    """Nouns that the scene adds to the lexicon."""
     hosts: tuple[Thing, ...] = ()
-    """Things that bear a legible text but are cut off too much to count as visible, such as a sign larger than the frame."""
+    """Things with legible text that are cut off too much to count as visible, such as a sign larger than the frame."""
 
     @cached_property
     def by_id(self) -> dict[str, Thing]:
@@ -111,16 +111,16 @@ class View:
 
     @cached_property
     def concepts(self) -> frozenset[str]:
-        """Concepts of all nouns that the scene uses, whether the things are in view or not."""
+        """The concepts of all nouns that the scene uses, whether or not the things are in view."""
         table = lexicon()
         return frozenset(k for n in self.nouns if (c := table.concept(n)) for k in table.kinds(c))
 
     def texts_on(self, thing: Thing) -> tuple[TextSighting, ...]:
-        """Return the texts on a thing and its parts, top to bottom and left to right."""
+        """Return the texts on a thing and its parts, from top to bottom and from left to right."""
         return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
 
     def for_reading(self) -> View:
-        """Return the view with ``hosts`` added to the things."""
+        """Return a view in which ``hosts`` are added to the things."""
         return replace(self, things=(*self.things, *self.hosts))
 
     def top_level(self) -> tuple[Thing, ...]:
@@ -138,20 +138,20 @@ class SceneFacts:
     values: Mapping[str, frozenset[str]]
     nouns: frozenset[str]
     concepts: Mapping[str, frozenset[str]]
-    """The concepts of each instance id."""
+    """The concepts of each instance, by its id."""
 
 
-_SCENES: dict[int, SceneFacts] = {}
+_FACTS_BY_SCENE: dict[int, SceneFacts] = {}
 _MAX_SCENES = 32  # the cache is emptied when it contains this many scenes
 
 
 def scene_facts(scene: SceneFile) -> SceneFacts:
-    """Return the facts of a scene. They are computed once for each scene file in memory."""
-    cached = _SCENES.get(id(scene))
+    """Return the facts about a scene. They are computed once for each scene file in memory."""
+    cached = _FACTS_BY_SCENE.get(id(scene))
     if cached is None or cached.file is not scene:
-        if len(_SCENES) >= _MAX_SCENES:
-            _SCENES.clear()
-        cached = _SCENES[id(scene)] = _read_facts(scene)
+        if len(_FACTS_BY_SCENE) >= _MAX_SCENES:
+            _FACTS_BY_SCENE.clear()
+        cached = _FACTS_BY_SCENE[id(scene)] = _read_facts(scene)
     return cached
 
 
@@ -174,7 +174,7 @@ def _read_facts(scene: SceneFile) -> SceneFacts:
 
 
 def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
-    """Create the view of a frame from its ground truth."""
+    """Create a frame's view from its ground truth."""
     facts = scene_facts(scene)
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
     legible: dict[str, list[str]] = {}
@@ -204,8 +204,8 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
 def head_of(name: str) -> str:
     """Return the part of a name that identifies the kind of thing."""
     head = name.lower()
-    for mark in PART_WORDS:
-        head = head.partition(mark)[0]
+    for word in PART_WORDS:
+        head = head.partition(word)[0]
     return head
 
 
@@ -233,7 +233,7 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
 
 
 def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner in the world. An actor's box stands on its path and is not rotated."""
+    """Return the lowest and highest corners of a box in the world. An actor's box stands on its path and is not rotated."""
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
     position = path_position(instance, time_s)
@@ -246,8 +246,8 @@ def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
     """Return "moving" or "stationary". Only actors move, and only while their path advances."""
     if isinstance(instance, SceneInstance):
         return "stationary"
-    now, later = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
-    return "moving" if now and later and abs(later.walked_m - now.walked_m) > _STEP_M else "stationary"
+    now, later = path_position(instance, time_s), path_position(instance, time_s + _MOTION_STEP_S)
+    return "moving" if now and later and abs(later.walked_m - now.walked_m) > _MIN_MOTION_M else "stationary"
 
 
-_STEP_S, _STEP_M = 0.1, 0.005  # an actor that moves more than _STEP_M metres in _STEP_S seconds is moving
+_MOTION_STEP_S, _MIN_MOTION_M = 0.1, 0.005  # an actor is moving if it moves at least _MIN_MOTION_M metres in _MOTION_STEP_S seconds

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
@@ -28,10 +28,15 @@ Axis = Literal["pan", "tilt"]
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """How far to turn: in degrees, "little", "lot", "limit" (all the way), "unspecified", or the "same" as the previous turn."""
+    """How far to turn: in degrees, "little", "lot", "limit" (all the way), "unspecified", or the "same" as the previous turn.
+
+    Attributes:
+        factor: What the amount is multiplied by, as in "half as much".
+    """
 
     kind: Literal["degrees", "little", "lot", "limit", "unspecified", "same"] = "unspecified"
     degrees: float = 0.0
+    factor: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,10 +299,14 @@ class Mention:
 
 @dataclass(frozen=True, slots=True)
 class AtPlaces:
-    """Run the body at each of several presets. If ``places`` is empty, run it at every preset."""
+    """Run the body at each of several presets. If ``places`` is empty, run it at every preset.
+
+    ``is_fronted`` states that the presets are named before the body, as in "at each preset, zoom out".
+    """
 
     places: tuple[PresetRef, ...]
     body: tuple[Step, ...]
+    is_fronted: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,7 +323,8 @@ class WhichPreset:
     Attributes:
         go: Whether to go to that preset afterwards.
         any_of: Whether to report which presets show any of the objects, instead of the preset with the most.
-        yes_no: Whether the question is whether any of the presets shows any of the objects.
+        yes_no: Whether the answer is yes or no. The question is then whether the first preset shows the most, or with ``any_of``,
+            whether any of the presets shows any of the objects.
         rank: The requested place in the order: 1 for the most, 2 for the second most.
     """
 
@@ -329,10 +339,15 @@ class WhichPreset:
 
 @dataclass(frozen=True, slots=True)
 class FirstWith:
-    """Go to one preset after the other, and stay at the first that shows an object. If ``places`` is empty, try every preset."""
+    """Go to one preset after the other, and stay at the first that shows an object. If ``places`` is empty, try every preset.
+
+    Attributes:
+        last: Whether to begin with the last preset, so that the camera stays at the last one that shows an object.
+    """
 
     thing: Thing
     places: tuple[PresetRef, ...] = ()
+    last: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -352,11 +367,16 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """One number of a calculation: how many objects there are at a preset or, if ``place`` is None, in the current position."""
+    """One number of a calculation: how many objects there are at a preset or, if ``place`` is None, in the current position.
+
+    Attributes:
+        everywhere: Whether the number stands for one number at each preset.
+    """
 
     thing: Thing
     place: PresetRef | None = None
     view: View | None = None
+    everywhere: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -380,10 +400,12 @@ class RankCounts:
 
     Attributes:
         first: Whether the list begins with the kind or preset with the most ("more") or the fewest objects.
+        winner: Whether only the first is asked for ("which are there most of?").
     """
 
     parts: tuple[Tally, ...]
     first: Comparison = "more"
+    winner: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -419,7 +441,13 @@ class Forbid:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A request to report ("let me know"). It adds nothing, because every run ends with an answer."""
+    """A request to report ("let me know"). It adds nothing, because every run ends with an answer.
+
+    Attributes:
+        calculation: What to do with the previous counts: add them ("and add them up") or subtract them ("report the difference").
+    """
+
+    calculation: Literal["none", "total", "difference"] = "none"
 
 
 @dataclass(frozen=True, slots=True)

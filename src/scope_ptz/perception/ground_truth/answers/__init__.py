@@ -1,78 +1,94 @@
-"""Answer parsed questions about a view. An answer is a short English sentence, with a flag for whether the answer is known."""
+"""Answer parsed questions about a view. An answer is a short English sentence and a flag that states whether it is known."""
 
 from __future__ import annotations
 
+from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.compared_things import (
-    compare,
-    compare_count,
-    count_kinds,
-    difference,
-    how_far,
-    most_common,
-    which,
+    answer_compare,
+    answer_compare_count,
+    answer_count_kinds,
+    answer_difference,
+    answer_how_far,
+    answer_most_common,
+    answer_which,
 )
-from scope_ptz.perception.ground_truth.answers.counted_things import count, exists
-from scope_ptz.perception.ground_truth.answers.legible_text import read, text_exists
-from scope_ptz.perception.ground_truth.answers.locations import identify, kind_of, present, what, where
-from scope_ptz.perception.ground_truth.answers.ordered_things import in_order, quarter
-from scope_ptz.perception.ground_truth.answers.scene import describe, happening
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown
-from scope_ptz.perception.ground_truth.answers.values import ask
-from scope_ptz.perception.ground_truth.answers.verdicts import is_a, yes_no
-from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.counted_things import answer_count, answer_exists
+from scope_ptz.perception.ground_truth.answers.legible_text import answer_read, answer_text_exists
+from scope_ptz.perception.ground_truth.answers.locations import (
+    answer_identify,
+    answer_kind_of,
+    answer_present,
+    answer_what,
+    answer_where,
+)
+from scope_ptz.perception.ground_truth.answers.ordered_things import answer_in_order, answer_quarter
+from scope_ptz.perception.ground_truth.answers.scene import answer_describe, answer_happening
+from scope_ptz.perception.ground_truth.answers.stated_facts import answer_stated_fact
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.values import answer_attribute
+from scope_ptz.perception.ground_truth.answers.verdicts import answer_is_a, answer_yes_no
 from scope_ptz.perception.ground_truth.view import View
 
 __all__ = ["TruthAnswer", "answer"]
 
 
 def answer(view: View, question: tree.Question | None) -> TruthAnswer:
-    """Return the answer to a parsed question. The question is None if the parser did not understand it."""
+    """Return the answer to a parsed question; ``question`` is None if the parser did not understand the text."""
     match question:
         case tree.Exists():
-            return exists(view, question)
+            return answer_exists(view, question)
         case tree.Count():
-            return count(view, question)
+            return answer_count(view, question)
         case tree.CountKinds():
-            return count_kinds(view, question)
+            return answer_count_kinds(view, question)
         case tree.YesNo():
-            return yes_no(view, question)
+            return answer_yes_no(view, question)
         case tree.IsA():
-            return is_a(view, question)
+            return answer_is_a(view, question)
         case tree.Ask():
-            return ask(view, question)
-        case tree.Read():
-            return read(view, question)
-        case tree.TextExists():
-            return text_exists(view, question)
+            return answer_attribute(view, question)
+        case tree.Read() | tree.TextExists() | tree.Price() | tree.Time():
+            return _answer_about_text(view, question)
         case tree.Where():
-            return where(view, question)
+            return answer_where(view, question)
         case tree.Quarter():
-            return quarter(view, question)
+            return answer_quarter(view, question)
         case tree.InOrder():
-            return in_order(view, question)
+            return answer_in_order(view, question)
         case tree.Present():
-            return present(view, question)
+            return answer_present(view, question)
         case tree.KindOf():
-            return kind_of(view, question)
+            return answer_kind_of(view, question)
         case tree.What():
-            return what(view, question)
+            return answer_what(view, question)
         case tree.Identify():
-            return identify(view, question)
+            return answer_identify(view, question)
         case tree.Which():
-            return which(view, question)
+            return answer_which(view, question)
         case tree.HowFar():
-            return how_far(view, question)
+            return answer_how_far(view, question)
         case tree.Compare():
-            return compare(view, question)
+            return answer_compare(view, question)
         case tree.CompareCount():
-            return compare_count(view, question)
+            return answer_compare_count(view, question)
         case tree.Difference():
-            return difference(view, question)
+            return answer_difference(view, question)
         case tree.MostCommon():
-            return most_common(view, question)
+            return answer_most_common(view, question)
         case tree.Describe():
-            return describe(view, question)
+            return answer_describe(view, question)
         case tree.Happening():
-            return happening(view)
+            return answer_happening(view)
         case None:
-            return unknown("I cannot tell: I did not understand the question")
+            return unknown_answer("I cannot tell: I did not understand the question")
+
+
+def _answer_about_text(view: View, question: tree.Read | tree.TextExists | tree.Price | tree.Time) -> TruthAnswer:
+    """Return the answer to a question about a text, or about a fact that only texts state."""
+    match question:
+        case tree.Read():
+            return answer_read(view, question)
+        case tree.TextExists():
+            return answer_text_exists(view, question)
+        case _:
+            return answer_stated_fact(view, question)

@@ -1,14 +1,29 @@
-"""Answers to comparison questions: which of several, how far, more or fewer, and the most common."""
+"""Answer comparison questions: which of several, how far, more or fewer, and the most common."""
 
 from __future__ import annotations
 
 from collections import Counter
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, EQUAL, FIRST_OF_SEVERAL, definite, none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, metres, name, place, reply, unknown
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.restating import (
+    COMPARATIVES,
+    EQUAL_WORDS,
+    FIRST_OF_SEVERAL,
+    definite_phrase,
+    none_in_view,
+    noun_phrase,
+)
+from scope_ptz.perception.ground_truth.answers.thing_names import (
+    TruthAnswer,
+    coloured_name,
+    distance_words,
+    is_or_are,
+    known_answer,
+    position_words,
+    unknown_answer,
+)
 from scope_ptz.perception.ground_truth.answers.values import value_of
-from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.thing_search import find
@@ -18,104 +33,117 @@ _EQUALITY_TOLERANCE = 0.02
 """Maximum relative difference between values that are reported as equal."""
 
 
-def which(view: View, question: tree.Which) -> TruthAnswer:
+def answer_which(view: View, question: tree.Which) -> TruthAnswer:
     """Answer which of several things ranks first in a comparison."""
     options = question.options.phrases
     if len(options) == 1:
         matches = sorted(find(view, question.options), key=rank_key(question.key))
         if not matches:
-            return unknown(f"I cannot tell: {none_of(view, question.options)}")
-        return reply(f"it is the {name(matches[0])} {place(matches[0])}, about {metres(matches[0].distance_m)} away")
+            return unknown_answer(f"I cannot tell: {none_in_view(view, question.options)}")
+        return known_answer(
+            f"it is the {coloured_name(matches[0])} {position_words(matches[0])}, "
+            f"about {distance_words(matches[0].distance_m)} away"
+        )
     things: list[Thing] = []
     for phrase in options:
         best = [t for t in find(view, tree.Description((phrase,))) if t not in things]
         if not best:
-            return unknown(f"I cannot tell: {none_of(view, tree.Description((phrase,)))}")
+            return unknown_answer(f"I cannot tell: {none_in_view(view, tree.Description((phrase,)))}")
         things.append(best[0])
     ranked = sorted(zip(things, options, strict=True), key=lambda pair: rank_key(question.key)(pair[0]))
     (first, phrase), (second, other) = ranked[:2]
-    if _equal(question.key, first, second):
-        return reply(f"{_the(view, phrase)} and {_the(view, other)} are about {EQUAL[question.key]}")
+    if _are_equal(question.key, first, second):
+        return known_answer(
+            f"{_definite_phrase(view, phrase)} and {_definite_phrase(view, other)} are about {EQUAL_WORDS[question.key]}"
+        )
     detail = ""
     if question.key in {"nearest", "furthest"}:
-        near, far = metres(first.distance_m), metres(second.distance_m)
-        detail = f": it is about {near} away, {_the(view, other)} about {far}" if near != far else ""
+        near, far = distance_words(first.distance_m), distance_words(second.distance_m)
+        detail = f": it is about {near} away, {_definite_phrase(view, other)} about {far}" if near != far else ""
     rank = COMPARATIVES if len(ranked) == 2 else FIRST_OF_SEVERAL
-    return reply(f"{_the(view, phrase)} is {rank[question.key]}{detail}")
+    return known_answer(f"{_definite_phrase(view, phrase)} is {rank[question.key]}{detail}")
 
 
-def _the(view: View, phrase: tree.Phrase) -> str:
-    return definite(view, tree.Description((phrase,)))
+def _definite_phrase(view: View, phrase: tree.Phrase) -> str:
+    return definite_phrase(view, tree.Description((phrase,)))
 
 
-def _equal(key: tree.OrderKey, a: Thing, b: Thing) -> bool:
+def _are_equal(key: tree.OrderKey, a: Thing, b: Thing) -> bool:
     x, y = (abs(rank_key(key)(t)) for t in (a, b))
     return abs(x - y) <= _EQUALITY_TOLERANCE * max(x, y, 1e-9)
 
 
-def compare(view: View, question: tree.Compare) -> TruthAnswer:
+def answer_compare(view: View, question: tree.Compare) -> TruthAnswer:
     """Answer whether the first thing ranks before the second in a comparison, as in "is the van nearer than the bus?"."""
     for description in (question.first, question.second):
         if not find(view, description):
-            return unknown(f"I cannot tell: {none_of(view, description)}")
+            return unknown_answer(f"I cannot tell: {none_in_view(view, description)}")
     first = find(view, question.first)[0]
     second = next((t for t in find(view, question.second) if t is not first), first)
     key = rank_key(question.key)
-    statement = f"{definite(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {definite(view, question.second)}"
+    statement = (
+        f"{definite_phrase(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {definite_phrase(view, question.second)}"
+    )
     if question.key in {"nearest", "furthest"}:
-        statement += f" (about {metres(first.distance_m)} against {metres(second.distance_m)})"
-    ahead = key(first) < key(second) and not _equal(question.key, first, second)
-    return reply(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
+        statement += f" (about {distance_words(first.distance_m)} against {distance_words(second.distance_m)})"
+    ahead = key(first) < key(second) and not _are_equal(question.key, first, second)
+    return known_answer(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
 
 
-def how_far(view: View, question: tree.HowFar) -> TruthAnswer:
+def answer_how_far(view: View, question: tree.HowFar) -> TruthAnswer:
     """Answer how far a thing is from the camera, or from another thing, in metres."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
-            return unknown(f"I cannot tell: {none_of(view, description)}")
+            return unknown_answer(f"I cannot tell: {none_in_view(view, description)}")
     first = find(view, question.what)
     if question.other is None:
         if len(first) > 1 and not any(p.order for p in question.what.phrases):
             low, high = (limit(t.distance_m for t in first) for limit in (min, max))
-            many = noun(view, question.what, many=True)
-            return reply(f"there are {len(first)} {many}, from about {metres(low)} to about {metres(high)} away")
-        return reply(f"the {name(first[0])} is about {metres(first[0].distance_m)} away")
+            many = noun_phrase(view, question.what, many=True)
+            return known_answer(
+                f"there are {len(first)} {many}, from about {distance_words(low)} to about {distance_words(high)} away"
+            )
+        return known_answer(f"the {coloured_name(first[0])} is about {distance_words(first[0].distance_m)} away")
     second = [t for t in find(view, question.other) if t is not first[0]]
     if not second:
-        return unknown(f"I cannot tell: I can see only one {noun(view, question.other)}")
+        return unknown_answer(f"I cannot tell: I can see only one {noun_phrase(view, question.other)}")
     gap = min(first[0].gap_m(t) for t in second)
-    return reply(f"the {name(first[0])} is about {metres(gap)} from {definite(view, question.other)}")
+    return known_answer(
+        f"the {coloured_name(first[0])} is about {distance_words(gap)} from {definite_phrase(view, question.other)}"
+    )
 
 
-def compare_count(view: View, question: tree.CompareCount) -> TruthAnswer:
-    """Answer which of two kinds is more or less frequent, or whether a stated comparison of their numbers is true."""
+def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer:
+    """Answer which of two kinds is more or less frequent, or whether a stated comparison between their numbers is true."""
     if not question.second.phrases:
-        return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
+        return unknown_answer("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
         return _most_of(view, question)
     a, b = len(find(view, question.first)), len(find(view, question.second))
-    first, second = noun(view, question.first, many=True), noun(view, question.second, many=True)
-    counts = f"{english.counted(a, noun(view, question.first))} and {english.counted(b, noun(view, question.second))}"
+    first, second = noun_phrase(view, question.first, many=True), noun_phrase(view, question.second, many=True)
+    counts = f"{english.counted(a, noun_phrase(view, question.first))} and {english.counted(b, noun_phrase(view, question.second))}"
     if question.which:
         ahead = (a > b) == (question.sense == "more")
         verdict = "there are equally many" if a == b else f"there are {question.sense} {first if ahead else second}"
-        return reply(f"{verdict}: {counts}")
+        return known_answer(f"{verdict}: {counts}")
     yes = {"more": a > b, "fewer": a < b, "same": a == b}[question.sense]
     comparative = {"more": "more", "fewer": "fewer"}.get(question.sense)
     statement = f"{comparative} {first} than {second}" if comparative else f"as many {first} as {second}"
-    return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
+    return known_answer(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
 
 
-def difference(view: View, question: tree.Difference) -> TruthAnswer:
+def answer_difference(view: View, question: tree.Difference) -> TruthAnswer:
     """Answer how many more things of one kind there are than of another."""
     first, second = (len(find(view, what)) for what in (question.first, question.second))
     more, fewer = (question.first, question.second)
-    a, b = english.counted(first, noun(view, more)), english.counted(second, noun(view, fewer))
+    a, b = english.counted(first, noun_phrase(view, more)), english.counted(second, noun_phrase(view, fewer))
     if first == second:
-        return reply(f"there are equally many: {a} and {b}, so the difference is 0")
+        return known_answer(f"there are equally many: {a} and {b}, so the difference is 0")
     number, sense = abs(first - second), "more" if first > second else "fewer"
-    kind = noun(view, more, many=number != 1)
-    return reply(f"there {is_or_are(number)} {number} {sense} {kind} than {noun(view, fewer, many=True)}: {a} and {b}")
+    kind = noun_phrase(view, more, many=number != 1)
+    return known_answer(
+        f"there {is_or_are(number)} {number} {sense} {kind} than {noun_phrase(view, fewer, many=True)}: {a} and {b}"
+    )
 
 
 def _most_of(view: View, question: tree.CompareCount) -> TruthAnswer:
@@ -123,41 +151,41 @@ def _most_of(view: View, question: tree.CompareCount) -> TruthAnswer:
     kinds = [tree.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
     counts = [len(find(view, kind)) for kind in kinds]
     best = (min if question.sense == "fewer" else max)(counts)
-    first = [noun(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
-    listed = english.listing([english.counted(count, noun(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
+    first = [noun_phrase(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
+    listed = english.listing([english.counted(count, noun_phrase(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
     sense = "fewest" if question.sense == "fewer" else "most"
     verdict = f"there are {sense} {first[0]}" if len(first) == 1 else f"there are equally many {english.listing(first)}"
-    return reply(f"{verdict}: {listed}")
+    return known_answer(f"{verdict}: {listed}")
 
 
-def count_kinds(view: View, question: tree.CountKinds) -> TruthAnswer:
+def answer_count_kinds(view: View, question: tree.CountKinds) -> TruthAnswer:
     """Answer how many different colours or kinds there are among things."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
     many = "" if len(values) == 1 else "s"
     anything = question.what.phrases[0].words == ("thing",)
-    of = "" if anything else f" of {noun(view, question.what)}"
+    of = "" if anything else f" of {noun_phrase(view, question.what)}"
     listed = f": {english.listing(list(values))}" if values else ""
-    return reply(f"I can see {len(values)} {'colour' if colour else 'kind'}{many}{of}{listed}")
+    return known_answer(f"I can see {len(values)} {'colour' if colour else 'kind'}{many}{of}{listed}")
 
 
 def _kind(thing: Thing, colour: bool) -> str | None:
     return colour_of(thing) if colour else str(thing.attributes.get("kind", thing.category))
 
 
-def most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
+def answer_most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
     """Answer with the most or least frequent colour or kind."""
     matches = find(view, question.what)
     if not matches:
-        return unknown(f"I cannot tell: {none_of(view, question.what)}")
+        return unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")
     colour = question.attribute == ("colour",)
     values = [value_of(t, ("colour",)) if colour else t.category for t in matches]
     counts = Counter(v for v in values if v is not None)
     if not counts:
-        return unknown("I cannot tell: the scene does not say")
+        return unknown_answer("I cannot tell: the scene does not say")
     target = (min if question.least else max)(counts.values())
     best = [v for v, n in counts.items() if n == target]
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"
     if len(best) > 1:
-        return reply(f"{english.listing(best)} are equally common ({target} each)")
-    return reply(f"the {kind} is {best[0]}: {target} of {len(matches)} {noun(view, question.what, many=True)}")
+        return known_answer(f"{english.listing(best)} are equally common ({target} each)")
+    return known_answer(f"the {kind} is {best[0]}: {target} of {len(matches)} {noun_phrase(view, question.what, many=True)}")

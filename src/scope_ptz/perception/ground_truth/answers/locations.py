@@ -1,53 +1,65 @@
-"""Answers to questions of the forms "where is ...?" and "what is ...?"."""
+"""Answer questions of the forms "where is ...?" and "what is ...?"."""
 
 from __future__ import annotations
 
 from collections import Counter
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
-from scope_ptz.perception.ground_truth.answers.legible_text import read
-from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, none_of, noun, plural, predicate_words
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
+from scope_ptz.perception.ground_truth.answers.legible_text import answer_read
+from scope_ptz.perception.ground_truth.answers.restating import (
+    definite_as_asked,
+    is_plural,
+    none_in_view,
+    noun_phrase,
+    predicate_words,
+    words_after_noun,
+)
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
-    metres,
-    name,
-    names,
-    place,
-    reply,
-    things_with_places,
-    unknown,
+    coloured_name,
+    distance_words,
+    known_answer,
+    list_names,
+    names_with_positions,
+    position_words,
+    unknown_answer,
 )
-from scope_ptz.perception.ground_truth.answers.values import UNSEEN, fact_in_view, value_of
+from scope_ptz.perception.ground_truth.answers.values import UNANSWERABLE_SUBJECTS, answer_fact_in_view, value_of
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
-from scope_ptz.perception.ground_truth.language import question_tree as tree
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-MAX_PLACED = 3
-"""Maximum number of things to locate individually. More things are counted by region of the frame."""
+MAX_LOCATED = 3
+"""Maximum number of things to locate individually. If there are more, they are counted by region of the frame."""
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
-def where(view: View, question: tree.Where) -> TruthAnswer:
-    """Answer where the things that match a description are."""
+def answer_where(view: View, question: tree.Where) -> TruthAnswer:
+    """Answer a question about where the things that match a description are."""
     matches = find(view, question.what)
     if not matches:
-        return reply(none_of(view, question.what))
+        return known_answer(none_in_view(view, question.what))
     if len(matches) == 1:
         thing = matches[0]
-        return reply(f"the {name(thing)} is {place(thing)}, about {metres(thing.distance_m)} away{neighbour(view, thing)}")
-    if len(matches) > MAX_PLACED:
-        counts_by_place = Counter(place(t) for t in matches)
+        return known_answer(
+            f"the {coloured_name(thing)} is {position_words(thing)}, "
+            f"about {distance_words(thing.distance_m)} away{neighbour_words(view, thing)}"
+        )
+    if len(matches) > MAX_LOCATED:
+        counts_by_place = Counter(position_words(t) for t in matches)
         places = english.listing([f"{n} {location}" for location, n in counts_by_place.items()])
     else:
-        places = english.listing([f"{english.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in matches])
-    return reply(f"there are {len(matches)} {noun(view, question.what, many=True)}: {places}")
+        places = english.listing(
+            [f"{english.article(coloured_name(t))} {position_words(t)} about {distance_words(t.distance_m)} away" for t in matches]
+        )
+    return known_answer(f"there are {len(matches)} {noun_phrase(view, question.what, many=True)}: {places}")
 
 
-def neighbour(view: View, thing: Thing) -> str:
-    """Return a thing's relation to the largest thing near it or in line with it (", next to the barrier"), or an empty string."""
+def neighbour_words(view: View, thing: Thing) -> str:
+    """Return a thing's relation to the largest thing near or in line with it (", next to the barrier"), or an empty string."""
     others = [
         t
         for t in view.top_level()
@@ -57,11 +69,11 @@ def neighbour(view: View, thing: Thing) -> str:
     if nearby_things:
         best = max(nearby_things, key=lambda t: t.sighting.pixels)
         side = _depth_side(view, thing, best)
-        return f", {f'just {side}' if side else 'next to'} the {name(best)}"
+        return f", {f'just {side}' if side else 'next to'} the {coloured_name(best)}"
     aligned = [t for t in others if _depth_side(view, thing, t)]
     if aligned:
         best = max(aligned, key=lambda t: t.sighting.pixels)
-        return f", {_depth_side(view, thing, best)} the {name(best)}"
+        return f", {_depth_side(view, thing, best)} the {coloured_name(best)}"
     return ""
 
 
@@ -72,26 +84,26 @@ def _depth_side(view: View, thing: Thing, other: Thing) -> str:
     return "in front of" if relation_holds(view, thing, "front", other) else ""
 
 
-def what(view: View, question: tree.What) -> TruthAnswer:
-    """Answer with the names of all things that match."""
-    if _is_a_list(question.what):
-        return _listed_in_question(view, question)
+def answer_what(view: View, question: tree.What) -> TruthAnswer:
+    """Answer with the names of all matching things."""
+    if _refers_to_list(question.what):
+        return _answer_listed(view, question)
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
-        return reply(none_of(view, missing))
-    description = with_tests(question.what, question.tests)
+        return known_answer(none_in_view(view, missing))
+    description = add_tests(question.what, question.tests)
     matches = find(view, description)
-    bearer = _bearer(question)
+    bearer = _sign_in_question(question)
     bearers = [] if bearer is None else find(view.for_reading(), bearer)
     if bearers and (not matches or any("sign" in thing.concepts and thing.texts for thing in bearers)):
-        return read(view, tree.Read(bearer))
+        return answer_read(view, tree.Read(bearer))
     if not matches:
-        return _no_match(view, question, description)
-    return things_in_words(view, question.tests, _by_nearness(view, question.tests, matches))
+        return _answer_no_match(view, question, description)
+    return answer_matches(view, question.tests, _sort_by_nearness(view, question.tests, matches))
 
 
-def _bearer(question: tree.What) -> tree.Description | None:
-    """Return the sign of "what is on the sign?"; None for other questions."""
+def _sign_in_question(question: tree.What) -> tree.Description | None:
+    """Return the sign that "what is on the sign?" refers to; None for other questions."""
     match question:
         case tree.What(
             what=tree.Description(phrases=(tree.Phrase(words=("thing",)),)), tests=(tree.Relation(kind="on", other=other),)
@@ -100,86 +112,96 @@ def _bearer(question: tree.What) -> tree.Description | None:
     return None
 
 
-def _is_a_list(description: tree.Description) -> bool:
+def _refers_to_list(description: tree.Description) -> bool:
     """Return whether a description ("the following", "these") does not name a thing but refers to a list after it."""
     words = {word for phrase in description.phrases for word in phrase.words}
     return bool(words) and words <= {"following", "these", "those", "them"}
 
 
-def _listed_in_question(view: View, question: tree.What) -> TruthAnswer:
+def _answer_listed(view: View, question: tree.What) -> TruthAnswer:
     """Answer which of the things that the question lists are in view."""
     tests = [test for asked in question.tests for test in (asked.tests if isinstance(asked, tree.Any) else (asked,))]
     listed = tuple(tree.Phrase(test.words) for test in tests if isinstance(test, tree.Is))
     if not listed:
-        return unknown("I cannot tell: I do not know which ones are meant")
+        return unknown_answer("I cannot tell: I do not know which ones are meant")
     matches = [thing for phrase in listed for thing in find(view, tree.Description((phrase,)))[:1]]
-    return reply(f"I can see {names(matches)}" if matches else none_of(view, tree.Description(listed)))
+    return known_answer(f"I can see {list_names(matches)}" if matches else none_in_view(view, tree.Description(listed)))
 
 
-def _no_match(view: View, question: tree.What, description: tree.Description) -> TruthAnswer:
-    """Answer if no thing matches: with a fact that the scene states ("which lane is closed?"), otherwise that nothing matches."""
+def _answer_no_match(view: View, question: tree.What, description: tree.Description) -> TruthAnswer:
+    """Answer if nothing matches: with a fact that the scene states ("which lane is closed?"), otherwise that nothing matches."""
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
-        return fact_in_view(view, (*question.what.phrases[0].words, *state_words))
+        return answer_fact_in_view(view, (*question.what.phrases[0].words, *state_words))
     if description.phrases[0].words == ("thing",):
-        return reply(f"I can see nothing {english.listing([after_noun(view, t) for t in question.tests])}")
-    return reply(none_of(view, description))
+        return known_answer(f"I can see nothing {english.listing([words_after_noun(view, t) for t in question.tests])}")
+    return known_answer(none_in_view(view, description))
 
 
-def _by_nearness(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> list[Thing]:
-    """Sort things by their distance to the things that the relations refer to, if there are any."""
+def _sort_by_nearness(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> list[Thing]:
+    """Sort things by their distance from the things that the relations refer to, if there are any."""
     anchors = [a for t in tests if isinstance(t, tree.Relation) for a in find(view, t.other)]
     return sorted(matches, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else matches
 
 
-def things_in_words(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> TruthAnswer:
+def answer_matches(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> TruthAnswer:
     """Answer with things and their places: "a white van and 2 traffic cones are behind the barrier"."""
     rest = tuple(t for t in tests if not isinstance(t, tree.Order))
     if len(rest) < len(tests):
-        return reply(f"it is the {name(matches[0])} {place(matches[0])}, about {metres(matches[0].distance_m)} away")
+        return known_answer(
+            f"it is the {coloured_name(matches[0])} {position_words(matches[0])}, "
+            f"about {distance_words(matches[0].distance_m)} away"
+        )
     if not rest:
-        return reply(things_with_places(matches) if len(matches) <= 3 else f"I can see {names(matches)}")
-    location = f", {place(matches[0])}" if len(matches) == 1 and not any(isinstance(t, tree.Region) for t in rest) else ""
-    return reply(f"{names(matches)} {predicate_words(view, rest, len(matches))}{location}")
+        return known_answer(names_with_positions(matches) if len(matches) <= 3 else f"I can see {list_names(matches)}")
+    location = f", {position_words(matches[0])}" if len(matches) == 1 and not any(isinstance(t, tree.Region) for t in rest) else ""
+    return known_answer(f"{list_names(matches)} {predicate_words(view, rest, len(matches))}{location}")
 
 
-def present(view: View, question: tree.Present) -> TruthAnswer:
+def answer_present(view: View, question: tree.Present) -> TruthAnswer:
     """Answer which of the listed things are in view, in the words of the question."""
     kinds = [tree.Description((phrase,)) for phrase in question.options.phrases]
-    seen = [_any_of(view, kind) for kind in kinds if find(view, kind)]
+    seen = [_kind_with_article(view, kind) for kind in kinds if find(view, kind)]
     missing = [kind for kind in kinds if not find(view, kind)]
     if not seen:
-        return reply(none_of(view, question.options))
-    rest = f", but no {english.listing([noun(view, kind, plural(kind)) for kind in missing], 'or')}" if missing else ""
-    return reply(f"I can see {english.listing(seen)}{rest}")
+        return known_answer(none_in_view(view, question.options))
+    rest = f", but no {english.listing([noun_phrase(view, kind, is_plural(kind)) for kind in missing], 'or')}" if missing else ""
+    return known_answer(f"I can see {english.listing(seen)}{rest}")
 
 
-def _any_of(view: View, kind: tree.Description) -> str:
-    """Return a kind of thing as the question names it: "a clock", "some clocks"."""
-    return f"some {noun(view, kind, many=True)}" if plural(kind) else english.article(noun(view, kind))
+def _kind_with_article(view: View, kind: tree.Description) -> str:
+    """Return a kind of thing in the words of the question: "a clock", "some clocks"."""
+    return f"some {noun_phrase(view, kind, many=True)}" if is_plural(kind) else english.article(noun_phrase(view, kind))
 
 
-def kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
-    """Answer what kind of thing something is: with the kind that the scene states, otherwise with its name."""
+def answer_kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
+    """Answer what kind of thing something is, with the kind that the scene states or else with its name."""
     matches = find(view, question.what)
     kinds = Counter(kind for t in matches if (kind := value_of(t, ("kind",))) is not None)
     if kinds.total() < len(matches) or not matches:
-        return what(view, tree.What(question.what))
+        return answer_what(view, tree.What(question.what))
     if len(matches) == 1:
-        return reply(f"{as_asked(view, question.what)} is {english.article(next(iter(kinds)))}")
-    return reply(f"I can see {english.listing([english.counted(count, kind) for kind, count in kinds.items()])}")
+        return known_answer(f"{definite_as_asked(view, question.what)} is {english.article(next(iter(kinds)))}")
+    return known_answer(f"I can see {english.listing([english.counted(count, kind) for kind, count in kinds.items()])}")
 
 
-def identify(view: View, question: tree.Identify) -> TruthAnswer:
+def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
     phrase = question.what.phrases[0]
-    fact = fact_in_view(view, phrase.words)
+    fact = answer_fact_in_view(view, phrase.words)
     carried = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
     if fact.known and carried and phrase.order is None:
         return fact
     matches = find(view, question.what)
     if not matches:
-        return fact if fact.known or UNSEEN & set(phrase.words) else unknown(f"I cannot tell: {none_of(view, question.what)}")
+        return (
+            fact
+            if fact.known or UNANSWERABLE_SUBJECTS & set(phrase.words)
+            else unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")
+        )
     if len(matches) == 1:
-        return reply(f"it is {english.article(name(matches[0]))} {place(matches[0])}, about {metres(matches[0].distance_m)} away")
-    return reply(f"there are {len(matches)}: {names(matches)}")
+        return known_answer(
+            f"it is {english.article(coloured_name(matches[0]))} {position_words(matches[0])}, "
+            f"about {distance_words(matches[0].distance_m)} away"
+        )
+    return known_answer(f"there are {len(matches)}: {list_names(matches)}")

@@ -1,4 +1,4 @@
-"""Convert parsed descriptions and tests back to words, so that an answer shows how the question was understood."""
+"""Convert parsed descriptions and tests back to words, so that an answer shows how its question was understood."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
-from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.numerals import ORDINALS
 from scope_ptz.perception.ground_truth.relations import BACKDROP
-from scope_ptz.perception.ground_truth.thing_search import noun_of
+from scope_ptz.perception.ground_truth.thing_search import split_after_noun
 from scope_ptz.perception.ground_truth.view import View
 
 _PRONOUNS = {
@@ -35,7 +36,7 @@ FIRST_OF_SEVERAL = {
     "smallest": "the smallest", "tallest": "the tallest", "widest": "the widest",
     "looks biggest": "the biggest in the picture", "looks smallest": "the smallest in the picture",
 }  # fmt: skip
-EQUAL = {
+EQUAL_WORDS = {
     "left": "equally far to the left", "right": "equally far to the right", "top": "equally high in the picture",
     "bottom": "equally low in the picture", "nearest": "equally far away", "furthest": "equally far away",
     "biggest": "the same size", "smallest": "the same size", "tallest": "the same height", "widest": "equally wide",
@@ -48,104 +49,114 @@ _RELATIONS = {
 _FROM_SIDE = {"left": "from the left", "right": "from the right", "top": "from the top", "bottom": "from the bottom"}
 
 
-def plural(description: tree.Description) -> bool:
-    """Return whether a description is in the plural."""
-    return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in _head(p.words)[-1:])
+def is_plural(description: tree.Description) -> bool:
+    """Return whether a description is plural."""
+    return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in _head_words(p.words)[-1:])
 
 
-def _head(words: Sequence[str]) -> Sequence[str]:
+def _head_words(words: Sequence[str]) -> Sequence[str]:
     """Return the words before "for" or "of": "price card" for "price card for roses"."""
     end = next((i for i, word in enumerate(words) if word in {"for", "of"} and i), len(words))
     return words[:end]
 
 
-def noun(view: View, description: tree.Description, many: bool = False) -> str:
+def noun_phrase(view: View, description: tree.Description, many: bool = False) -> str:
     """Return a description in words, without articles: "red cars behind the barrier"."""
     several = len(description.phrases) > 1
-    return english.listing([_phrase(view, p, many or (several and plural(tree.Description((p,))))) for p in description.phrases])
+    return english.listing(
+        [_phrase_words(view, p, many or (several and is_plural(tree.Description((p,))))) for p in description.phrases]
+    )
 
 
-def definite(view: View, description: tree.Description, many: bool = False) -> str:
+def definite_phrase(view: View, description: tree.Description, many: bool = False) -> str:
     """Return a description with definite articles: "the red car", "the van and the lorry"."""
     if len(description.phrases) == 1:
-        return f"the {noun(view, description, many)}"
-    return english.listing([f"the {_phrase(view, p, plural(tree.Description((p,))))}" for p in description.phrases])
+        words = noun_phrase(view, description, many)
+        return words if words.split()[-1].isdigit() and not description.phrases[0].tests else f"the {words}"  # "dock 6"
+    return english.listing([f"the {_phrase_words(view, p, is_plural(tree.Description((p,))))}" for p in description.phrases])
 
 
-def referred(view: View, description: tree.Description) -> str:
-    """Return a description with the articles of the question: "the van", "a white helmet", "grey pipes"."""
+def phrase_as_asked(view: View, description: tree.Description) -> str:
+    """Return a description with the question's own articles: "the van", "a white helmet", "grey pipes"."""
     return english.listing([_with_article(view, phrase) for phrase in description.phrases])
 
 
 def _with_article(view: View, phrase: tree.Phrase) -> str:
-    words = _phrase(view, phrase, plural(tree.Description((phrase,))))
+    words = _phrase_words(view, phrase, is_plural(tree.Description((phrase,))))
     return english.article(words) if phrase.article == "a" else f"the {words}" if phrase.article == "the" else words
 
 
-def as_asked(view: View, description: tree.Description) -> str:
+def definite_as_asked(view: View, description: tree.Description) -> str:
     """Return a description with definite articles, in the singular or plural as in the question."""
-    return definite(view, description, plural(description))
+    return definite_phrase(view, description, is_plural(description))
 
 
-def _phrase(view: View, phrase: tree.Phrase, many: bool) -> str:
-    head, after = noun_of(view, phrase.words)
+def _phrase_words(view: View, phrase: tree.Phrase, many: bool) -> str:
+    head, after = split_after_noun(view, phrase.words)
+    if len(head) > 1 and head[0] in _PRONOUNS and head[0] != "traffic":  # "anyone buying bread"
+        head, after = head[:1], (*head[1:], *after)
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
-        return " ".join([*_ranked(view, phrase, " ".join(core)), *after, *_tests(view, phrase)])
+        return " ".join([*_ranked_words(view, phrase, " ".join(core)), *after, *_test_words(view, phrase)])
     shown = english.plural(" ".join(core)) if many and not (after and english.is_plural(after[-1])) else " ".join(core)
-    return " ".join([shown, *after, *_tests(view, phrase)])
+    return " ".join([shown, *after, *_test_words(view, phrase)])
 
 
-def _tests(view: View, phrase: tree.Phrase) -> list[str]:
-    return [words for words in (after_noun(view, t) for t in phrase.tests) if words]
+def _test_words(view: View, phrase: tree.Phrase) -> list[str]:
+    return [words for words in (words_after_noun(view, t) for t in phrase.tests) if words]
 
 
-def _ranked(view: View, phrase: tree.Phrase, core: str) -> list[str]:
-    nth = {None: "", -1: "last"}.get(phrase.ordinal, f"{phrase.ordinal}{english.ordinal_suffix(phrase.ordinal or 0)}")
+def _ranked_words(view: View, phrase: tree.Phrase, core: str) -> list[str]:
+    nth = "" if phrase.ordinal is None else "last" if phrase.ordinal == -1 else _ordinal_word(phrase.ordinal)
     if phrase.order is None:
         return [nth, core]
     if phrase.order.reference is not None:
-        return [x for x in (nth, core, SUPERLATIVES[phrase.order.key], "to", as_asked(view, phrase.order.reference)) if x]
+        return [x for x in (nth, core, SUPERLATIVES[phrase.order.key], "to", definite_as_asked(view, phrase.order.reference)) if x]
     if nth and phrase.order.key in _FROM_SIDE:
         return [nth, core, _FROM_SIDE[phrase.order.key]]
     return [x for x in (nth, SUPERLATIVES[phrase.order.key], core) if x]
 
 
-def after_noun(view: View, test: tree.Test) -> str:
+def _ordinal_word(number: int) -> str:
+    """Return an ordinal: up to the tenth as a word, otherwise in digits."""
+    return next((word for word, value in ORDINALS.items() if value == number), f"{number}{english.ordinal_suffix(number)}")
+
+
+def words_after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
         case tree.Has(what=what, worn=worn):
             carried = any(p.words[-1] in _PRONOUNS for p in what.phrases)
-            return f"{'wearing' if worn else 'carrying' if carried else 'with'} {_items(what)}"
+            return f"{'wearing' if worn else 'carrying' if carried else 'with'} {_item_phrases(what)}"
         case tree.Says(words=words):
             return f'saying "{" ".join(words).upper()}"' if words else "with text"
         case tree.Not(test=tree.Has(what=what)):
-            return f"without {_items(what)}"
+            return f"without {_item_phrases(what)}"
         case tree.Not(test=tree.Any(tests=tests)):
-            return f"other than {english.listing([after_noun(view, t) for t in tests])}"
+            return f"other than {english.listing([words_after_noun(view, t) for t in tests])}"
         case tree.Not(test=inner):
-            return f"not {after_noun(view, inner)}"
+            return f"not {words_after_noun(view, inner)}"
         case tree.Any(tests=tests):
-            return english.listing([after_noun(view, t) for t in tests], "or")
+            return english.listing([words_after_noun(view, t) for t in tests], "or")
         case tree.Order(key=key, reference=reference):
-            return f"{SUPERLATIVES[key]} to {as_asked(view, reference)}" if reference else SUPERLATIVES[key]
+            return f"{SUPERLATIVES[key]} to {definite_as_asked(view, reference)}" if reference else SUPERLATIVES[key]
         case _:
-            return _plain(view, test)
+            return _plain_test_words(view, test)
 
 
-def _plain(view: View, test: tree.Test) -> str:
+def _plain_test_words(view: View, test: tree.Test) -> str:
     match test:
         case tree.Relation(kind=kind, other=other, preposition=preposition):
-            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {referred(view, other)}"
+            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {phrase_as_asked(view, other)}"
         case tree.Within(metres=metres, other=other, beyond=beyond):
-            of = f" of {referred(view, other)}" if other else ""
+            of = f" of {phrase_as_asked(view, other)}" if other else ""
             return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
         case tree.Between(first=first, second=second):
-            return f"between {referred(view, first)}" + ("" if first == second else f" and {referred(view, second)}")
+            return f"between {phrase_as_asked(view, first)}" + ("" if first == second else f" and {phrase_as_asked(view, second)}")
         case tree.Region(sides=sides, half=half):
             return region_words(sides, half)
         case tree.Measured(key=key, other=other):
-            return f"{COMPARATIVES[key]} than {referred(view, other)}"
+            return f"{COMPARATIVES[key]} than {phrase_as_asked(view, other)}"
         case tree.Faces(side=side):
             return f"facing {side}"
         case tree.Is(words=words):
@@ -154,12 +165,12 @@ def _plain(view: View, test: tree.Test) -> str:
             return ""
 
 
-def _items(what: tree.Description, count: int = 1) -> str:
-    """Return parts or clothes with their articles. Several people wear "helmets", and one person wears "a helmet"."""
-    return english.listing([_item(" ".join(p.words), p.words[-1] in _PRONOUNS, count) for p in what.phrases])
+def _item_phrases(what: tree.Description, count: int = 1) -> str:
+    """Return parts or clothes with their articles: "helmets" for several people, "a helmet" for one person."""
+    return english.listing([_item_phrase(" ".join(p.words), p.words[-1] in _PRONOUNS, count) for p in what.phrases])
 
 
-def _item(words: str, is_pronoun: bool, count: int) -> str:
+def _item_phrase(words: str, is_pronoun: bool, count: int) -> str:
     if is_pronoun or english.is_plural(words.split()[-1]):
         return words
     return english.article(words) if count == 1 else english.plural(words)
@@ -167,17 +178,23 @@ def _item(words: str, is_pronoun: bool, count: int) -> str:
 
 def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated: bool = False) -> str:
     """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
-    return english.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
+    words: list[str] = []
+    for i, test in enumerate(tests):
+        if i and not negated and isinstance(tests[i - 1], tree.Is) and isinstance(test, tree.Relation | tree.Region):
+            words[-1] += f" {words_after_noun(view, test)}"  # "is parked in bay 12"
+        else:
+            words.append(_predicate_of_test(view, test, count, negated))
+    return english.listing(words, "or" if negated else "and")
 
 
-def _predicate(view: View, test: tree.Test, count: int, negated: bool) -> str:
+def _predicate_of_test(view: View, test: tree.Test, count: int, negated: bool) -> str:
     match test:
         case tree.Not(test=inner):
-            return _predicate(view, inner, count, not negated)
+            return _predicate_of_test(view, inner, count, not negated)
         case tree.Has(what=what, worn=False):
-            return f"{_verb_form('have', 'has', count, negated)} {_items(what, count)}"
+            return f"{_verb_form('have', 'has', count, negated)} {_item_phrases(what, count)}"
         case tree.Has(what=what):
-            return f"{_form_of_be(count, negated)} wearing {_items(what, count)}"
+            return f"{_form_of_be(count, negated)} wearing {_item_phrases(what, count)}"
         case tree.Says(words=()):
             return f"{_verb_form('bear', 'bears', count, negated)} text that I can read"
         case tree.Says(words=words):
@@ -185,7 +202,7 @@ def _predicate(view: View, test: tree.Test, count: int, negated: bool) -> str:
         case tree.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
             return f"{_form_of_be(count, negated)} {english.article(' '.join(words))}"
         case _:
-            return f"{_form_of_be(count, negated)} {after_noun(view, test)}"
+            return f"{_form_of_be(count, negated)} {words_after_noun(view, test)}"
 
 
 _PREDICATE_NOUNS = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
@@ -212,24 +229,32 @@ def region_words(sides: Sequence[str], half: bool) -> str:
     return {"middle": "in the middle", "top": "at the top", "bottom": "at the bottom"}.get(sides[0], f"on the {sides[0]}")
 
 
-def none_of(view: View, description: tree.Description) -> str:
+def none_in_view(view: View, description: tree.Description) -> str:
     """Return the statement that nothing matches: "there is no red car in view"."""
     description = tree.Description(tuple(replace(p, order=None, ordinal=None) for p in description.phrases))
-    many = plural(description)
-    only_one = len(description.phrases) > 1 and not any(plural(tree.Description((p,))) for p in description.phrases)
-    words = english.listing([noun(view, tree.Description((p,)), many and not only_one) for p in description.phrases], "or")
+    many = is_plural(description)
+    only_one = len(description.phrases) > 1 and not any(is_plural(tree.Description((p,))) for p in description.phrases)
+    words = english.listing([noun_phrase(view, tree.Description((p,)), many and not only_one) for p in description.phrases], "or")
     return f"there {'are' if many and not only_one else 'is'} no {words} in view"
 
 
 def unmodelled_background(view: View, description: tree.Description) -> str:
-    """Return the background ("lane", "sky") that a description names and the scene does not model; empty for other descriptions.
+    """Return the background ("lane", "sky") that a description names but the scene does not model; empty for other descriptions.
 
     The background may be visible although the scene does not list it.
     """
-    for phrase in description.phrases:
-        spans = nouns_in(phrase.words, view.nouns)
-        words = " ".join(phrase.words[slice(*spans[0])]) if spans else ""
-        concept = lexicon().concept(words) if words else None
-        if concept and lexicon().kinds(concept) & BACKDROP and concept not in view.concepts:
-            return words
-    return ""
+    return next((words for phrase in description.phrases if (words := _background_in(view, phrase))), "")
+
+
+def unmodelled_place(view: View, description: tree.Description) -> str:
+    """Return the unmodelled background in a description ("open lanes", "people in the street"), or an empty string."""
+    relations = [t for p in description.phrases for t in p.tests if isinstance(t, tree.Relation) and t.kind == "on"]
+    places = [t.other for t in relations if t.preposition != "of"]  # a pile of sand is a thing
+    return next((words for place in (description, *places) if (words := unmodelled_background(view, place))), "")
+
+
+def _background_in(view: View, phrase: tree.Phrase) -> str:
+    spans = nouns_in(phrase.words, view.nouns)
+    words = " ".join(phrase.words[slice(*spans[0])]) if spans else ""
+    concept = lexicon().concept(words) if words else None
+    return words if concept and lexicon().kinds(concept) & BACKDROP and concept not in view.concepts else ""

@@ -1,4 +1,4 @@
-"""Answers about the scene as a whole, and about what is happening."""
+"""Answer questions about the scene as a whole, and about what is happening."""
 
 from __future__ import annotations
 
@@ -6,72 +6,84 @@ from collections import Counter
 from collections.abc import Iterable
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.counted_things import with_tests
-from scope_ptz.perception.ground_truth.answers.locations import what
-from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, is_or_are, metres, name, names, place, reply
-from scope_ptz.perception.ground_truth.answers.values import pose_of
-from scope_ptz.perception.ground_truth.language import question_tree as tree
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
+from scope_ptz.perception.ground_truth.answers.locations import answer_what
+from scope_ptz.perception.ground_truth.answers.restating import none_in_view, noun_phrase
+from scope_ptz.perception.ground_truth.answers.thing_names import (
+    TruthAnswer,
+    coloured_name,
+    distance_words,
+    is_or_are,
+    known_answer,
+    list_names,
+    position_words,
+)
+from scope_ptz.perception.ground_truth.answers.values import activity_of
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES, COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_GROUPS = 10
-"""Maximum number of groups of things in a description of the view."""
+"""Maximum number of groups of things in a view's description."""
 MAX_TEXTS = 3
-"""Maximum number of texts in a description of the view, and maximum number of things to describe individually."""
-STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
+"""Maximum number of texts in a view's description, and maximum number of things to describe individually."""
+NON_ACTIVITIES = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
 """States that are not activities."""
 
 
-def describe(view: View, question: tree.Describe) -> TruthAnswer:
+def answer_describe(view: View, question: tree.Describe) -> TruthAnswer:
     """Describe the view, largest things first, with the legible texts."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
-        return _load_of(view, question.tests) or what(view, tree.What(tree.Description((tree.Phrase(("thing",)),)), question.tests))
-    groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
+        return _answer_load(view, question.tests) or answer_what(
+            view, tree.What(tree.Description((tree.Phrase(("thing",)),)), question.tests)
+        )
+    groups = _group_things(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
-        return reply("I can see nothing that stands out")
+        return known_answer("I can see nothing that stands out")
     parts = english.listing(groups[:MAX_GROUPS])
     texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
     readable = f". I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
-    return reply(f"I can see {parts}{readable}")
+    return known_answer(f"I can see {parts}{readable}")
 
 
-def _load_of(view: View, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
+def _answer_load(view: View, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
     """Answer "what is on the trailer?" with the load that the scene states; None if the scene does not state it."""
     match tests:
         case (tree.Relation(kind="on", other=other),):
             carrier = next(iter(find(view, other)), None)
             load = carrier.attributes.get("load") if carrier is not None else None
             if carrier is not None and isinstance(load, str) and load not in ABSENT_VALUES:
-                return reply(f"the {name(carrier)} {place(carrier)} carries {load}")
+                return known_answer(f"the {coloured_name(carrier)} {position_words(carrier)} carries {load}")
     return None
 
 
 def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer:
     """Describe individual things with all facts that the scene states about them."""
-    matches = find(view, with_tests(what, tests))
+    matches = find(view, add_tests(what, tests))
     if not matches:
-        return reply(none_of(view, what))
+        return known_answer(none_in_view(view, what))
     if len(matches) > MAX_TEXTS:
-        return reply(f"there are {len(matches)} {noun(view, what, many=True)}: {names(matches)}")
-    return TruthAnswer(" ".join(english.sentence(_with_details(t)) for t in matches))
+        return known_answer(f"there are {len(matches)} {noun_phrase(view, what, many=True)}: {list_names(matches)}")
+    return TruthAnswer(" ".join(english.sentence(_thing_details(t)) for t in matches))
 
 
-def _with_details(thing: Thing) -> str:
+def _thing_details(thing: Thing) -> str:
     details = [
         f"{' '.join(key_words(k))} {v}" for k, v in facts(thing) if k not in COLOUR_KEYS and not isinstance(v, bool) and k != "kind"
     ]
     details += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
     texts = [f'it reads "{t}"' for t in thing.texts]
-    location = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    location = (
+        f"there is {english.article(coloured_name(thing))} {position_words(thing)}, about {distance_words(thing.distance_m)} away"
+    )
     return "; ".join([location, *([", ".join(details)] if details else []), *texts])
 
 
-def _groups(things: Iterable[Thing]) -> list[str]:
+def _group_things(things: Iterable[Thing]) -> list[str]:
     """Return groups of things, largest on screen first: "3 cars (2 white, 1 red)"."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in sorted(things, key=lambda t: -t.sighting.pixels):
@@ -79,7 +91,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     parts = []
     for kind, members in by_kind.items():
         if len(members) == 1:
-            parts.append(f"{english.article(name(members[0]))} {place(members[0])}")
+            parts.append(f"{english.article(coloured_name(members[0]))} {position_words(members[0])}")
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
         if list(colours.values()) == [len(members)]:
@@ -90,17 +102,17 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     return parts
 
 
-def happening(view: View) -> TruthAnswer:
-    """Answer which things are moving or active; if there are none, describe the view."""
-    activities = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
+def answer_happening(view: View) -> TruthAnswer:
+    """Answer which things are moving or active. If there are none, describe the view."""
+    activities = Counter((t.category, doing) for t in view.top_level() if (doing := _activity_of(t)) is not None)
     if not activities:
-        return TruthAnswer(f"Nothing is moving. {describe(view, tree.Describe()).text}")
+        return TruthAnswer(f"Nothing is moving. {answer_describe(view, tree.Describe()).text}")
     parts = [
         f"{english.article(k) if n == 1 else english.counted(n, k)} {is_or_are(n)} {doing}" for (k, doing), n in activities.items()
     ]
-    return reply(english.listing(parts[:MAX_GROUPS]))
+    return known_answer(english.listing(parts[:MAX_GROUPS]))
 
 
-def _doing(thing: Thing) -> str | None:
-    doing = pose_of(thing)
-    return doing if doing not in STILL else "moving" if "moving" in fact_words(thing) else None
+def _activity_of(thing: Thing) -> str | None:
+    doing = activity_of(thing)
+    return doing if doing not in NON_ACTIVITIES else "moving" if "moving" in fact_words(thing) else None

@@ -1,4 +1,4 @@
-"""Names of things and their places in the frame, in words."""
+"""Put the names of things, and their positions in the frame, into words."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ class TruthAnswer(NamedTuple):
     known: bool = True
 
 
-def reply(text: str) -> TruthAnswer:
+def known_answer(text: str) -> TruthAnswer:
     """Return a known answer."""
     return TruthAnswer(english.sentence(text))
 
 
-def unknown(text: str) -> TruthAnswer:
+def unknown_answer(text: str) -> TruthAnswer:
     """Return an answer that states why the question cannot be answered."""
     return TruthAnswer(english.sentence(text), known=False)
 
 
-def name(thing: Thing) -> str:
-    """Return the name of a thing, preceded by its colour if the name contains no colour."""
+def coloured_name(thing: Thing) -> str:
+    """Return a thing's name, preceded by its colour if the name contains no colour."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
     is_proper = thing.name[:2].isupper() or any(word[:1].isupper() for word in thing.name.split()[1:])  # "Hartley & Sons sign"
@@ -41,9 +41,9 @@ def name(thing: Thing) -> str:
     return shown if colour is None or set(english.letters(colour).split()) & set(words) else f"{colour} {shown}"
 
 
-def names(things: Iterable[Thing]) -> str:
-    """Return a list of things in the given order: "a white van, 2 traffic cones and a worker"."""
-    counts = Counter(name(t) for t in things)
+def list_names(things: Iterable[Thing]) -> str:
+    """List things in words, in the given order: "a white van, 2 traffic cones and a worker"."""
+    counts = Counter(coloured_name(t) for t in things)
     parts = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
     if len(parts) > MAX_NAMED:
         more = sum(list(counts.values())[MAX_NAMED:])
@@ -51,13 +51,13 @@ def names(things: Iterable[Thing]) -> str:
     return english.listing(parts)
 
 
-def things_with_places(things: Sequence[Thing]) -> str:
-    """Return things with their places: "a white van on the left and a red car in the middle"."""
-    return english.listing([f"{english.article(name(t))} {place(t)}" for t in things])
+def names_with_positions(things: Sequence[Thing]) -> str:
+    """List things with their positions: "a white van on the left and a red car in the middle"."""
+    return english.listing([f"{english.article(coloured_name(t))} {position_words(t)}" for t in things])
 
 
-def place(thing: Thing) -> str:
-    """Describe the position of a thing in the frame: "on the left", "at the top right", "in the middle"."""
+def position_words(thing: Thing) -> str:
+    """Describe a thing's position in the frame: "on the left", "at the top right", "in the middle"."""
     x, y = thing.box.centre
     side = "left" if x < SIDE_BAND else "right" if x > 1 - SIDE_BAND else ""
     level = "top" if y < SIDE_BAND * 0.75 else "bottom" if y > 1 - SIDE_BAND * 0.75 else ""
@@ -66,8 +66,8 @@ def place(thing: Thing) -> str:
     return f"at the {' '.join(x for x in (level, side) if x)}" if level else "in the middle"
 
 
-def metres(distance_m: float) -> str:
-    """Return a distance in words. Longer distances are rounded more."""
+def distance_words(distance_m: float) -> str:
+    """Return a distance in words. Longer distances are rounded more coarsely."""
     if distance_m < 3:
         return f"{distance_m:.1f} m"
     step = 1 if distance_m < 20 else 5 if distance_m < 100 else 10
@@ -75,5 +75,5 @@ def metres(distance_m: float) -> str:
 
 
 def is_or_are(count: int) -> str:
-    """Return "is" or "are" for a count."""
+    """Return "is" or "are" to match a count."""
     return "is" if count == 1 else "are"

@@ -1,4 +1,4 @@
-"""Yes-or-no answers about what is in view."""
+"""Answer yes-or-no questions about what is in view."""
 
 from __future__ import annotations
 
@@ -6,52 +6,81 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz import english
+from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
-from scope_ptz.perception.ground_truth.answers.counted_things import exists
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.counted_things import answer_exists
 from scope_ptz.perception.ground_truth.answers.restating import (
-    after_noun,
-    as_asked,
-    definite,
-    none_of,
-    noun,
-    plural,
+    definite_as_asked,
+    definite_phrase,
+    is_plural,
+    none_in_view,
+    noun_phrase,
     predicate_words,
+    words_after_noun,
 )
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, name, place, reply, unknown
-from scope_ptz.perception.ground_truth.answers.values import absent, part_values
-from scope_ptz.perception.ground_truth.language import question_tree as tree
-from scope_ptz.perception.ground_truth.thing_facts import canonical, colour_of, fact_words, fits_noun, opposite
-from scope_ptz.perception.ground_truth.thing_search import find, holds, noun_of
+from scope_ptz.perception.ground_truth.answers.thing_names import (
+    TruthAnswer,
+    coloured_name,
+    known_answer,
+    position_words,
+    unknown_answer,
+)
+from scope_ptz.perception.ground_truth.answers.values import answer_absent, part_values
+from scope_ptz.perception.ground_truth.thing_facts import (
+    are_opposites,
+    canonical_form,
+    colour_of,
+    fact_words,
+    fits_noun,
+    has_form_in,
+)
+from scope_ptz.perception.ground_truth.thing_search import find, holds, split_after_numbered_noun
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-_ANYBODY = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
-_EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
+_ANYBODY_WORDS = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
+_EVERYBODY_WORDS = frozenset(["everyone", "everybody", "everything", "they"])
 
 
-def yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
+def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     """Answer whether the tests hold for the subject."""
-    subject, tests = _parts(view, question)
+    subject, tests = _split_question(view, question)
     if not tests:
-        return exists(view, tree.Exists(subject))
-    if (text := _as_text(view, subject, tests)) is not None:
+        if not find(view, subject) and (activity := _unstated_activity(view, subject)):
+            return unknown_answer(f"I cannot tell: the scene does not state whether anyone is {activity}")
+        return answer_exists(view, tree.Exists(subject))
+    if (text := _answer_as_text(view, subject, tests)) is not None:
         return text
     things = find(view, subject)
+    if not things and (activity := _unstated_activity(view, subject)):
+        return unknown_answer(f"I cannot tell: the scene does not state whether anyone is {activity}")
     if not things:
-        return _answer_about_part(view, subject, tests) or absent(view, subject)
+        return _answer_about_part(view, subject, tests) or answer_absent(view, subject)
     missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
     if missing is not None:
-        return unknown(f"I cannot tell: {none_of(view, missing)}")
-    answers = [_every([holds(view, t, test) for test in tests]) for t in things]
-    if None in answers and True not in answers:
-        predicate = english.listing([after_noun(view, t) for t in tests])
-        return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {predicate}")
-    choice = _choice(view, subject, tests, things)
+        return unknown_answer(f"I cannot tell: {none_in_view(view, missing)}")
+    answers = [_all_hold([holds(view, t, test) for test in tests]) for t in things]
+    if (None in answers or any(_is_unknown_place(view, t) for t in tests)) and True not in answers:
+        predicate = english.listing([words_after_noun(view, t) for t in tests])
+        anyone = subject.phrases[0].words[0] in _ANYBODY_WORDS
+        who = "anyone" if anyone else definite_as_asked(view, subject)
+        return unknown_answer(f"I cannot tell whether {who} {'are' if is_plural(subject) and not anyone else 'is'} {predicate}")
+    choice = _answer_choice(view, subject, tests, things)
     if choice is not None:
         return choice
-    return _verdict(view, question.scope, subject, tests, things, [t for t, ok in zip(things, answers, strict=True) if ok])
+    return _answer_verdict(view, question.scope, subject, tests, things, [t for t, ok in zip(things, answers, strict=True) if ok])
 
 
-def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
+def _unstated_activity(view: View, subject: tree.Description) -> str:
+    """Return the activity in "anyone unloading" if nothing in the scene has such an activity; otherwise an empty string."""
+    words = subject.phrases[0].words
+    if len(words) < 2 or words[0] not in _ANYBODY_WORDS or not words[1].endswith("ing"):
+        return ""
+    stated = frozenset[str]().union(*view.values.values())
+    return "" if has_form_in(words[1], stated) else words[1]
+
+
+def _answer_as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
     """Answer "is Brampton on the sign?" as a question about text, if "Brampton" is not the name of a thing."""
     phrase = subject.phrases[0]
     if len(tests) != 1 or not isinstance(tests[0], tree.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
@@ -62,7 +91,7 @@ def _as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]
     requested = english.letters(" ".join(phrase.words))
     yes = any(requested in english.letters(text) for text in texts)
     quoted = english.listing([f'"{text}"' for text in dict.fromkeys(texts)])
-    return reply(f"{'yes' if yes else 'no'}, {as_asked(view, tests[0].other)} reads {quoted}")
+    return known_answer(f"{'yes' if yes else 'no'}, {definite_as_asked(view, tests[0].other)} reads {quoted}")
 
 
 def _answer_about_part(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
@@ -70,15 +99,15 @@ def _answer_about_part(view: View, subject: tree.Description, tests: tuple[tree.
     values = part_values(view, subject)
     if not values or len(tests) != 1 or not isinstance(tests[0], tree.Is):
         return None
-    requested = canonical(tests[0].words[-1])
-    value = canonical(values[0][1].lower())
+    requested = canonical_form(tests[0].words[-1])
+    value = canonical_form(values[0][1].lower())
     part = subject.phrases[0].words[-1]
     statement = f"the {part} {'are' if english.is_plural(part) else 'is'} {value}"
-    return reply(f"{'yes' if requested in value.split() else 'no'}, {statement}")
+    return known_answer(f"{'yes' if requested in value.split() else 'no'}, {statement}")
 
 
 def missing_reference(view: View, test: tree.Test) -> tree.Description | None:
-    """Return the description that a relation refers to, if nothing in view matches it; otherwise None."""
+    """Return the description that a relation refers to if nothing in view matches that description; otherwise None."""
     match test:
         case tree.Not(test=inner):
             return missing_reference(view, inner)
@@ -93,7 +122,18 @@ def missing_reference(view: View, test: tree.Test) -> tree.Description | None:
     return next((o for o in others if not find(view, o)), None)
 
 
-def _parts(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tree.Test, ...]]:
+def _is_unknown_place(view: View, test: tree.Test) -> bool:
+    """Return whether a test such as "in use" has the form of a place but names nothing that the lexicon or the scene knows."""
+    return (
+        isinstance(test, tree.Relation)
+        and test.kind == "on"
+        and not any(
+            nouns_in(p.words, view.nouns) or is_common_noun(" ".join(p.words)) or find(view, test.other) for p in test.other.phrases
+        )
+    )
+
+
+def _split_question(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tree.Test, ...]]:
     """Split a question into the subject and the tests.
 
     The predicate may follow the noun within the subject ("gate open"), or be the subject's last restriction.
@@ -102,7 +142,7 @@ def _parts(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tr
     tests = list(question.tests)
     if tests and isinstance(tests[0], tree.Is) and not last.tests and not last.order:
         last = replace(last, words=(*last.words, *tests.pop(0).words))  # type: ignore[union-attr]
-    head, after = noun_of(view, last.words)
+    head, after = split_after_numbered_noun(view, last.words)
     if after:
         tests.insert(0, tree.Is(after))
         last = replace(last, words=head)
@@ -112,7 +152,7 @@ def _parts(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tr
         others = [replace(p, tests=tuple(t for t in p.tests if t not in tests)) for p in others]
     if tests and isinstance(relation := tests[-1], tree.Relation):
         last_phrase = relation.other.phrases[-1]
-        head, after = noun_of(view, last_phrase.words)
+        head, after = split_after_numbered_noun(view, last_phrase.words)
         if after and nouns_in(last_phrase.words, view.nouns):
             tests[-1] = replace(relation, other=tree.Description((*relation.other.phrases[:-1], replace(last_phrase, words=head))))
             tests.append(tree.Is(after))
@@ -123,36 +163,36 @@ def _parts(view: View, question: tree.YesNo) -> tuple[tree.Description, tuple[tr
     return tree.Description((*others, last)), tuple(tests)
 
 
-def _every(answers: Sequence[bool | None]) -> bool | None:
-    """Return whether all answers are yes; None stands for unknown."""
+def _all_hold(answers: Sequence[bool | None]) -> bool | None:
+    """Return True if all answers are yes, False if any is no, and None if that is unknown."""
     return False if False in answers else None if None in answers else True
 
 
-def _choice(view: View, subject: tree.Description, tests: Sequence[tree.Test], things: list[Thing]) -> TruthAnswer | None:
-    """Answer "red or white?" by naming the alternative that holds; None if none is known to hold."""
+def _answer_choice(view: View, subject: tree.Description, tests: Sequence[tree.Test], things: list[Thing]) -> TruthAnswer | None:
+    """Answer "red or white?" with the alternative that holds. Return None if no alternative is known to hold."""
     if len(tests) != 1 or not isinstance(tests[0], tree.Any):
         return None
     options = tests[0].tests
     true_options = [o for o in options if any(holds(view, t, o) for t in things)]
     total = len(things)
     if true_options and total == 1:
-        return reply(f"the {name(things[0])} {predicate_words(view, true_options, 1)}")
+        return known_answer(f"the {coloured_name(things[0])} {predicate_words(view, true_options, 1)}")
     if true_options:
         counts = [(sum(holds(view, t, o) is True for t in things), o) for o in true_options]
-        many = noun(view, subject, many=True)
+        many = noun_phrase(view, subject, many=True)
         if len(counts) == 1 and counts[0][0] == total:
-            return reply(f"{_all_of(total)} {many} {predicate_words(view, true_options, total)}")
+            return known_answer(f"{_all(total)} {many} {predicate_words(view, true_options, total)}")
         (first, option), *rest = counts
         others = [f"{n} {predicate_words(view, [o], n)}" for n, o in rest]
-        return reply(english.listing([f"{first} of the {total} {many} {predicate_words(view, [option], first)}", *others]))
+        return known_answer(english.listing([f"{first} of the {total} {many} {predicate_words(view, [option], first)}", *others]))
     fact = _actual_value(view, options[0], things)
-    return reply(f"neither: {fact}") if fact else None
+    return known_answer(f"neither: {fact}") if fact else None
 
 
-def _verdict(
+def _answer_verdict(
     view: View, scope: str, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], yes: list[Thing]
 ) -> TruthAnswer:
-    """Answer yes or no.
+    """Answer yes or no, with the number of things for which the tests hold.
 
     Args:
         view: The view.
@@ -162,77 +202,79 @@ def _verdict(
         things: The things in question.
         yes: Those of ``things`` for which the tests hold.
     """
-    total, many = len(things), noun(view, subject, many=True)
-    if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
+    total, many = len(things), noun_phrase(view, subject, many=True)
+    if any(p.words[-1] in _EVERYBODY_WORDS for p in subject.phrases if p.words):
         scope = "all"
-    some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
+    some = scope == "any" or any(p.words[-1] in _ANYBODY_WORDS for p in subject.phrases if p.words)
     share = f"{len(yes)} of the {total} {many} {predicate_words(view, tests, len(yes))}"
     if scope == "none":
-        return reply(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, total)}")
+        return known_answer(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, total)}")
     if not yes:
-        return _none_of_them(view, subject, tests, things, some=some)
+        return _answer_no(view, subject, tests, things, some=some)
     if len(yes) == total:
         several = total > 1 and len(subject.phrases) == 1
-        every = f"{_all_of(total)} {many}" if several else _subject_words(view, subject, total)
-        return reply(f"yes, {every} {predicate_words(view, tests, total)}")
-    if scope == "all" or (plural(subject) and not some):
-        return reply(f"no, only {share}")
-    where = f": the one {place(yes[0])}" if len(yes) == 1 else ""
-    return reply(f"yes, {share}{where}")
+        every = f"{_all(total)} {many}" if several else _subject_words(view, subject, total)
+        return known_answer(f"yes, {every} {predicate_words(view, tests, total)}")
+    if scope == "all" or (is_plural(subject) and not some):
+        return known_answer(f"no, only {share}")
+    where = f": the one {position_words(yes[0])}" if len(yes) == 1 else ""
+    return known_answer(f"yes, {share}{where}")
 
 
-def _all_of(total: int) -> str:
-    """Return "both", or "all" with the number of things; numbers up to twelve are words."""
-    return "both" if total == 2 else f"all {english.number_word(total) if total <= _MAX_SPELLED else total}"
+def _all(total: int) -> str:
+    """Return "both", or "all" followed by the number of things. Numbers up to twelve are words."""
+    return "both" if total == 2 else f"all {english.number_word(total) if total <= _MAX_SPELLED_NUMBER else total}"
 
 
-_MAX_SPELLED = 12
+_MAX_SPELLED_NUMBER = 12
 
 
-def _none_of_them(
+def _answer_no(
     view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], *, some: bool
 ) -> TruthAnswer:
-    """Answer no, and state the actual value if it is known. ``some`` is True if the question is about any of the things."""
+    """Answer no, and state the actual value if it is known. ``some`` is True if the question asks about any of the things."""
     total, union = len(things), len(subject.phrases) > 1
     if total > 1 and not union and len(tests) == 1 and isinstance(tests[0], tree.Not):
         # Not "none of them does not wear a helmet".
-        return reply(
-            f"no, {_all_of(total)} {noun(view, subject, many=True)} in view {predicate_words(view, [tests[0].test], total)}"
+        return known_answer(
+            f"no, {_all(total)} {noun_phrase(view, subject, many=True)} in view {predicate_words(view, [tests[0].test], total)}"
         )
     fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not union else None
     if fact:
-        return reply(f"no, {fact}")
+        return known_answer(f"no, {fact}")
     if some or (total > 1 and not union):
-        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {predicate_words(view, tests, total)}")
-    return reply(f"no, {_subject_words(view, subject, total)} {predicate_words(view, tests, total, negated=True)}")
+        return known_answer(
+            f"no, none of the {total} {noun_phrase(view, subject, many=True)} in view {predicate_words(view, tests, total)}"
+        )
+    return known_answer(f"no, {_subject_words(view, subject, total)} {predicate_words(view, tests, total, negated=True)}")
 
 
 def _subject_words(view: View, subject: tree.Description, total: int) -> str:
     """Return the subject in words: "the red car", "the cars"."""
-    return definite(view, subject) if total == 1 and len(subject.phrases) == 1 else as_asked(view, subject)
+    return definite_phrase(view, subject) if total == 1 and len(subject.phrases) == 1 else definite_as_asked(view, subject)
 
 
 def _actual_value(view: View, test: tree.Test, things: list[Thing]) -> str | None:
     """Return the actual state or colour of the things that a question is about: "the van is white", "the gate is closed"."""
-    if not isinstance(test, tree.Is) or len({name(t) for t in things}) > 1:
+    if not isinstance(test, tree.Is) or len({coloured_name(t) for t in things}) > 1:
         return None
-    thing, requested = things[0], canonical(test.words[-1])
+    thing, requested = things[0], canonical_form(test.words[-1])
     colour = colour_of(thing)
     kind = thing.category
     if requested in english.COLOURS and colour:
         return f"the {kind} is {colour}" if len(things) == 1 else f"the {english.plural(kind)} are {colour}"
     for fact in sorted(fact_words(thing)):
-        if opposite(requested, fact):
+        if are_opposites(requested, fact):
             return f"the {kind} is {fact}" if len(things) == 1 else f"the {english.plural(kind)} are {fact}"
     if nouns_in(test.words) and not fits_noun(view, thing, test.words[-1]):
-        return f"it is {english.article(name(thing))}"
+        return f"it is {english.article(coloured_name(thing))}"
     return None
 
 
-def is_a(view: View, question: tree.IsA) -> TruthAnswer:
+def answer_is_a(view: View, question: tree.IsA) -> TruthAnswer:
     """Answer whether a thing is of a kind."""
     things = find(view, question.subject)
     if not things:
-        return unknown(f"I cannot tell: {none_of(view, question.subject)}")
+        return unknown_answer(f"I cannot tell: {none_in_view(view, question.subject)}")
     matches = find(view, question.what)
-    return reply(f"{'yes' if things[0] in matches else 'no'}, it is {english.article(name(things[0]))}")
+    return known_answer(f"{'yes' if things[0] in matches else 'no'}, it is {english.article(coloured_name(things[0]))}")

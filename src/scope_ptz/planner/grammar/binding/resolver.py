@@ -5,36 +5,24 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
+from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset, plausible_name
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
-from scope_ptz.planner.grammar.lexing.lexicon import phrases
-from scope_ptz.planner.grammar.lexing.preset_names import preset_key
-from scope_ptz.planner.grammar.lexing.spelling import within_one_edit
 
-_MIN_SIMILARITY = 0.8  # minimum similarity of two preset names, from 0 to 1
-_MAX_NAME_WORDS = 4
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
-_NOT_PRESETS = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
-_COMMAND_CLASSES = frozenset({
-    "DEG", "PRON", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN", "TILT", "TELL", "CARRY", "LIMIT", "CAMERA", "BACK", "HOWMANY",
-    "BE",
-})  # fmt: skip
-"""Classes of words that no preset name contains if the presets are unknown."""
-
-_MIN_ABBREVIATION_CHARS = 3
 _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
-_WAITING = re.compile(r"(when(?! (?:do|does|did|is|are|will)\b)|once|as soon as|whenever)\b", re.IGNORECASE)
+_WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
 _FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see|(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
-    r"here))) (?:an? |any |the |some )?(.+?)"
-    r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
+    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) (?:an? |any |the |some )?(.+?)"
+    r"(?: anywhere| in view| visible| right now| here| there| present|"
+    r" in (?:the )?(?:picture|frame|shot|image|sight)| on screen)?\s*\?*$",
     re.IGNORECASE,
 )
 _TWO_QUESTIONS = re.compile(
@@ -43,9 +31,14 @@ _TWO_QUESTIONS = re.compile(
     re.IGNORECASE,
 )
 _WINNER = re.compile(
-    r"what is the (?:total|sum)\W*|how many (?:is that|are there) (?:in total|altogether|together)\W*"
+    r"what(?:['’]s| is) the (?:total|sum|difference|result|answer)\W*|how many (?:is that|are there) (?:in total|"
+    r"altogether|together)\W*"
     r"|where (?:there )?(?:are|is) (?:the )?(?:most|fewest|least)\W*"
     r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    re.IGNORECASE,
+)
+_ANY_THERE = re.compile(
+    r"(?:is there|are there|(?:can|do) you see|is|are) (?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
     re.IGNORECASE,
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
@@ -87,52 +80,6 @@ _LOOKS = (
 
 class UnresolvedError(Exception):
     """A name cannot be resolved. The message is the question to ask the user."""
-
-
-def match_exactly(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset with a name, ignoring case, accents, spaces and hyphens; None if there is none."""
-    key = "".join(preset_key(name))
-    return next((preset for preset in presets if "".join(preset_key(preset)) == key), None)
-
-
-def match_preset(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset that matches a name exactly, otherwise the only close match; None if there is neither."""
-    name_key = "".join(preset_key(name))
-    keys = {preset: "".join(preset_key(preset)) for preset in presets}
-    exact = match_exactly(name, presets)
-    if exact or not name_key:
-        return exact
-    inside = [p for p in presets if len(name_key) >= 3 and set(preset_key(name)) < set(preset_key(p))]
-    if len(inside) == 1:
-        return inside[0]
-    similar = [preset for preset, key in keys.items() if len(key) >= 4 and within_one_edit(name_key, key)]
-    if len(similar) == 1:
-        return similar[0]
-    short = [preset for preset, key in keys.items() if abbreviates(name_key, key)]
-    if len(short) == 1:
-        return short[0]
-    scored = sorted(((SequenceMatcher(None, name_key, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
-    clear = scored and scored[0][0] >= _MIN_SIMILARITY and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
-    return scored[0][1] if clear else None
-
-
-def abbreviates(short: str, long: str) -> bool:
-    """Return whether a word abbreviates another: the same first letter, then some of its other consonants ("hwy" for "highway")."""
-    letters = iter(long)
-    return (
-        len(short) >= _MIN_ABBREVIATION_CHARS
-        and short[0] == long[:1]
-        and not set(short[1:]) & set("aeiou")
-        and all(c in letters for c in short)
-    )
-
-
-def plausible_name(text: str) -> bool:
-    """Return whether words could name a preset: few words, none about camera motion. Used when the presets are unknown."""
-    words = preset_key(text)
-    if not 0 < len(words) <= _MAX_NAME_WORDS or any(word in _NOT_PRESETS for word in words):
-        return False
-    return not any(phrases().get((word,), frozenset()) & _COMMAND_CLASSES for word in words)
 
 
 @dataclass(slots=True)
@@ -180,13 +127,19 @@ class Resolver:
         for step in steps:
             bound = self._bind(self._completed(step, out))
             self.looked = self.looked or isinstance(step, _LOOKS)
-            again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
+            again = bool(out) and [_target(s) for s in bound] == [_target(out[-1])] != [""]
             out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
         """Apply the verb of the previous step to a step without one, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
+        if (
+            isinstance(step, ast.If)
+            and isinstance(last, ast.Count)
+            and (answered := _answered_by(step.condition, last)) is not None
+        ):
+            return replace(step, condition=answered)
         bare = isinstance(step, ast.GoToPreset) and step.how == "bare" and step.ref.has_article
         if not bare or not isinstance(step, ast.GoToPreset) or (self.presets and self.find_place(step.ref)):
             return step
@@ -269,7 +222,7 @@ class Resolver:
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
-        if step.how == "look" and not ref.explicit:
+        if step.how == "look" and not ref.explicit and "-" not in ref.name:  # a name of several words is that of the preset
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.explicit and preset is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
@@ -301,20 +254,33 @@ class Resolver:
         place = self.place(part.place) if part.place else None
         return ast.Tally(self.thing(part.thing), place, self._view(part.view))
 
+    def _tallies(self, parts: Sequence[ast.Tally]) -> tuple[ast.Tally, ...]:
+        """Return the parts of a calculation; a part for every preset becomes one part for each preset."""
+        every = [
+            replace(part, place=place, everywhere=False)
+            for part in parts
+            for place in (self._places(()) if part.everywhere else (part.place,))
+        ]
+        return tuple(self._tally(part) for part in every)
+
     def _total(self, step: ast.Total) -> Sequence[ast.Step]:
         self.counted = True
-        return [ast.Total(tuple(self._tally(part) for part in step.parts))]
+        return [ast.Total(self._tallies(step.parts))]
 
     def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
         self.counted = True
         return [ast.Difference(self._tally(step.first), self._tally(step.second))]
 
+    def _rankcounts(self, step: ast.RankCounts) -> Sequence[ast.Step]:
+        self.counted = True
+        return [replace(step, parts=self._tallies(step.parts))]
+
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
-        if self.counted and _WINNER.fullmatch(step.question.strip()):
+        if self.counted and (_WINNER.fullmatch(step.question.strip()) or _ANY_THERE.fullmatch(step.question.strip())):
             return []  # the answer states the counts
         if _DESCRIBE.fullmatch(step.question.strip()):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
-        if not is_about_the_scene(step.question):
+        if not is_about_the_scene(f"{step.question} {self.antecedent if 'time' in step.question else ''}"):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if step.embedded and _FUTURE.match(direct_question(step.question)):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
@@ -346,6 +312,9 @@ class Resolver:
         self.preset, self.whole_scene = name, False
         return f"{match[1]}?", [ast.GoToPreset(ast.PresetRef(name, explicit=True))]
 
+    def _rescope(self, step: ast.Rescope) -> Sequence[ast.Step]:  # noqa: ARG002 - all methods for steps have this signature
+        raise UnresolvedError("What shall I look for there?")
+
     def _forbid(self, step: ast.Forbid) -> Sequence[ast.Step]:
         self.still = self.still or step.any_move
         return [step]
@@ -360,6 +329,11 @@ class Resolver:
     def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
         if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
             raise UnresolvedError("A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?")
+        if re.match(
+            r"(?:preset|saved view|stored view|saved position|stored position|bookmark)s?\b", step.thing.text, re.IGNORECASE
+        ):
+            listing = ", ".join(self.presets or ()) or "none"
+            raise UnresolvedError(f"I do not know that preset. Presets: {listing}. Which one do you mean?")
         if relative := _RELATIVE_POSITION.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
         return [ast.ZoomTo(self.thing(step.thing))]
@@ -440,13 +414,16 @@ class Resolver:
 
     def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
         self.compared = True
-        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+        places = self._places(step.places)
+        return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
 
     def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
-        first, second = self.thing(step.first), self.thing(step.second)
-        places = [match_preset(t.text, self.presets) if self.presets else None for t in (first, second)]
+        places = [match_preset(t.text, self.presets) if self.presets else None for t in (step.first, step.second)]
+        if all(places) and not self.antecedent:
+            raise UnresolvedError(f"What shall I count at {places[0]} and {places[1]}?")
         if all(places):
             return self._whichpreset(ast.WhichPreset(ast.Thing(), step.comparison, tuple(ast.PresetRef(p or "") for p in places)))
+        first, second = self.thing(step.first), self.thing(step.second)
         return [replace(step, first=first, second=second, view=self._view(step.view))]
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
@@ -476,3 +453,20 @@ class Resolver:
         if isinstance(condition, ast.Negated):
             return ast.Negated(self.condition(condition.part))
         return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
+
+
+def _answered_by(condition: ast.Condition, count: ast.Count) -> ast.Condition | None:
+    """Return the condition that refers to a count, if it asks for the same: "check for smoke, and if there is smoke, ..."."""
+    if not isinstance(condition, ast.Seen) or [thing.text for thing in count.things] != [condition.thing.text]:
+        return None
+    if condition.view not in (None, count.view):
+        return None
+    answers: dict[ast.Quantity, ast.Condition] = {
+        ast.Quantity(): ast.Answered(), ast.Quantity("==", 0): ast.Negated(ast.Answered())
+    }  # fmt: skip
+    return answers.get(condition.quantity)
+
+
+def _target(step: ast.Step) -> str:
+    """Return the description of what a step zooms in on; empty for other steps."""
+    return step.thing.text if isinstance(step, ast.ZoomTo) else ""

@@ -10,8 +10,6 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.consistency.check import not_understood, objection
-from scope_ptz.planner.grammar.lexing.corrections import corrected
-from scope_ptz.planner.grammar.lexing.settings_first import with_settings_first
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
 
 if TYPE_CHECKING:
@@ -42,8 +40,6 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
     preset_names = None if presets is None else tuple(presets)
-    if len(instruction) <= MAX_CHARS:
-        instruction = with_settings_first(corrected(instruction, preset_names or ()))
     resolver = Resolver(preset_names, tuple(conversation))
     parsed = parse(instruction, preset_names or ())
     try:
@@ -58,7 +54,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
-    if question := objection(instruction, bound, preset_names or ()):
+    if question := objection(parsed.text, bound, preset_names or ()):
         return Understanding(clarification=question)
     return Understanding(bound)
 

@@ -7,6 +7,7 @@ therefore noticed here, and the user is asked instead of a move being made.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from difflib import SequenceMatcher
 
@@ -94,6 +95,11 @@ def _mark_described(words: Sequence[Word], evidence: Evidence) -> None:
         for block in SequenceMatcher(None, texts, passed_on, autojunk=False).get_matching_blocks():
             for word in words[block.a : block.a + block.size]:
                 word.is_described = True
+    for text, times in Counter(texts).items():
+        described = sum([word.text for word in words_of(description)].count(text) for description in evidence.texts)
+        if described >= times:  # "which half has more cars, left or right?"
+            for word in words:
+                word.is_described = word.is_described or word.text == text
 
 
 def _mark_presets(words: Sequence[Word], evidence: Evidence) -> None:

@@ -86,7 +86,7 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
 def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:
     """Return the directions in which the plan turns, but which the instruction does not name."""
     texts = {_direction_like(word.text) for word in words if not word.is_described}
-    if texts & _LOOSE or any(text.startswith("-") for text in texts):
+    if texts & _LOOSE or any(text.startswith(("-", "+")) or text == "plus" for text in texts):
         return []
     named = {_DIRECTION_OF[text] for text in texts if text in _DIRECTION_OF}
     named |= {direction for direction, also in _ALSO.items() if texts & also}

@@ -75,8 +75,9 @@ def _add(found: Evidence, node: Any) -> None:
             (found.directions if is_turn else found.still).add(_DIRECTIONS[axis, -sign if backwards else sign])
             if node.steps:
                 found.numbers.append(node.steps)
-        case ast.Amount(kind="degrees", degrees=degrees):
-            found.numbers.append(abs(degrees))
+        case ast.Amount(kind=kind, degrees=degrees, factor=factor):
+            found.numbers += [abs(degrees)] if kind == "degrees" else []
+            found.numbers += [factor] if factor != 1 else []
         case ast.Aim(axis=axis, value=value):
             found.axes.add(axis)
             found.numbers.append(abs(value))

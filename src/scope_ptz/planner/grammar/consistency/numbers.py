@@ -27,6 +27,9 @@ class NumberClaim:
     is_fraction: bool = False
 
 
+_LONG_TIMES = frozenset({"minute", "minutes", "min", "mins", "hour", "hours"})
+
+
 def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     """Return the words of the numbers that the plan does not use. Numbers in descriptions and negated clauses are used."""
     claims = _claims(words)
@@ -62,6 +65,9 @@ def _claims(words: Sequence[Word]) -> list[NumberClaim]:
 def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     before = words[start - 1].text if start else ""
     used_words = words[start : start + used]
+    after = words[start + used].text if start + used < len(words) else ""
+    if before == "in" and after in _LONG_TIMES:
+        return True  # "we start loading in five minutes" is only a remark: a plan cannot wait
     return before in {*_NAMED, "the", "these", "those"} or any(
         word.is_described or word.is_negated or word.text in _VAGUE for word in used_words
     )

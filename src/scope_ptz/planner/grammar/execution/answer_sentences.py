@@ -25,10 +25,19 @@ from scope_ptz.planner.grammar.instruction_tree import (
 
 _MAX_SPELLED = 12  # larger counts are written in digits
 _MODIFIER_START = re.compile(
-    r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|wearing|holding|carrying|parked|standing|"
-    r"facing|driving|walking|visible|along|across|over|below|against|without|not)\b"
+    r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|"
+    r"wearing|holding|carrying|parked|standing|"
+    r"facing|driving|walking|visible|along|across|around|opposite|beyond|through|among|towards|alongside|beneath|underneath|saying|over|below|against|without|not)\b"
 )
 _OPERATORS = {">=": "at least ", "<=": "at most ", ">": "more than ", "<": "fewer than ", "==": "exactly "}
+
+
+_UNCOUNTABLE = frozenset({
+    "smoke", "steam", "water", "litter", "rubbish", "trash", "garbage", "graffiti", "snow", "ice", "debris", "traffic",
+    "damage", "dust", "fog", "mist", "mud", "oil", "foam", "sand", "gravel", "hay", "straw", "grass", "luggage", "equipment",
+    "machinery", "furniture", "scaffolding", "fencing", "movement", "activity", "vandalism", "flooding", "cargo", "freight",
+    "timber", "livestock", "wildlife",
+})  # fmt: skip
 
 
 def number(value: float) -> str:
@@ -47,6 +56,16 @@ def head_and_rest(description: str) -> tuple[str, str]:
     return (description[: match.start()], description[match.start() :]) if match else (description, "")
 
 
+def _end_of_noun(head: str) -> int:
+    """Return where the noun ends: before the adjectives that follow a plural, as in "roller doors half open"."""
+    words = head.split(" ")
+    last = words[-1].lower()
+    if english.is_plural(last) or is_common_noun(last) or lexicon().concept(last) is not None:
+        return len(head)
+    plural = next((i for i in reversed(range(len(words))) if english.is_plural(words[i].lower())), len(words) - 1)
+    return len(" ".join(words[: plural + 1]))
+
+
 def _participle_after_noun(description: str) -> re.Match[str] | None:
     """Return the participle that follows the noun, as in "people sitting down", but not in "market awning"."""
     for match in re.finditer(r"\s(\w+ing)\b", description):
@@ -58,9 +77,17 @@ def _participle_after_noun(description: str) -> re.Match[str] | None:
 
 def noun(description: str, count: float) -> str:
     """Return the description with its head noun in the singular or plural."""
-    head, rest = head_and_rest(description)
+    if is_uncountable(description):
+        return description
+    end = _end_of_noun(head_and_rest(description)[0])
+    head, rest = description[:end], description[end:]
     *front, last = head.split(" ")
     return " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)]) + rest
+
+
+def is_uncountable(description: str) -> bool:
+    """Return whether a description is of something that is not counted, such as "smoke" or "standing water"."""
+    return head_and_rest(description)[0].split(" ")[-1].lower() in _UNCOUNTABLE
 
 
 def _inflected(word: str, inflect: Callable[[str], str]) -> str:
@@ -74,6 +101,8 @@ def _inflected(word: str, inflect: Callable[[str], str]) -> str:
 
 def counted(description: str, count: int, *, complete: bool = True) -> str:
     """Return a count with its noun: "3 cones", "no cones", or "at least 3 cones" when there may be more."""
+    if count and is_uncountable(description):
+        return f"some {description}"
     number = ("no" if count == 0 else str(count)) if complete else f"at least {count}"
     return f"{number} {noun(description, count)}"
 
@@ -145,10 +174,21 @@ _NOT_UNDERSTOOD = re.compile(
 )
 
 
+_NOT_MODELLED = re.compile(r"The scene says nothing about the (?P<place>.+?), so\b")
+
+
 def not_understood_text(error: str) -> str:
-    """Return the statement that perception did not understand a question or a description; empty for other errors."""
+    """Return the statement that perception did not understand a question or a description, or knows nothing about a place.
+
+    Empty for other errors.
+    """
+    if place := _NOT_MODELLED.match(error):
+        return f"I cannot tell: the scene says nothing about the {place['place']}"
     match = _NOT_UNDERSTOOD.match(error)
-    return f'I did not understand "{match["text"] or match["words"]}"' if match else ""
+    if match is None:
+        return ""
+    words = re.sub(r"'( and |, )'", r'"\1"', match["words"] or "")
+    return f'I did not understand "{match["text"] or words}"'
 
 
 def continued(text: str) -> str:

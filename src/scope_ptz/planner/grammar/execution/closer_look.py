@@ -59,7 +59,7 @@ class CloserLook(RunState):
         result = yield from self._perception_call("query_answer", question=plain, view=view)
         if result is None or view != "current" or self.keeps_still or not is_too_small(result):
             return result
-        thing = thing or thing_of(question)
+        thing = thing or _named_in(result) or thing_of(question)
         if not thing:
             return result
         if not self.may_go_closer:
@@ -91,6 +91,18 @@ class CloserLook(RunState):
         elif arguments := return_arguments(start, self.pose, self.limits):
             yield from self._camera_call("adjust_ptz", **arguments)
         return before if result is None else result
+
+
+def _named_in(result: dict[str, Any]) -> str:
+    """Return the thing that an answer names as the bearer of a text; empty if it names none.
+
+    For "The price of the lettuce is on the price card for lettuce, but it is too small to read", it is "price card for lettuce".
+    """
+    match = _BEARER.search(str(result.get("answer", "")))
+    return match[1] if match else ""
+
+
+_BEARER = re.compile(r"^The .+ is on the (.+), but it is too small to read")
 
 
 def _whole_of(thing: str) -> str:

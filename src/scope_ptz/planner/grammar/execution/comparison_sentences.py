@@ -12,6 +12,9 @@ from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 def counts_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
     """Return several counts as a sentence: "I can see 3 planters at approach and 2 at tram-stop"."""
     same = len({part.thing.text for part in parts}) == 1
+    places = [part.place.name for part in parts if part.place is not None]
+    if same and len(places) == len(set(places)) == len(parts) and list(counts).count(0) > _MAX_LISTED_ZEROS:
+        return counts_at_presets(parts[0].thing.text, dict(zip(places, counts, strict=True)))
     listed = [
         (str(count) if count else "none") + _at(part)
         if same and i
@@ -26,30 +29,69 @@ def _at(part: ast.Tally) -> str:
     return f" at {part.place.name}" if part.place is not None else ""
 
 
+def counts_and_difference_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
+    """Return two counts at presets with their difference: "I can see 3 cars at gate and 1 at yard, so there are 2 more at gate"."""
+    difference = counts[0] - counts[1]
+    if not difference or parts[0].place is None:
+        return f"{counts_text(parts, counts)}. That is the same number at both, so the difference is 0"
+    verb, comparison = ("is" if abs(difference) == 1 else "are"), ("more" if difference > 0 else "fewer")
+    return f"{counts_text(parts, counts)}, so there {verb} {abs(difference)} {comparison} at {parts[0].place.name}"
+
+
+def is_one_kind_at_two_presets(first: ast.Tally, second: ast.Tally) -> bool:
+    """Return whether two counts are of the same objects at different presets."""
+    return first.thing.text == second.thing.text and first.place is not None and second.place is not None
+
+
 def difference_text(first: ast.Tally, second: ast.Tally, difference: int) -> str:
     """Return the difference of two counts: "There are 5 more bicycles than planters"."""
-    if first.thing.text == second.thing.text and first.place is not None and second.place is not None:
-        if not difference:
-            return "That is the same number at both, so the difference is 0"
-        comparison = "more" if difference > 0 else "fewer"
-        verb = "is" if abs(difference) == 1 else "are"
-        return f"There {verb} {abs(difference)} {comparison} at {first.place.name} than at {second.place.name}"
     if not difference:
         return "That is the same number of both, so the difference is 0"
     number = abs(difference)
     noun = phrases.noun(first.thing.text, number)
     verb, comparison = ("is" if number == 1 else "are"), ("more" if difference > 0 else "fewer")
-    return f"There {verb} {number} {comparison} {noun} than {phrases.noun(second.thing.text, 2)}"
+    return f"There {verb} {number} {comparison} {noun} than {_other_than(first.thing.text, second.thing.text)}"
+
+
+def _other_than(first: str, second: str) -> str:
+    """Return what a count is compared with: "vans", or only the place if both counts are of the same kind ("in the left half")."""
+    (kind, place), (other, rest) = phrases.head_and_rest(first), phrases.head_and_rest(second)
+    same = kind.removeprefix("the ") == other.removeprefix("the ")
+    if same and place[1:].startswith(_PLACES) and rest[1:].startswith(_PLACES):
+        return rest[1:]
+    return phrases.noun(second, 2)
+
+
+_PLACES = ("in ", "on ", "at ", "near ", "next to ", "behind ", "under ", "above ", "below ", "inside ", "outside ", "to the ")
 
 
 def ranking_text(parts: Sequence[ast.Tally], counts: Sequence[int], first: ast.Comparison) -> str:
     """Return several counts in their order: "From most to fewest: 5 bicycles, 3 benches and 2 planters"."""
     ranked = sorted(zip(parts, counts, strict=True), key=lambda pair: pair[1], reverse=first == "more")
+    if len(set(counts)) == 1 and len(counts) > 1:
+        return f"{counts_text(parts, counts)}. {_all_equal_text(len(counts))}"
     order = "from most to fewest" if first == "more" else "from fewest to most"
     listed = [f"{phrases.counted(part.thing.text, count)}{_at(part)}" for part, count in ranked]
-    tied = [part for part, count in ranked if list(counts).count(count) > 1]
-    names = english.listing([_name(part) for part in tied])
-    return f"{order}: {english.listing(listed)}" + (f". {phrases.sentence(f'{names} are equal')[:-1]}" if tied else "")
+    tied = [
+        english.listing([_name(part) for part, other in ranked if other == count])
+        for count in dict.fromkeys(count for _, count in ranked)
+        if list(counts).count(count) > 1 and count
+    ]
+    ties = "".join(f". {phrases.sentence(f'{names} are equal')[:-1]}" for names in tied)
+    return f"{order}: {english.listing(listed)}{ties}"
+
+
+def _all_equal_text(number: int) -> str:
+    return "That is the same number of both" if number == 2 else f"All {phrases.count_word(number)} numbers are the same"
+
+
+def winner_text(parts: Sequence[ast.Tally], counts: Sequence[int], first: ast.Comparison) -> str:
+    """Return which of several kinds has the most or the fewest objects: "There are more skips than any of the others"."""
+    best = max(counts) if first == "more" else min(counts)
+    winners = [phrases.noun(part.thing.text, 2) for part, count in zip(parts, counts, strict=True) if count == best]
+    if len(winners) > 1:
+        return f"It is a tie between {english.listing(winners)}"
+    return f"There are {first} {winners[0]} than any of the others"
 
 
 def _name(part: ast.Tally) -> str:
@@ -58,7 +100,18 @@ def _name(part: ast.Tally) -> str:
 
 def counts_at_presets(text: str, counts: Mapping[str, int]) -> str:
     """Return the counts at presets: "I can see 3 cars at gate and no cars at yard"."""
-    return f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}"
+    shown = {name: count for name, count in counts.items() if count}
+    zeros = len(counts) - len(shown)
+    if zeros <= _MAX_LISTED_ZEROS:
+        return f"I can see {english.listing([f'{phrases.counted(text, count)} at {name}' for name, count in counts.items()])}"
+    if not shown:
+        return f"I can see {phrases.counted(text, 0)} at any of the {zeros} presets"
+    listed = [f"{phrases.counted(text, n) if not i else n} at {name}" for i, (name, n) in enumerate(shown.items())]
+    return f"I can see {english.listing(listed)}, and none at the other {zeros} presets"
+
+
+_MAX_LISTED_ZEROS = 2
+"""Maximum number of presets without the objects to list by name."""
 
 
 def any_of_text(step: ast.WhichPreset, counts: Mapping[str, int]) -> str:

@@ -72,12 +72,19 @@ class Comparisons(ConditionEvaluation):
         parts = (step.first, step.second)
         first, second = yield from self._tallies(parts)
         self._last_was_yes = first > second
+        if sentences.is_one_kind_at_two_presets(*parts):
+            self._note(sentences.counts_and_difference_text(parts, (first, second)))
+            return
         self._note(sentences.counts_text(parts, (first, second)))
         self._note(sentences.difference_text(step.first, step.second, first - second))
 
     def _rankcounts(self, step: ast.RankCounts) -> CallGenerator:
         counts = yield from self._tallies(step.parts)
-        self._note(sentences.ranking_text(step.parts, counts, step.first))
+        if step.winner:
+            self._note(sentences.counts_text(step.parts, counts))
+            self._note(sentences.winner_text(step.parts, counts, step.first))
+        else:
+            self._note(sentences.ranking_text(step.parts, counts, step.first))
 
     # Comparisons -------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> CallGenerator:
@@ -114,8 +121,14 @@ class Comparisons(ConditionEvaluation):
             self._last_was_yes, self._best_preset = bool(showing), showing[0] if showing else None
             self._note(sentences.any_of_text(step, counts))
             return
-        self._note(sentences.counts_at_presets(step.thing.text, counts))
         ranked = sentences.presets_of_rank(counts, step.comparison, step.rank)
+        seen = sentences.counts_at_presets(step.thing.text, counts)
+        if step.yes_no:
+            self._last_was_yes = ranked == [step.places[0].name]
+            self._best_preset = ranked[0] if len(ranked) == 1 or self.assume_met else None
+            self._note(f"{'Yes' if self._last_was_yes else 'No'}: {seen}")
+            return
+        self._note(seen)
         self._best_preset = ranked[0] if len(ranked) == 1 or (ranked and self.assume_met) else None
         self._note(sentences.best_preset_text(step, counts, ranked))
         if step.go:
@@ -126,7 +139,8 @@ class Comparisons(ConditionEvaluation):
             count = yield from self._count_at(step.thing, place)
             if count or self.assume_met:
                 self._best_preset, self._last_was_yes = place.name, True
-                self._note(f"The first is {place.name}, where I can see {phrases.counted(step.thing.text, count)}")
+                counted = phrases.counted(step.thing.text, count)
+                self._note(f"The {'last' if step.last else 'first'} is {place.name}, where I can see {counted}")
                 return
         self._best_preset, self._last_was_yes = None, False
         names = english.listing([place.name for place in step.places])

@@ -62,6 +62,10 @@ def without_rounding_noise(value: Any) -> Any:
 
 def _degrees(turn: Turn, in_loop: bool) -> float:
     amount = turn.amount or Amount()
+    return amount.factor * _degrees_of(amount, turn, in_loop)
+
+
+def _degrees_of(amount: Amount, turn: Turn, in_loop: bool) -> float:
     if amount.kind == "degrees":
         return amount.degrees
     if amount.kind == "unspecified":

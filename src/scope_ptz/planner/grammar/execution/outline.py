@@ -125,7 +125,8 @@ def condition_text(condition: ast.Condition) -> str:
     """Return a condition in the present tense: "at least 6 cones are visible"."""
     match condition:
         case ast.Seen(thing=thing, quantity=quantity, view=view):
-            verb = "is" if quantity.number == 1 and quantity != ast.Quantity() else "are"
+            is_one = quantity.number == 1 and quantity != ast.Quantity()
+            verb = "is" if is_one or phrases.is_uncountable(thing.text) else "are"
             return f"{phrases.quantity_text(quantity, thing.text)} {verb} visible{' in the whole scene' if view == 'full' else ''}"
         case ast.Readable(thing=thing):
             return f"the {thing.text} can be read"

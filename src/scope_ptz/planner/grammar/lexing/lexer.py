@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
+from scope_ptz.english.grammar.tokens import Token, tokenise
 from scope_ptz.planner.grammar.lexing.lexicon import longest_phrase, phrases
 from scope_ptz.planner.grammar.lexing.preset_names import preset_at
 from scope_ptz.planner.grammar.lexing.spelling import corrected_word, is_english, within_one_edit
-from scope_ptz.planner.grammar.lexing.tokens import Token, tokenise
 
 _MARKS = {
     ",": "COMMA", ".": "STOP", "!": "STOP", "\n": "STOP", ";": "STOP", "?": "QUESTION", ":": "COLON", "(": "OPEN", ")": "CLOSE",
     "-": "RANGE", "–": "DASH", "—": "DASH", '"': "QUOTE", "“": "QUOTE", "”": "QUOTE", "'": "QUOTE", "...": "COMMA", "…": "COMMA",
-    "°": "DEG", "/": "SLASH", "•": "STOP", "*": "STOP", "‘": "QUOTE",
+    "°": "DEG", "=": "EQUALS", "/": "SLASH", "•": "STOP", "*": "STOP", "‘": "QUOTE",
 }  # fmt: skip
 _MAX_NUMBER_WORDS = 8
 _ENDING = frozenset({"IFSO", "IFNOT", "EACHTIME", "PURPOSE"})
@@ -50,6 +50,10 @@ _AFTER_ENDING = frozenset(
     }
 )
 _COMMANDS = frozenset({"PAN", "TILT", "ZOOM", "SNAP", "TURN", "TRACK"})
+
+
+_ADDRESSED = frozenset({"operator", "captain", "skipper", "chief", "bud", "buddy", "mate", "pal", "boss", "lad"})
+"""Words for people, which only address someone unless a determiner precedes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +97,13 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
 
 
 def _preset_word(word: str, known: set[str]) -> str:
-    """Return the word of a preset's name that a long word with two letters exchanged stands for; any other word unchanged."""
+    """Return the word of a preset's name that a word with a slip stands for; any other word unchanged.
+
+    A slip is a doubled letter ("yardd") or, in a long word, an exchange of two letters.
+    """
+    single = {word[:i] + word[i + 1 :] for i in range(1, len(word)) if word[i] == word[i - 1]} & known
+    if len(single) == 1 and len(word) > 4:
+        return single.pop()
     close = [name for name in known if len(word) == len(name) > 5 and sorted(word) == sorted(name) and within_one_edit(word, name)]
     return close[0] if len(close) == 1 else word
 
@@ -142,6 +152,10 @@ def _phrase_at(words: Sequence[str], i: int, presets: tuple[str, ...]) -> tuple[
 
 def _fits(words: Sequence[str], i: int, length: int, classes: frozenset[str], presets: tuple[str, ...]) -> bool:
     """Return whether an expression may stand at a position: it must not overlap a preset, and some expressions end a clause."""
+    if words[i : i + length] == ["right", "then"] and i and words[i - 1].isalpha():
+        return False  # "a quarter turn right then zoom in"
+    if words[i + 1 : i + length] == ["it", "up"] and i + length < len(words) and is_number_word(words[i + length]):
+        return False  # "bring it up 11"
     if any(preset_at(words[j : i + length + 3], presets)[0] for j in range(i + 1, i + length)):
         return False
     if words[i + length - 1] == "of" and "PREP" in classes and i + length < len(words) and is_number_word(words[i + length]):
@@ -203,6 +217,8 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             classes = frozenset({"FREE"})
         elif lexeme.word == "m" and before and before.has("NUM") and before.end == lexeme.start:
             classes = frozenset({"BADUNIT"})
+        elif lexeme.word == "u" and before and before.has("MODAL", "DOV"):
+            classes = frozenset({"SELF"})  # "can u go left"
         elif (
             lexeme.word in {"l", "r", "u", "d"}
             and not (after and after.has("NUM"))
@@ -213,6 +229,10 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             classes = frozenset({"SECONDS"})
         elif lexeme.word in {"hi", "there"} and lexeme.has("FILLER") and text[lexeme.end : lexeme.end + 1] == "-":
             classes = frozenset({"FREE"})  # "hi-vis vest"
+        elif lexeme.word == "plus" and before and before.has("PAN", "TILT") and after and after.has("NUM"):
+            classes = frozenset({"GLUE"})  # "tilt plus 5" has a sign
+        elif lexeme.word in _ADDRESSED and before and before.has("DET", "ANY") and not before.has("NUM", "PRON"):
+            classes = frozenset({"FREE"})  # "if no operator is visible"
         elif lexeme.word == "point" and before and before.has("DET", "PREP"):
             classes = frozenset({"FREE"})
         out.append(lexeme if classes is lexeme.classes else Lexeme(lexeme.word, lexeme.start, lexeme.end, classes))

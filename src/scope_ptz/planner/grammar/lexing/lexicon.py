@@ -1,37 +1,25 @@
-"""Load the planner's words: the classes of words and fixed expressions, and the spelling lists, from ``words.txt``."""
+"""The classes of words and fixed expressions of instructions with all their forms, and the spelling lists."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from scope_ptz.english.colours import COLOURS
+from scope_ptz.english.grammar.closed_class import instruction_classes, misspellings
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, ORDINAL_WORDS
+from scope_ptz.english.grammar.tokens import tokenise
 from scope_ptz.planner.grammar.lexing.morphology import noun_forms, verb_forms
-from scope_ptz.planner.grammar.lexing.tokens import tokenise
 
 _OTHER_LISTS = frozenset({"fixed", "short", "real", "elsewhere"})
-
-
-@cache
-def _sections() -> dict[str, tuple[str, list[str]]]:
-    """Return the kind and the members of each line of ``words.txt`` by its name."""
-    sections: dict[str, tuple[str, list[str]]] = {}
-    for line in files(__package__).joinpath("words.txt").read_text("utf-8").splitlines():
-        if line.strip() and not line.startswith("#"):
-            head, _, members = line.partition(": ")
-            name, _, kind = head.partition(" ")
-            sections[name] = (kind, [member.strip() for member in members.split(", ") if member.strip()])
-    return sections
 
 
 @cache
 def phrases() -> Mapping[tuple[str, ...], frozenset[str]]:
     """Return the classes of every word and fixed expression, by the words of the expression."""
     table: dict[tuple[str, ...], set[str]] = {}
-    for name, (kind, members) in _sections().items():
+    for name, (kind, members) in instruction_classes().items():
         if name in _OTHER_LISTS:
             continue
         for member in members:
@@ -64,10 +52,10 @@ def known_words() -> frozenset[str]:
 @cache
 def spelling_lists() -> Mapping[str, Any]:
     """Return the lists for the correction of spelling: "fixed" maps misspellings to words; "short" and "real" contain words."""
-    fixed = dict(pair.split("=") for pair in _sections()["fixed"][1])
-    return {"fixed": fixed, "short": tuple(_sections()["short"][1]), "real": frozenset(_sections()["real"][1])}
+    classes = instruction_classes()
+    return {"fixed": misspellings(), "short": classes["short"].members, "real": frozenset(classes["real"].members)}
 
 
 def off_topic_phrases() -> tuple[str, ...]:
     """Return the phrases of questions that are not about what a camera sees."""
-    return tuple(_sections()["elsewhere"][1])
+    return tuple(instruction_classes()["elsewhere"].members)

@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
 _MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as slips
@@ -30,8 +31,26 @@ def corrected_word(word: str) -> str:
         return str(lists["fixed"][word])
     if len(word) < _MIN_SHORT_CHARS or not word.isalpha() or is_english(word):
         return word
+    if word.endswith("in") and not parts_of_speech(word) and verb_form(f"{word}g") == "participle":
+        return f"{word}g"  # "goin", "lookin"
+    if len(swapped := _with_letters_swapped(word)) == 1 and not parts_of_speech(word):
+        return swapped[0]
     close = [known for known in lists["short"] if (_is_slip if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
-    return close[0] if len(close) == 1 else word
+    close = close or _likely_words(word)
+    return close[0] if len(close) == 1 and not parts_of_speech(word) else word
+
+
+def _with_letters_swapped(word: str) -> list[str]:
+    """Return the words of the vocabulary that a word becomes if two neighbouring letters are exchanged: the commonest slip."""
+    swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(len(word) - 1)} - {word}
+    return sorted(swapped & known_words())
+
+
+def _likely_words(word: str) -> list[str]:
+    """Return the words of the whole vocabulary that a misspelt longer word may stand for."""
+    if len(word) < _MIN_CHARS:
+        return []
+    return [known for known in known_words() if len(known) >= _MIN_CHARS and word[0] == known[0] and within_one_edit(word, known)]
 
 
 def _is_slip(word: str, known: str) -> bool:

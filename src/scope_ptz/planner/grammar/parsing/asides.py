@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from scope_ptz.planner.grammar.conditions import Condition, Seen, Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, Clause, Source
+from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_time_ahead
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
 _WISH = r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at) _+"
 _FAILING = r"(SELF|PRON) (MODAL|DOV) (not|hardly|barely) _+|SELF (be|HAVEV|BE|LOWER-ED) _+"
 _STATE = (
+    r"all SELF (MODAL|HAVEV)? (SEE|SEE-ED|get|have|HAVEV) (BE|VISIBLE)+ _+|"
     r"(it|PRON|DET FREE|DET VIEWNOUN|DET PICTURE|there) (BE|looks|MODAL) (AMOUNTISH)* (too|so|very|ADVERB|not|FREE|in|DET|LOT) _*"
 )
 _POINTED_OUT = (
@@ -43,6 +47,19 @@ def is_wish(lexemes: Sequence[Lexeme]) -> bool:
     return bool(full_match(f"(FILLER|COMMA)* ({_WISH})", lexemes))
 
 
+def is_news(clause: Clause) -> bool:
+    """Return whether a clause says that something has happened: "something just banged", "somebody is on the phone"."""
+    subject = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA", "BUT")), None)
+    is_vague = subject is not None and subject.word in {"someone", "somebody", "something"}
+    return is_vague and not clause.is_question and is_statement(clause.lexemes)
+
+
+def is_shared_knowledge(clause: Clause) -> bool:
+    """Return whether a clause only appeals to what the listener knows: "... and you know how that goes", "who knows why"."""
+    knows = "(FILLER|COMMA|AND|BUT)* (you_know|SELF know|who knows|god knows|heaven knows)"
+    return not clause.is_question and full_match(f"{knows} (how|what|why|where|WHQ) _{{1,4}}", clause.lexemes) is not None
+
+
 def explains(clause: Clause, clauses: int) -> bool:
     """Return whether a clause that cannot be read only says why the others shall be done.
 
@@ -52,14 +69,19 @@ def explains(clause: Clause, clauses: int) -> bool:
         clause: The clause.
         clauses: The number of clauses of the instruction.
     """
-    if clause.is_question or clauses < 2 or not match_start(STATEMENT, clause.lexemes):
+    if clauses > 1 and is_polite(clause.lexemes):
+        return True
+    if clause.is_question or clauses < 2:
+        return False
+    clause = replace(clause, lexemes=without_time_ahead(clause.lexemes))
+    if not (match_start(STATEMENT, clause.lexemes) or is_statement(clause.lexemes) or is_comment(clause.lexemes)):
         return False
     if any(x.has("HOWMANY") or x.word in {"know", "tell", "whether"} for x in clause.lexemes):
         return False  # "I need to know how the bins are placed"
     denies = any(x.has("NOT") for x in clause.lexemes)
     if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):
         return False
-    if _NOT_A_REASON & {x.word for x in clause.lexemes}:
+    if _NOT_A_REASON & {x.word for x in clause.lexemes} and not match_start("(FILLER)* (i|we) never FREE", clause.lexemes):
         return False
     return not any(x.has("NUM", "DEG", "PAN", "TILT", "ZOOM", "PRESET", "HOME") for x in clause.lexemes)
 
@@ -96,6 +118,8 @@ def elliptical_condition(source: Source, clause: Clause, after: Clause | None) -
     if (match := full_match("(SEE|spot) (ANY|SOMEONE) (?P<thing>_*)|(ANY|any) (?P<thing>_+)", lexemes)) is not None:
         if not clause.is_question and lexemes[0].word not in {"any", "see", "spot", "notice", "detect"}:
             return None
+        if full_match("(FILLER)* (SCAN|FULL) (FILLER|FULL)*", after.lexemes):
+            return None  # "see a van anywhere? Check all around"
         thing = thing_of(source, match["thing"]) if match["thing"] else Thing("people")
         return Seen(thing) if thing is not None and thing.text else None
     if lexemes[0].has("SOMEONE", "NOONE") or (lexemes[0].word == "no" and clause.link != ","):
@@ -111,6 +135,13 @@ def _is_command(lexemes: Sequence[Lexeme]) -> bool:
 def is_courtesy(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "if" are only polite: "it's not too much trouble", "you don't mind"."""
     return bool(full_match(_FINE, lexemes))
+
+
+def is_ability(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "if" only say that a question may be too hard: "you can read it", "you can make them out"."""
+    return bool(
+        full_match("SELF (MODAL|can|BE able to)? (READ|make|make_out|TELL|SEE) (it|them|that|PRON)? (out|from here)*", lexemes)
+    )
 
 
 def is_need(lexemes: Sequence[Lexeme]) -> bool:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scope_ptz.planner.grammar.instruction_tree import AtPlaces, Count, Difference, Step, Tally, Total
+from scope_ptz.planner.grammar.instruction_tree import AtPlaces, Count, Difference, Report, Step, Tally, Total
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 
 _SUM = frozenset({
     "together", "altogether", "total", "in_total", "sum", "combined", "add_up", "add", "sum_up", "add_together", "plus",
-    "the_total_of", "the_sum_of", "the_total", "the_sum", "all_together", "taken_together", "put_together",
+    "the_total_of", "the_sum_of", "the_total", "the_sum", "all_together", "taken_together", "put_together", "total_number_of",
+    "total_of", "total_count_of", "combined_number_of", "overall_number_of", "total_amount_of", "in_all", "overall",
 })  # fmt: skip
+_SUM_AT_END = frozenset({"together", "altogether", "all_together", "in_total", "combined", "in_all", "overall", "total"})
+_ADDED = frozenset({"put", "taken", "added", "all", "counted", "and", "when"})
+"""Words before "together" that belong to it."""
+
 _DIFFERENCE = frozenset({"minus", "difference", "the_difference"})
 
 
@@ -20,7 +25,39 @@ def calculated(lexemes: Sequence[Lexeme], step: Step) -> Step:
     words = {x.word for x in lexemes}
     if len(parts) == 2 and words & _DIFFERENCE:
         return Difference(*parts)
-    return Total(parts) if len(parts) > 1 and words & _SUM else step
+    return Total(parts) if (len(parts) > 1 or any(part.everywhere for part in parts)) and words & _SUM else step
+
+
+def without_sum(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return the lexemes of a count without the words at its end that ask for a sum: "cars and vans in total", "put together"."""
+    lexemes = tuple(lexemes)
+    while len(lexemes) > 1 and lexemes[-1].has("FILLER"):
+        lexemes = lexemes[:-1]
+    if not lexemes or lexemes[-1].word not in _SUM_AT_END:
+        return lexemes
+    while len(lexemes) > 1 and (lexemes[-1].word in _SUM_AT_END or lexemes[-1].word in _ADDED):
+        lexemes = lexemes[:-1]
+    return lexemes
+
+
+def calculated_afterwards(steps: Sequence[Step]) -> list[Step]:
+    """Return steps in which counts are added or subtracted if "... and add them up" or "... report the difference" follows."""
+    out: list[Step] = []
+    for step in steps:
+        if not isinstance(step, Report) or step.calculation == "none":
+            out.append(step)
+            continue
+        first = len(out)
+        while first and _parts(out[first - 1]):
+            first -= 1
+        parts = tuple(part for counted in out[first:] for part in _parts(counted))
+        if step.calculation == "difference" and len(parts) == 2:
+            out[first:] = [Difference(*parts)]
+        elif step.calculation == "total" and (len(parts) > 1 or any(part.everywhere for part in parts)):
+            out[first:] = [Total(parts)]
+        else:
+            out.append(step)
+    return out
 
 
 def _parts(step: Step) -> tuple[Tally, ...]:
@@ -28,6 +65,8 @@ def _parts(step: Step) -> tuple[Tally, ...]:
     match step:
         case Count(things=things, view=view):
             return tuple(Tally(thing, view=view) for thing in things)
+        case AtPlaces(places=(), body=(Count(things=(thing,), view=view),)):
+            return (Tally(thing, view=view, everywhere=True),)
         case AtPlaces(places=places, body=(Count(things=(thing,), view=view),)):
             return tuple(Tally(thing, place, view) for place in places)
     return ()

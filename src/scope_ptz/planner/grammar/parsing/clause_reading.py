@@ -11,9 +11,11 @@ from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     Back,
     Count,
+    EachTime,
     Forbid,
     GoToPreset,
     Linked,
+    ListPresets,
     Mention,
     Move,
     Read,
@@ -28,19 +30,25 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Zoom,
     ZoomTo,
 )
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.asides import (
     explains,
     pointed_out,
 )
 from scope_ptz.planner.grammar.parsing.calculations import calculated
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
+from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
-from scope_ptz.planner.grammar.parsing.reader import Reader, bare_clause
-from scope_ptz.planner.grammar.parsing.segments.clause_starts import GERUNDS
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
+from scope_ptz.planner.grammar.parsing.reader import Reader
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import GERUNDS, SET_THERE
 
 NO_END = Unclear("Until when shall I keep doing that?")
+_INSPECTING = "checking|inspecting|watching|looking|viewing|verifying"
+_NO_COMMAND = Unclear("That tells me something, but not what to do. What shall I look at or look for?")
+_SET = ("ZOOM-ED", "PAN-ED", "TILT-ED")
 _SLIPS = frozenset({"er", "erm", "uh", "um", "uhm", "oops", "actually", "sorry", "no", "rather", "i_mean", "i_meant"})
 """Words with which someone corrects what they have just said."""
 
@@ -53,6 +61,8 @@ class ClauseReading:
         self.next = 0
         self.last: Step | None = None
         self.has_zoomed_in = False
+        self.visits_in_row = 0  # how many presets the last clauses go to, with nothing else between them
+        self.has_pictured_preset = False  # whether the last clause takes a picture of a preset
         self.has_visited = self.has_left = False  # in this sentence: whether the camera went to a preset, and moved on from there
 
     def _peek(self, offset: int = 0) -> Clause | None:
@@ -80,6 +90,8 @@ class ClauseReading:
             and (places := places_of(self.reader.source, match["places"]))
         ):
             return (SameAt(places),)  # "count the people at the gate, and then at the yard"
+        if isinstance(self.last, GoToPreset) and not clause.is_question:
+            clause = replace(clause, lexemes=_as_command(clause.lexemes))
         try:
             steps = self.reader.read(clause.lexemes, asked=clause.is_question)
         except NotUnderstoodError:
@@ -87,11 +99,18 @@ class ClauseReading:
                 return (Mention(thing),)
             if explains(clause, len(self.clauses)):
                 return ()
+            if len(self.clauses) == 1 and not clause.is_question and not clause.marker and is_statement(clause.lexemes):
+                return (_NO_COMMAND,)
+            if (pictured := self._another_picture(clause)) is not None:
+                return self._checked(clause, pictured)
             if (step := self._without_verb(clause)) is None:
                 raise
             steps = (step,)
         steps = self._checked(clause, steps)
-        if self.last and clause.link and all(isinstance(step, Forbid) and step.any_move for step in steps) and steps:
+        is_held = all(isinstance(step, Forbid) and step.any_move for step in steps) and not any(
+            x.has("NEGATED") or x.word.startswith("do_not") for x in clause.lexemes
+        )
+        if self.last and clause.link and is_held and steps:
             steps = ()  # "bring it up five degrees and hold"
         if isinstance(self.last, ZoomTo) and any(x.word in {"close_up", "closer_look", "a_closer_look"} for x in clause.lexemes):
             steps = tuple(step for step in steps if not isinstance(step, Move))  # "find the van, get a close-up"
@@ -100,8 +119,19 @@ class ClauseReading:
         if len(steps) == 1 and isinstance(steps[0], Track) and not steps[0].thing.text and isinstance(self.last, Track):
             steps = ()  # "stay on the crane, tracking it"
         steps = self._with_clear_return(clause, steps)
+        if any(isinstance(step, Move | GoToPreset | ZoomTo) for step in steps):
+            self.reader = Reader(replace(self.reader.source, has_moved=True))
         self.last = steps[-1] if steps else self.last
+        self.visits_in_row = self.visits_in_row + len(steps) if all(isinstance(step, GoToPreset) for step in steps) else 0
         return steps
+
+    def _another_picture(self, clause: Clause) -> tuple[Step, ...] | None:
+        """Return the steps of "another one 20 degrees further to the right" after a picture; None for other clauses."""
+        match = full_match("(FILLER)* (DET)? ANOTHER (one|PICTURE)? (at|from)? (?P<turn>(NUM DEG?|LITTLE|LOT) _+)", clause.lexemes)
+        if not isinstance(self.last, Snap) or match is None or not any(x.has(*DIRECTIONS) for x in match["turn"]):
+            return None
+        moves = self.reader.read(match["turn"])
+        return (*moves, Snap()) if len(moves) == 1 and isinstance(moves[0], Move) else None
 
     def _with_clear_return(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps of a clause. "Go to the gate, zoom in and return" is asked about: there are two places to return to."""
@@ -121,22 +151,63 @@ class ClauseReading:
             self.has_visited |= isinstance(step, GoToPreset)
         return steps
 
+    def _is_aside(self, clause: Clause, steps: tuple[Step, ...]) -> bool:
+        """Return whether a clause asks for nothing new: "find the hydrant, centre it", "tilt up 10, checking the wires"."""
+        if match_start("(FILLER)* (CENTREWORD|CENTREALL) (it|them|PRON|him|her)", clause.lexemes):
+            return isinstance(self.last, ZoomTo | Track) and all(isinstance(step, Move) for step in steps)
+        is_inspecting = match_start(f"(FILLER)* ({_INSPECTING})", clause.lexemes) and not search(
+            "IF|if|whether|for|HOWMANY", clause.lexemes
+        )
+        is_wish = match_start(
+            "(DET|my|our)? FREE{1,2} (wants|needs|wanted) (DET)? (FREE)? (look|view|SEE|to SEE|VIEWNOUN|eyes)", clause.lexemes
+        )
+        return bool(is_inspecting or is_wish) and isinstance(self.last, Move) and clause.link in {",", ""} and self.next > 1
+
+    def _is_alternative(self, clause: Clause, steps: tuple[Step, ...]) -> bool:
+        """Return whether a clause may replace the one before it: "go to the gate. Let's go to the yard instead"."""
+        if not any(x.has("INSTEAD") and x.word == "instead" for x in clause.lexemes) or len(steps) != 1 or self.last is None:
+            return False
+        is_conditional = any(other.marker for other in self.clauses[: self.next])
+        return type(steps[0]) is type(self.last) and not is_conditional
+
     def _checked(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps of a clause, or what else its words ask for in this place."""
         first = clause.lexemes[0] if clause.lexemes else None
+        slip = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA") or x.word in _SLIPS), None)
         steps = tuple(calculated(clause.lexemes, step) for step in steps)
         same = full_match(f"HOWMANY BE (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)})", clause.lexemes)
         if same and isinstance(self.last, Count) and len(words := self.last.things[-1].text.split()) in {1, 2} and len(steps) == 1:
             return (Count((Thing(f"{same['state'][0].word} {words[-1]}"),), self.last.view),)  # "... and how many are moving?"
         if (
             len(steps) == 1
-            and first is not None
-            and first.word in _SLIPS
-            and clause.link in {",", "and"}
+            and slip is not None
+            and slip.word in _SLIPS
+            and (clause.link in {",", "and"} or slip.word in {"i_mean", "i_meant"})
             and self.last is not None
-            and (type(steps[0]) is type(self.last) or first.word in {"i_mean", "i_meant"})
+            and (type(steps[0]) is type(self.last) or slip.word in {"i_mean", "i_meant"})
         ):
             return (Unclear("Which of the two do you mean?"),)  # "go to the gate, er, the yard"
+        if self.visits_in_row > 1 and len(steps) == 1 and isinstance(steps[0], AtPlaces) and not steps[0].places and steps[0].body:
+            if any(x.word.startswith("each") for x in clause.lexemes):
+                return (EachTime(steps[0].body),)  # "gate, yard, one photo in each place"
+            return (Unclear("Shall I do that at every preset, or only at those that you have named?"),)
+        if self._is_alternative(clause, steps):
+            return (Unclear("Which of the two do you mean?"),)
+        if isinstance(self.last, ZoomTo | Count | Mention) and full_match(
+            "(FILLER)* CENTREWORD (it|them|him|her) (FILLER)*", clause.lexemes
+        ):
+            return (ZoomTo(Thing()),)  # "find the hydrant and centre it"
+        before = self.clauses[self.next - 2].lexemes if self.next > 1 else ()
+        is_turned = any(x.has("REVERSE", "AROUND") for x in before) and not any(x.has("NUM") for x in (*before, *clause.lexemes))
+        if (
+            is_turned
+            and steps == (self.last,)
+            and clause.link in {",", "and"}
+            and not any(x.has("AGAINWORD") for x in clause.lexemes)
+        ):
+            return ()  # "turn round and face the other way"
+        if self._is_aside(clause, steps):
+            return ()
         is_visit = len(steps) == 1 and isinstance(steps[0], GoToPreset) and steps[0].how == "bare"
         if is_visit and first is not None and first.has("BE"):
             return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
@@ -145,7 +216,14 @@ class ClauseReading:
         if is_visit and first is not None and first.word in {"what_about", "how_about"} and self.last is None:
             return (Unclear("What shall I look for there?"),)
         words = [x.word for x in clause.lexemes]
-        if is_visit and words[:1] == ["one"]:
+        if isinstance(self.last, ListPresets) and full_match(
+            "(FILLER)* (LISTING|SHOW|TELL) (me|us)* (em|them|PRON)", clause.lexemes
+        ):
+            return ()  # "presets? List them."
+        if is_visit and self.has_pictured_preset and clause.link in {",", "and", "then"}:
+            return (*steps, Snap())  # "photograph the gate, then the yard"
+        self.has_pictured_preset = len(steps) == 1 and isinstance(steps[0], AtPlaces) and steps[0].body == (Snap(),)
+        if is_visit and words[:1] in (["one"], ["another"], ["another_one"]):
             return (*steps, Snap())  # "a shot of the gate and one of the yard"
         if words[-2:] == ["take", "one"] and isinstance(self.last, Snap):
             return ()  # "my boss wants a photo of the trailer, so take one"
@@ -159,6 +237,8 @@ class ClauseReading:
         turns = moves and all(isinstance(part, Turn) for step in steps if isinstance(step, Move) for part in step.parts)
         if turns and is_aimed and is_undirected and isinstance(steps[0], Move):
             return (Unclear("Is that the angle to turn to, or the angle to turn by?"),)  # "set zoom 4x, pan 10 and tilt -5"
+        if is_aimed and (again := full_match("(FILLER|to)* (?P<target>NUM) X (FILLER)*", clause.lexemes)):
+            return (Move((Aim("zoom", again["target"][0].value),)),)  # "zoom to 2x, then 10x"
         if moves and [x.word for x in clause.lexemes[:2]] == ["make", "that"]:
             return (Unclear("Which way shall I turn, and how far?"),)  # a correction of something that was not said
         if moves and self.has_zoomed_in and any(x.word == "back_out" for x in clause.lexemes) and not search("NUM", clause.lexemes):
@@ -195,14 +275,32 @@ class ClauseReading:
         link = clause.link
         return [Linked(link if i == 0 else "and", step) for i, step in enumerate(steps)]
 
-    def _is_trailing(self) -> bool:
-        """Return whether the condition that comes next belongs to the clause before it, and not to the clauses after it."""
+    @staticmethod
+    def _is_place(clause: Clause) -> bool:
+        """Return whether a clause only names the place of the next one: "at the gate, if there is a van, take a picture"."""
+        return bool(clause.lexemes) and clause.lexemes[-1].has("COMMA")
+
+    def _is_trailing(self, clause: Clause) -> bool:
+        """Return whether the condition that comes next belongs to a clause before it, and not to the clauses after it."""
         condition, after = self._peek(), self._peek(1)
         if condition is None:
             return False
-        if condition.link == "":
+        if condition.link == "" and not self._is_place(clause):
             return True
         return after is None or after.link == "." or after.marker == "IFNOT"
+
+
+def _as_command(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return a clause after a preset as a command if it says how the camera is set there: "the gate, zoomed in", "... at 3x"."""
+    if match_start("(FILLER|COMMA)* at NUM X", lexemes):
+        start = next(i for i, x in enumerate(lexemes) if x.word == "at")
+        return (*lexemes[:start], replace(lexemes[start], word="zoom", classes=frozenset({"ZOOM"})), *lexemes[start:])
+    if match_start(SET_THERE, lexemes) is None:
+        return tuple(lexemes)
+    verb = next(i for i, x in enumerate(lexemes) if x.has(*_SET))
+    name = next(kind for kind in _SET if lexemes[verb].has(kind)).removesuffix("-ED")
+    command = replace(lexemes[verb], word=name.lower(), classes=frozenset({name}))
+    return (*lexemes[:verb], command, *lexemes[verb + 1 :])
 
 
 def _is_open_ended(step: Step) -> bool:

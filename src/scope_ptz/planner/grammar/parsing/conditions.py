@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar.conditions import (
@@ -21,7 +22,7 @@ from scope_ptz.planner.grammar.conditions import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, is_noun_phrase, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun, is_noun_phrase, people, thing_of, things_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
@@ -37,7 +38,7 @@ _QUANTITY = (
 _SEES = (
     r"(SELF|it|CAMERA|one|PRON|DET CAMERA) (can|could|do|ADVERB|now|actually|finally|first|HAVEV|start to|"
     r"happen to|be able to|am|are|able|to|get)* (?P<not>(do|DOV|MODAL)? not|no)? (longer|ADVERB)? (COUNT|FIND|"
-    r"SEE|SEE-S|SEE-ED|SEE-ING|got|have|HAVEV|get|SHOW)"
+    r"SEE|SEE-S|SEE-ED|SEE-ING|got|have|HAVEV|get|SHOW|hit|hits|reach|reaches|come_across|get_to|CARRY to)"
 )
 _APPEARS = (
     r"(BE|DOV)? (?P<not>not)? (ADVERB|clearly)* (VISIBLE|BE VISIBLE|BE (in the)? CENTREWORD|SHOW-S|SHOW-ING|"
@@ -64,10 +65,18 @@ _LEGIBLE = (
 
 def condition_of(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
     """Return the condition that lexemes state; None if they state none."""
-    lexemes = trimmed(lexemes, "FILLER", "COMMA", "QUOTE", "THEN")
+    lexemes = without_happening(trimmed(lexemes, "FILLER", "COMMA", "QUOTE", "THEN"))
     if not lexemes:
         return None
     return _joined(source, lexemes) or _seen_but_not(source, lexemes) or _single(source, lexemes)
+
+
+def without_happening(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return lexemes without "happens to": "a van happens to be at the gate" is "a van is at the gate"."""
+    for i, x in enumerate(lexemes):
+        if x.word in {"happens", "happen"} and [y.word for y in lexemes[i + 1 : i + 3]] == ["to", "be"]:
+            return (*lexemes[:i], replace(lexemes[i + 2], word="is", classes=lexemes[i + 2].classes | {"BE"}), *lexemes[i + 3 :])
+    return tuple(lexemes)
 
 
 def _joined(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
@@ -98,6 +107,8 @@ def _single(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
         lexemes,
     ):
         return Answered()
+    if full_match("(one|it|ANY|some) (of (PRON|those))? (BE VISIBLE|VISIBLE|can be (SEE-ED|seen|found)|BE FIND-ED)+", lexemes):
+        return Seen(Thing())
     if match := full_match(_READABLE, lexemes):
         return Readable(thing) if (thing := thing_of(source, match["thing"])) is not None else None
     if match := full_match(_LEGIBLE, lexemes):
@@ -173,6 +184,7 @@ def _number(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Con
         ),
         r"(DET)? (COUNTNOUN) (?P<thing>_+?) (?P<quantity>(exceeds|MORETHAN) (?P<number>NUM) (?P<tail>ORMORE)?)",
         rf"(?P<thing>_+?) (BE|number) {_QUANTITY}",
+        rf"{_QUANTITY} (of)? (?P<thing>_+?) BE (?P<state>(?!not)_+)",
     )
     for pattern in patterns:
         match = full_match(pattern, lexemes)
@@ -185,6 +197,8 @@ def _number(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Con
             thing = thing_of(source, words)
         if thing is None or (words and words[0].has("DEG", "X", "PERCENT")):
             continue
+        if match.has("state"):
+            thing = replace(thing, text=f"{thing.text} {text_of(source, match['state'])}")  # "two or more people are waiting"
         seen = Seen(thing, _quantity(match), view)
         return Negated(seen) if "not" in match.names else seen
     return None
@@ -195,7 +209,7 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
     for words in (bare, lexemes) if bare != lexemes else (lexemes,):
         if match := full_match(rf"(?P<none>NOONE|NONE)? (?P<someone>SOMEONE)? (?P<thing>_*?) ({_APPEARS}|BE) ?", words):
             nobody = match.has("none") and match["none"][0].has("NOONE")
-            who = _people(source, match["thing"]) if nobody or match.has("someone") else None
+            who = people(source, match["thing"]) if nobody or match.has("someone") else None
             if who is not None:
                 return Seen(who, Quantity("==", 0) if match.has("none") or match.has("not") else Quantity(), view)
         patterns = (
@@ -222,10 +236,11 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
                 continue
             negated = bool({"none", "not", "not2"} & match.names)
             words_of_thing = match["thing"]
+            thing: Thing | None
             if words_of_thing and words_of_thing[0].has("NOONE"):
-                thing, negated = _people(source, words_of_thing[1:]), True
+                thing, negated = people(source, words_of_thing[1:]), True
             elif words_of_thing and words_of_thing[0].has("SOMEONE"):
-                thing = _people(source, words_of_thing[1:])
+                thing = people(source, words_of_thing[1:])
             elif things := things_of(source, trimmed(words_of_thing, "NONE" if negated else "FILLER")):
                 if negated and len(things) > 1:
                     return Joined(tuple(Seen(thing, Quantity("==", 0), view) for thing in things), "all")
@@ -237,17 +252,24 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
     return _bare_thing(source, bare, view)
 
 
-def _people(source: Source, rest: Sequence[Lexeme]) -> Thing | None:
-    """Return "people in the lane" for "anyone in the lane"."""
-    rest = trimmed(rest, "VISIBLE", "FILLER", "BE")
-    return Thing(described(" ".join(["people", text_of(source, rest)]).strip()))
-
-
 def _bare_thing(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Condition | None:
     """Read "any people" after "if"."""
     match = full_match(r"(any|ANY|there|still)+ (?P<thing>_+)", lexemes)
     thing = thing_of(source, match["thing"]) if match else None
     return Seen(thing, Quantity(), view) if thing is not None and thing.text and not search("BE|HAVEV", lexemes) else None
+
+
+def named_thing(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
+    """Read "smoke" after "if" or "in case of"."""
+    words, view = without_view(lexemes[1:] if lexemes and lexemes[0].word == "of" else lexemes)
+    thing = thing_of(source, words) if words and _names_a_thing(words) else None
+    return Seen(thing, Quantity(), "full" if has_full_scope(lexemes) else view) if thing is not None and thing.text else None
+
+
+def _names_a_thing(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are a known noun with what describes it: "smoke", "queue at the gate", unlike "open"."""
+    head = next((i for i, x in enumerate(lexemes) if x.has("PREP")), len(lexemes))
+    return 0 < head < 4 and all(x.has("FREE", "DET") for x in lexemes[:head]) and is_noun(lexemes[head - 1].word)
 
 
 def _statement(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:

@@ -8,9 +8,14 @@ from functools import lru_cache
 
 from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step, Sweep
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.contractions import with_contractions
+from scope_ptz.planner.grammar.parsing.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.reader import Reader
+from scope_ptz.planner.grammar.parsing.repairs import repaired, unresolved_editing
+from scope_ptz.planner.grammar.parsing.segments.order import in_order
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
+from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first
 from scope_ptz.planner.grammar.parsing.sentences import Sentences
 
 MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
@@ -25,7 +30,7 @@ class Parsed:
     """The result of parsing.
 
     Attributes:
-        text: The instruction.
+        text: The instruction, with spaces instead of the words that the user retracted.
         steps: Its steps; None if some words were not understood.
         unread: Quotations of the words that were not understood.
     """
@@ -41,8 +46,12 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     lexemes = lexemes_of(text, presets) if len(text) <= MAX_CHARS else ()
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
+    meant = without_denials(repaired(with_contractions(lexemes), text))
+    lexemes, text = meant.lexemes, meant.text
+    if unresolved := unresolved_editing(lexemes):
+        return Parsed(text, None, _quoted(text, unresolved))
     try:
-        clauses = clauses_of(lexemes)
+        clauses = in_order(with_settings_first(clauses_of(lexemes)))
         steps = Sentences(Reader(Source(text, presets)), clauses).steps()
     except NotUnderstoodError as error:
         return Parsed(text, None, _quoted(text, error.lexemes))

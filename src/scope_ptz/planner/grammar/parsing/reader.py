@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar.instruction_tree import (
+    Ask,
     AtIntervals,
     AtPlaces,
     Between,
-    DoAgain,
     EachTime,
     Forbid,
     GoToPreset,
@@ -20,46 +20,54 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Repeat,
     Report,
     Rescope,
-    SameAt,
     Snap,
     Step,
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.calculations import without_sum
+from scope_ptz.planner.grammar.parsing.controls import control_step
 from scope_ptz.planner.grammar.parsing.looks.camera_state import state_step
-from scope_ptz.planner.grammar.parsing.looks.comparisons import comparison_step, sum_step
+from scope_ptz.planner.grammar.parsing.looks.comparisons import comparison_step
 from scope_ptz.planner.grammar.parsing.looks.counting import check_places_step
 from scope_ptz.planner.grammar.parsing.looks.look_clauses import look_step
+from scope_ptz.planner.grammar.parsing.looks.sums import sum_step
 from scope_ptz.planner.grammar.parsing.moves.motion import turn_step
-from scope_ptz.planner.grammar.parsing.moves.places import go_step, tour_step, unknown_place
+from scope_ptz.planner.grammar.parsing.moves.places import go_step, listing_step, tour_step, unknown_place
+from scope_ptz.planner.grammar.parsing.moves.returns import return_step
+from scope_ptz.planner.grammar.parsing.moves.special_turns import CLOCK_POSITION, special_turn
 from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_step
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
+from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 _EDGE = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "QUOTE", "INSTEAD", "DASH", "OPEN", "CLOSE", "AND", "BUT", "ATSAMETIME")
-_WRAPPERS = (
-    (
-        r"(MODAL SELF (FILLER|be able to|kindly|maybe|perhaps|possibly|be so kind as to|help|mind|not)* "
-        r"(?!(ADVERB)* (SEE|be |have|READ))|WRAPPER (?!DET? HOME)|only (?=TAKE|SNAP|PAN|TILT|ZOOM|SWITCH|CARRY)|"
-        r"CAMERA NUM COMMA|make it (?=AIM|TURN|PAN|TILT|ZOOM|FACE)|SELF (BE|am|was|were) (hoping|wondering|asking|"
-        r"FREE) (if|that|whether)? SELF (MODAL)|(DET)? CAMERA (should|must|needs to|has to|ought to)|(DET)? "
-        r"FREE{1,2} (wants|needs|WRAPPER|TAKE-S) (SELF to|to (?=SEE|SHOW|have)|to SEE)?(?=DET|PRESET|NUM|it|"
-        r"PICTURE|LITTLE|COUNTNOUN|CARRY|PAN|TILT|ZOOM)|SELF (will|would)? (need|want|love|like) (SELF to|"
-        r"to)?(?=DET|NUM|PICTURE|PAN|TILT|ZOOM|TURN|CARRY|SWITCH|SNAP|COUNT)|SELF would (be FREE|appreciate it) "
-        r"(if SELF MODAL|WRAPPER)|"
-        r"SELF would be (grateful|thankful|glad) for (?=DET|NUM|PICTURE)|"
-        r"(FILLER|LEADFILLER(?! NUM)|FIRSTLY|COMMA|QUOTE|AND|BUT|INSTEAD|PURPOSE))"
-    ),
-)
-_NEGATION = "(NEGATED|(SELF)? (do|MODAL|need) not|DOV not)"
 _SILENT_CLAUSE = r"(FILLER|LEADFILLER|FIRSTLY|COMMA|WRAPPER|PURPOSE|QUOTE|THEN|AND|SELF|HALT there)*"
+_CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
+"""The words with which someone opens a radio message: "camera one from control"."""
 
+
+_CAMERA_MOVED = "(FILLER)* (DET)? CAMERA (ADVERB|FILLER)* (PAN-ED|TILT-ED|ZOOM-ED|TURN-ED|CARRY-ED|SWITCH-ED)"
+"""A report of a move, which is not a command: "the camera panned left"."""
+_TO_CLOCK_POSITION = (
+    f"(AIM|TURN|PAN|TILT|CARRY|SWITCH|ZOOM|SHOW|FIND|to|at|on|for|in|DET|SELF|GLUE|CAMERA|it|FILLER)* {CLOCK_POSITION} "
+    f"(PRESETNOUN|SIDE|direction|FILLER)*"
+)
+"""A clause that turns to a clock position: "look at 3 o'clock"."""
+
+_SHOULD_HAVE_MOVED = "(WRAPPER|MODAL) have (FILLER|ADVERB)* (PAN-ED|TILT-ED|ZOOM-ED|TURN-ED|CARRY-ED|SWITCH-ED)"
+"""A remark about an earlier move: "you should have panned left"."""
+
+_RECORDING = (
+    "(FILLER|KEEP)* (record|recording|film|filming) (for (AMOUNTISH|DET)*)? ((NUM|DET|FRACTION)* (SECONDS|MINUTES|HOURS))? "
+    "(FILLER)*"
+)
 
 _ASKING = frozenset({"did", "does", "has", "had", "is", "are", "was", "were"})
 _PAST_FORMS = tuple(f"{verb}-ED" for verb in VERBS)
@@ -81,164 +89,32 @@ class Reader:
         Raises:
             NotUnderstoodError: No reading covers all words of the clause.
         """
+        if match_start(_CAMERA_MOVED, lexemes) or search(_SHOULD_HAVE_MOVED, lexemes):
+            raise NotUnderstoodError(lexemes)
+        if full_match(_CALL_SIGN, lexemes):
+            return ()
         lexemes = bare_clause(lexemes)
+        if asked and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
+            lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"
+        if enough := full_match(
+            "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT)) ((MODAL|should) (do|DOACT|do_it|be enough|suffice)|"
+            "BE enough) (nicely|fine|FILLER)*",
+            lexemes,
+        ):
+            lexemes = tuple(enough["body"])  # "a quarter turn to the left will do it"
         if not lexemes or full_match(_SILENT_CLAUSE, lexemes):
             return ()
-        steps = self._as_control(lexemes) or self._with_adjuncts(lexemes, asked) or self._plain(lexemes, asked)
-        if steps is None:
-            raise NotUnderstoodError(lexemes)
+        steps = control_step(self.source, lexemes) or self._with_adjuncts(lexemes, asked) or self._plain(lexemes, asked)
+        if steps is None or any(isinstance(inner, Rescope) for step in steps for inner in getattr(step, "body", ())):
+            raise NotUnderstoodError(lexemes)  # "everywhere each time": there is nothing to look for
         return steps
-
-    def _as_control(self, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
-        """Read clauses that say what not to do, what to do again, or how the result is to be reported."""
-        if match_start(_NEGATION, lexemes) and not match_start("NEGATED (more)? (FREE|PRESETNOUN) BE", lexemes):
-            return self._forbidden(lexemes)
-        if full_match(
-            "(FILLER)* (STAY|STAY-ING) (FILLER|there|here|where|SELF|BE|CAMERA|still|DET|VIEWNOUN|this|put|as)*", lexemes
-        ):
-            return (Forbid(any_move=True),)
-        if match := full_match(
-            (
-                "(REPEAT|AGAINWORD|TURN)? (REPEAT|AGAINWORD) (FILLER|AGAINWORD|INTURN|COMMA|THEN)* ((?P<number>NUM) (X|"
-                "MORE X|MORE) (INTURN|MORE|FILLER)*|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<x>NUM))? (INTURN|MORE|"
-                "FILLER|AGAINWORD)*"
-            ),
-            lexemes,
-        ):
-            number = match["number"] or match["x"]
-            times = round(number[0].value) if number else 2 if match.has("twice") else 3 if match.has("thrice") else None
-            more = any(x.has("MORE") and x.word in {"more", "another"} for x in lexemes)
-            return (DoAgain(times, more=more),)
-        if full_match("(FILLER)* NUM (x|PERCENT) (FILLER)*", lexemes):
-            return (Unclear("Shall I zoom, or do that several times?"),)
-        if match := full_match(
-            (
-                "(FILLER|AGAINWORD)* ((?P<number>NUM) X|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<x>NUM)) (INTURN|FILLER|"
-                "MORE|over|AGAINWORD)*"
-            ),
-            lexemes,
-        ):
-            number = match["number"] or match["x"]
-            return (
-                DoAgain(
-                    round(number[0].value) if number else 2 if match.has("twice") else 3,
-                    more=any(x.word == "more" for x in lexemes),
-                ),
-            )
-        if match := full_match("(REPEAT|REPEAT SELF) (FILLER)* (at|for|in|on|from) (?P<places>_+)", lexemes):
-            places = places_of(self.source, match["places"])
-            return (SameAt(places),) if places is not None else None
-        if full_match(
-            (
-                r"(FILLER)* (LEAVE|keep) (DET|SELF|CAMERA)* (pan|tilt|zoom|CAMERA|ZOOMNOUN|height|angle|focus|PANNOUN|"
-                r"TILTNOUN) (level|setting)? (alone|as it is|where it is|the same|SAMEAMOUNT|unchanged|as is|fixed|put) "
-                r"(FILLER)*"
-            ),
-            lexemes,
-        ) and any(x.has("PAN", "TILT", "ZOOM", "ZOOMNOUN", "TILTNOUN", "PANNOUN") or x.word in {"lens", "focus"} for x in lexemes):
-            return (Forbid(),)
-        if full_match("(look|TELL|AIM|have_a_look|take_a_look) (FILLER|there|here|now|please)*", lexemes) and any(
-            x.word in {"look", "have_a_look", "take_a_look", "see", "check"} for x in lexemes
-        ):
-            return (Report(),)
-        if full_match(
-            (
-                "(TELL|READ) (me|us)* (whether|if|IF|that|so) (SELF|it|there)* (can|BE|HAVEV)* (FIND-ED|SEE-ED|found|"
-                "find|SEE|FIND|so)? (one|it|any|them|so)*"
-            ),
-            lexemes,
-        ) and any(x.word in {"whether", "if", "so"} for x in lexemes):
-            return (Report(),)
-        if full_match("(which|that|those|they|these) (BE) (not)? (DET)? (different|same|other|distinct) _*", lexemes):
-            return (Report(),)
-        if full_match(
-            (
-                "(add|sum|total|COUNT) (DET|PRON|NUM|both|EVERY|up|together|of|FREE)* (up|together|total|UP)|(TELL|CARRY|"
-                "TAKE|SHOW|what is) (me|us)* (the|DET) (sum|total|difference|result|count|answer)"
-            ),
-            lexemes,
-        ) and not any(x.has("FREE") and x.word not in {"sum", "difference", "result", "together", "total"} for x in lexemes):
-            return (Report(),)
-        if full_match(
-            "(SNAP|TAKE|SNAP-ING|TAKE-ING) (DET)? (PICTURE)? (of)? (both|EVERY|all|each) (of them|one|PRON|of)*", lexemes
-        ) and any(x.has("SNAP", "PICTURE", "SNAP-ING") for x in lexemes):
-            return (EachTime((Snap(),)),)
-        if full_match("(HALT|HALT-ING|hold|wait|pause) (there|here|FILLER|moving|CAMERA|it)*", lexemes):
-            return (Forbid(any_move=True),)
-        if full_match(
-            (
-                "(TELL|report|SAY|let me know|REPORT) (me|us|SELF|back|FILLER|DET|result|results|so|that|it|answer|"
-                "number|what SELF FIND|what SELF SEE|to|findings|count|how SELF get on|about|PRON|TELL|DET COUNTNOUN|how "
-                "it went|total|both)*"
-            ),
-            lexemes,
-        ) and not search("what SELF SEE", lexemes):
-            return (Report(),)
-        return None
-
-    def _forbidden(self, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
-        """Read "don't zoom", "without moving the camera" and "no zooming"."""
-        match = match_start(f"{_NEGATION} (FILLER|need to|have to|ever|bother)*", lexemes)
-        rest = lexemes[match.size :] if match else lexemes
-        if not rest:
-            return None
-        forms = "|".join(f"{verb}|{verb}-ING" for verb in VERBS)
-        if not match_start(f"(FILLER|DET|any)* ({forms}|ZOOMNOUN|LEFT|RIGHT|UP|DOWN|NUM|movement|LITTLE|LOT)", rest):
-            return None
-        parts = [x for x in rest if not x.has("FILLER", "CAMERA", "DET", "PRON", "SELF", "COMMA", "AROUND")]
-        is_any = all(
-            x.word in {"move", "moving", "movement", "turn", "turning", "anything", "at_all", "all", "at"} or x.has("OR", "CAMERA")
-            for x in parts
-        )
-        allowed = all(
-            x.has(
-                "FREE",
-                "DET",
-                "FILLER",
-                "CAMERA",
-                "PREP",
-                "PRON",
-                "SELF",
-                "COMMA",
-                "OR",
-                "AND",
-                *VERBS,
-                "ZOOMNOUN",
-                "NUM",
-                "DEG",
-                "LEFT",
-                "RIGHT",
-                "UP",
-                "DOWN",
-                "IN",
-                "OUT",
-                "LITTLE",
-                "LOT",
-                "LIMIT",
-                "X",
-                "MORE",
-                "AMOUNTISH",
-                "PRESET",
-                "HOME",
-                "PICTURE",
-                "VIEWNOUN",
-                "NOW",
-                "ANY",
-                *(f"{v}-ING" for v in VERBS),
-                "GLUE",
-                "PERCENT",
-                "HOWEVER",
-            )
-            for x in rest
-        )
-        return (Forbid(any_move=is_any),) if allowed else None
 
     def _with_adjuncts(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
         """Read a clause with words that repeat it, or do it elsewhere: "... each time", "... at every preset", "twice, ..."."""
         if (
             (match := full_match(r"(?P<body>_+?) (COMMA)? (EACHTIME|at ATATIME) (FILLER|INTURN|AGAINWORD)*", lexemes))
             and not asked
-            and not search("COUNTNOUN \\Z", match["body"])
+            and not search("(COUNTNOUN|BE) \\Z", match["body"])
         ):
             body = match["body"]
             if (ahead := full_match(r"with (?P<what>_+)", body)) is not None:
@@ -246,13 +122,34 @@ class Reader:
             return (EachTime(self.read(body)),)
         if match := full_match(r"(EACHTIME) (COMMA|FILLER)* (?P<body>_+)", lexemes):
             return (EachTime(self.read(match["body"])),)
-        if match := full_match(r"(?P<body>_+?) (EVERY (?P<size>NUM) DEG|at (?P<size>NUM) DEG intervals) (INTURN)?", lexemes):
+        if match := full_match(
+            r"(?P<body>_+?) (EVERY (?P<size>NUM) DEG|at (?P<size>NUM) DEG intervals) (INTURN)?|(?P<body>(TAKE-ING|SNAP-ING) _+?) "
+            r"EVERY (?P<size>NUM)",
+            lexemes,
+        ):
             return (AtIntervals(self.read(match["body"]), match["size"][0].value),)
         if match := full_match(r"(?P<body>_+?) BETWEENEACH|BETWEENEACH COMMA? (?P<late>_+)", lexemes):
             return (Between(self.read(match["body"] or match["late"])),)
         step = self._whole(lexemes)
         if step is not None:
             return step
+        if match := full_match("(?P<body>_+) per PRESETNOUN", lexemes):
+            return (AtPlaces((), self.read(match["body"])),)
+        if match := full_match(
+            "(from|starting from|starting at|at) HOME (COMMA|FILLER)* (?P<body>_+)|(?P<body>_+?) (from|starting from|"
+            "starting at) HOME",
+            lexemes,
+        ):
+            return (Home(), *self.read(match["body"]))
+        if match := full_match(
+            "(?P<pictures>(TAKE|SNAP|DET)* NUM PICTURE) COMMA? (at|with|each)* (?P<turn>NUM DEG) (apart|intervals) COMMA? "
+            "(CARRY-ING|PAN-ING|TILT-ING|TURN-ING|CARRY|PAN|TILT|to|DET|GLUE)* (?P<way>LEFT|RIGHT|UP|DOWN) (FILLER)*",
+            lexemes,
+        ):
+            between = self.read((*match["way"], *match["turn"]))
+            pictures = self.read(match["pictures"])
+            if len(pictures) == 1 and isinstance(pictures[0], Snap) and pictures[0].times > 1:
+                return (replace(pictures[0], times=1), Repeat((*between, Snap()), pictures[0].times - 1))
         if not search("to NUM X", lexemes) and not any(
             x.has(*ZOOM_TOPICS, *(f"{topic}-ING" for topic in ZOOM_TOPICS), "IN", "OUT") for x in lexemes
         ):
@@ -268,9 +165,11 @@ class Reader:
     def _whole(self, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
         """Read clauses whose preset is not an adjunct."""
         found = (
-            comparison_step(self.source, lexemes, self._moves)
+            listing_step(lexemes)
             or sum_step(self.source, lexemes)
+            or comparison_step(self.source, lexemes, self._moves)
             or go_step(self.source, lexemes)
+            or return_step(lexemes)
             or state_step(lexemes)
             or tour_step(self.source, lexemes)
         )
@@ -294,14 +193,19 @@ class Reader:
         if places is not None and rest:
             if all(x.has("GLUE", "FILLER", "COMMA") for x in rest):
                 return None
-            return (AtPlaces(places, self.read(rest, asked=asked)),)
+            return (AtPlaces(places, self.read(rest, asked=asked), is_fronted=True),)
         if search("THAN|than|COMPARE", lexemes):
             return None
-        rest, places = place_after(self.source, lexemes)
+        rest, places = place_after(self.source, without_sum(lexemes))
         if places is None or not rest:
             return None
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
             return None
+        if full_match("(BE)? (SOMEONE|NOONE|anything|nothing)", rest):
+            question = text_of(self.source, rest)
+            return (AtPlaces(places, (Ask(f"{'' if rest[0].has('BE') else 'Is '}{question} there?"),)),)
+        if full_match("BE (DET|ANY|SELF)* FREE{1,3}", rest) and is_only_noun(rest[-1]):
+            return (AtPlaces(places, (Ask(f"{text_of(self.source, rest)} there?"),)),)  # "is the van at the gate?"
         try:
             body = self.read(rest, asked=asked)
         except NotUnderstoodError:
@@ -313,6 +217,10 @@ class Reader:
     def _plain(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
         """Read a clause without adjuncts."""
         failed: NotUnderstoodError | None = None
+        if full_match(_RECORDING, lexemes):
+            return (Unclear("I take single pictures and cannot record. Shall I take a picture?"),)
+        if full_match(_TO_CLOCK_POSITION, lexemes) and not asked:
+            return (special_turn(lexemes) or Unclear("Which way shall I turn, and how far?"),)
         if (
             any(x.has("PICTURE", "SNAP", "ANOTHER") for x in lexemes)
             and any(x.has("TAKE", "SNAP", "TAKE-ING", "SNAP-ING") for x in lexemes)
@@ -340,7 +248,8 @@ class Reader:
         view: View | None = (
             "full" if any(x.has("FULL") for x in lexemes) else "current" if any(x.has("NOW") for x in lexemes) else None
         )
-        if view and all(x.has("NOW", "FULL", "FILLER", "PREP", "GLUE", "AND", "not", "only", "NOT", "NEGATED") for x in lexemes):
+        scoping = ("NOW", "FULL", "FILLER", "PREP", "GLUE", "AND", "NOT", "NEGATED")
+        if view and all(x.has(*scoping) or x.word in {"consider", "include", "cover", "mean"} for x in lexemes):
             return (Forbid() if any(x.has("NOT", "NEGATED") for x in lexemes) else Rescope(view),)
         if full_match("(DET)? FREE{1,3}", lexemes) and not asked:
             name = text_of(self.source, lexemes)
@@ -358,25 +267,3 @@ def is_report(lexemes: Sequence[Lexeme], *, asked: bool) -> bool:
         return True
     is_past = any(x.has(*_PAST_FORMS) and not x.has(*VERBS) for x in lexemes)
     return is_past and lexemes[0].has("SELF", "PRON", "CAMERA")
-
-
-def bare_clause(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return a clause without courtesy at either end."""
-    lexemes = tuple(lexemes)
-    while lexemes:
-        match = match_start(_WRAPPERS[0], lexemes)
-        if not match or not match.size or match.size >= len(lexemes):
-            break
-        lexemes = lexemes[match.size :]
-    if (match := full_match("(?P<body>_+?) with DET CAMERA", lexemes)) is not None:
-        lexemes = tuple(match["body"])
-    while (
-        len(lexemes) > 1
-        and (
-            lexemes[-1].has("FILLER", "COMMA", "QUOTE", "AND", "DASH", "OPEN", "CLOSE", "PURPOSE", "INSTEAD")
-            or (lexemes[-1].has("LEADFILLER") and lexemes[-2].has("COMMA", "DASH"))
-        )
-        and not lexemes[-1].has("NOW", "VISIBLE", "FULL", "AGAINWORD", "INTURN")
-    ):
-        lexemes = lexemes[:-1]
-    return lexemes

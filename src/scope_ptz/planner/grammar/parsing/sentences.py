@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from scope_ptz.planner.grammar.conditions import Answered, Condition, Negated, PresetOutnumbers, Quantity, Seen
+from scope_ptz.english.grammar.parts_of_speech import verb_form
+from scope_ptz.planner.grammar.conditions import Answered, Condition, Negated, Quantity, Seen
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtIntervals,
     AtPlaces,
-    Bound,
     Count,
     DoAgain,
     EachTime,
-    FirstWith,
-    Forbid,
     GoToPreset,
     If,
     Linked,
@@ -24,57 +21,87 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Move,
     Read,
     Repeat,
-    Report,
     Snap,
     Step,
     Track,
-    Turn,
     Unclear,
-    Zoom,
     ZoomTo,
 )
 from scope_ptz.planner.grammar.parsing.asides import (
     elliptical_condition,
+    is_ability,
     is_courtesy,
     is_need,
+    is_news,
     is_reason,
+    is_shared_knowledge,
     is_wish,
 )
-from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
-from scope_ptz.planner.grammar.parsing.compose import compose
-from scope_ptz.planner.grammar.parsing.conditions import condition_of
-from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause, NotUnderstoodError, Source, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.branches import bound_of
+from scope_ptz.planner.grammar.parsing.calculations import calculated_afterwards
+from scope_ptz.planner.grammar.parsing.compose import axis_of, compose
+from scope_ptz.planner.grammar.parsing.loops import Loops
+from scope_ptz.planner.grammar.parsing.parts.clause import (
+    DIRECTIONS,
+    MOTION_VERBS,
+    VERBS,
+    Clause,
+    NotUnderstoodError,
+    Source,
+    trimmed,
+)
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
-from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
-from scope_ptz.planner.grammar.parsing.reader import bare_clause
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
+from scope_ptz.planner.grammar.parsing.parts.statements import is_event
+from scope_ptz.planner.grammar.parsing.restatements import says_again, says_size_again
+from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
 
-_PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
-"""A condition about a preset, such as "the gate has fewer than 3 cars"."""
-
+_SEARCHING = frozenset({"look_for", "search_for", "have_a_look_for", "take_a_look_for"})
 _LOOKS = (Ask, Count, Read, Snap)
 """Steps that are carried out at each of several presets visited one by one."""
 
-_CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
-"""The end of a turn that puts a thing in the middle, such as "the van is in the centre of the picture"."""
+_TOO_MUCH = "(FILLER|LITTLE|LOT|PRON|BE|DET|AMOUNTISH)* too (LOT|LITTLE|much|FREE|ADVERB|CLOSER|WIDER|tight|UP|DOWN)"
+"""A comment on the move before: "left 20, too far, back 5"."""
 
+_WANTS_A_LOOK = "(DET)? FREE{1,2} (wants|needs|WRAPPER|TAKE-S|SHOW-S) (to)? (DET)? (look|see|SEE|FREE look|SHOW)"
+"""A reason for the move before: "tilt down 10, the foreman wants a look at the pit"."""
+
+_NO_MORE = (
+    "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"
+)
+"""A comment on the amount of the move before: "left 20, not more"."""
+
+_REACHED = (
+    "(it|them|one|PRON)|SELF (HAVEV|have|got|SEE|FIND|find) (found|got)? (it|them|one|PRON)|(it|PRON) (BE) (VISIBLE|found|NOW)+"
+)
+"""Words after "when" for the end of the loop before: "pan left until you see a van. When you have it, ..."."""
+
+_PERIODS = "(shift|day|week|watch|month|season|term|play|round)"
+_TIME_OF_DAY = f"(FILLER)* (DET)? (end|start|beginning|middle|close) of (DET|my|our|SELF)* ({_PERIODS}|FREE {_PERIODS}) (FILLER)*"
+"""Words that only say what time it is: "end of shift, go home"."""
+
+_WHICH_FIRST = Unclear("Which of the two shall I do first?")
 _SAME_MOVE = Unclear("Is that part of the same move, or another one? Please give each move its amount.")
 
 
-class Sentences(ClauseReading):
+class Sentences(Loops):
     """Reads a list of clauses from left to right."""
 
     def steps(self) -> list[Step]:
         """Return the steps of all clauses."""
         out: list[Step] = []
+        at_once: list[Step] = []  # since the last "then" or the last sentence
         while self.next < len(self.clauses):
-            out = _merged(compose(self._linked(), out))
-        is_one_move = any(x.has("ATSAMETIME") for clause in self.clauses for x in clause.lexemes)
-        axes = [part.axis for step in out if isinstance(step, Move) for part in step.parts if not isinstance(part, Zoom)]
-        if is_one_move and len(set(axes)) < len(axes):
-            return [Unclear("That asks for two moves on the same axis at once. Which one shall I make?")]
-        return out
+            start, linked = self.next, self._linked()
+            out = _merged(compose(linked, out))
+            if self.clauses[start].link in {"then", "."}:
+                at_once = []
+            at_once += [each.step for each in linked]
+            is_one_move = any(x.has("ATSAMETIME") for clause in self.clauses[start : self.next] for x in clause.lexemes)
+            axes = [axis_of(part) for step in at_once if isinstance(step, Move) for part in step.parts]
+            if is_one_move and len(set(axes)) < len(axes):
+                return [Unclear("That asks for two moves on the same axis at once. Which one shall I make?")]
+        return calculated_afterwards(out)
 
     def _linked(self) -> list[Linked]:
         """Return the linked steps of the next clause, with the clauses that belong to it."""
@@ -86,6 +113,10 @@ class Sentences(ClauseReading):
                 return [Linked(clause.link, self._loop_ahead(clause))]
             case "IF" if is_courtesy(clause.lexemes):
                 return []
+            case "WHEN" | "AFTER" if self._follows_loop() and full_match(_REACHED, clause.lexemes):
+                return [Linked("then", step) for step in self._block([])]
+            case "WHEN" | "AFTER" if (place := _arrival(self.reader.source, clause)) is not None:
+                return [Linked(clause.link, place), *(Linked("then", step) for step in self._block([]))]
             case "IF" | "WHEN" | "UNLESS":
                 return [Linked(clause.link, self._conditional(clause))]
             case "IFSO":
@@ -98,27 +129,16 @@ class Sentences(ClauseReading):
                 return []
         raise NotUnderstoodError(clause.lexemes)
 
+    def _follows_loop(self) -> bool:
+        """Return whether the clause before this one is the end of a loop: "until you see a van"."""
+        return self.next > 1 and self.clauses[self.next - 2].marker in {"UNTIL", "WHILE"}
+
     # Main clauses ------------------------------------------------------------------------------------------------------
     def _main(self, clause: Clause) -> list[Linked]:
         """Return the steps of a main clause, with what follows it: "until ...", "if ...", "before ..."."""
         after = self._peek()
-        if clause.link in {",", "and", "."} and self.next > 1 and is_reason(clause.lexemes):
+        if self._adds_nothing(clause, after):
             return []
-        if (
-            after is not None
-            and after.link == ","
-            and not after.marker
-            and is_wish(clause.lexemes)
-            and after.lexemes[0].has(*MOTION_VERBS)
-        ):
-            return []  # "I need to see the door, pan left 20"
-        if (
-            self.next == 1
-            and [x.word for x in clause.lexemes if not x.has("FILLER", "COMMA")] == ["right"]
-            and after is not None
-            and _is_full_sentence(after)
-        ):
-            return []  # "right, count the cars"
         if times := self._times_of_all(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:
@@ -127,14 +147,24 @@ class Sentences(ClauseReading):
                 self.last = Mention(condition.thing)  # "someone is at the door - zoom in on them"
                 return [Linked(clause.link, self.last)]
             return [Linked(clause.link, self._branches(condition, replace(clause, lexemes=(), marker="IF")))]
+        if (count := topic_count(self.reader.source, clause, after)) is not None:
+            self._take()
+            clause, after = count, self._peek()
+        elif (topic := topic_step(self.reader.source, clause, after)) is not None:
+            self.last, takes_next = topic
+            if takes_next:
+                self._take()
+            return [Linked(clause.link, self.last)]
         before = self.last
         steps = self._read(clause)
         if (
             clause.link == ","
-            and _says_again(before, steps)
-            and not any(x.has("AGAINWORD", "ANOTHER") or x.word == "more" for x in clause.lexemes)
+            and says_again(before, steps)
+            and not any(x.has("AGAINWORD") or (x.has("ANOTHER") and x.word != "it") or x.word == "more" for x in clause.lexemes)
         ):
             return [Linked("then", _SAME_MOVE)]
+        if after is not None and after.opener is not None and after.opener.word.startswith("if_there"):
+            steps = tuple(_presence(clause, step) for step in steps)
         if (tour := self._tour(clause, steps)) is not None:
             return tour
         if (
@@ -151,34 +181,92 @@ class Sentences(ClauseReading):
             raise NotUnderstoodError(after.lexemes)
         if after is None:
             return self._ended(clause, steps)
+        there = steps[0] if len(steps) == 1 and isinstance(steps[0], AtPlaces) and _begins_at_place(clause) else None
+        done = there.body if there is not None and there.body else steps
+        if after.marker in {"UNTIL", "WHILE"} and self._is_place(clause):
+            return self._ended(clause, steps)  # "at the gate, until you see a van, pan right 10"
         if after.marker == "UNTIL" or (after.marker == "WHILE" and after.link in {"", ","}):
-            return [Linked(clause.link, self._loop(clause, steps))]
-        if (bound := _bound_of(after)) is not None and (until := self._peek(1)) is not None and until.marker == "UNTIL":
+            return [Linked(clause.link, _with_body(there, self._loop(clause, done)))]
+        if (bound := bound_of(after)) is not None and (until := self._peek(1)) is not None and until.marker == "UNTIL":
             self._take()
             loop = self._loop(clause, steps)
             return [Linked(clause.link, replace(loop, bound=bound) if isinstance(loop, Loop) else loop)]
-        if after.marker == "IF" and is_courtesy(after.lexemes):
+        is_too_hard = all(isinstance(step, Ask | Read) for step in steps) and bool(steps) and is_ability(after.lexemes)
+        if after.marker == "IF" and (is_courtesy(after.lexemes) or is_too_hard):
             self._take()
             return self._ended(clause, steps)
         if after.marker == "IF" and is_need(after.lexemes):
             return self._as_needed(clause, steps)
-        if after.marker in {"IF", "UNLESS", "WHEN"} and after.link in {"", ","} and steps and self._is_trailing():
+        if after.marker in {"WHEN", "AFTER"} and steps and (place := _arrival(self.reader.source, after)) is not None:
             self._take()
-            return [Linked(clause.link, self._trailing(after, steps))]
+            return [Linked(clause.link, place), *(Linked("then", step) for step in steps)]
+        if after.marker in {"IF", "UNLESS", "WHEN"} and after.link in {"", ","} and steps and self._is_trailing(clause):
+            self._take()
+            return [Linked(clause.link, _with_body(there, self._trailing(after, done)))]
         if after.marker in {"IFSO", "IFNOT"} and after.link == "" and not after.lexemes and steps:
             self._take()
             answered: Condition = Answered() if after.marker == "IFSO" else Negated(Answered())
             return [Linked(clause.link, If(answered, tuple(steps)))]
-        if after.marker in {"BEFORE", "AFTER"} and after.link in {"", ",", "and"} and steps:
-            self._take()
-            other = self.reader.read(after.lexemes)
-            if before is not None and isinstance(steps[0], DoAgain):
-                steps = (before,)  # "count the cars now, and again after panning left"
-            first, second = (steps, other) if after.marker == "BEFORE" else (other, steps)
-            return [Linked(clause.link, s) for s in first] + [Linked("then", s) for s in second]
+        if after.marker in {"BEFORE", "AFTER"} and (ordered := self._with_order(clause, steps, before)) is not None:
+            return ordered
         if after.marker == "REASON" and after.link in {"", ",", "and"}:
             self._take()
         return self._ended(clause, steps)
+
+    def _adds_nothing(self, clause: Clause, after: Clause | None) -> bool:
+        """Return whether a clause only gives a reason, opens the next clause, or says again how far the last move went."""
+        if (
+            clause.link in {",", "and", "."}
+            and self.next > 1
+            and (is_reason(clause.lexemes) or is_news(clause) or is_shared_knowledge(clause))
+        ):
+            return True
+        is_move_next = after is not None and after.link == "," and not after.marker and after.lexemes[0].has(*MOTION_VERBS)
+        wants_a_look = full_match(f"(FILLER)* ({_WANTS_A_LOOK}) (FILLER|COMMA)*", clause.lexemes)
+        if is_move_next and (is_wish(clause.lexemes) or wants_a_look):
+            return True  # "I need to see the door, pan left 20", "the foreman wants a look, pan left 20"
+        words = [x.word for x in clause.lexemes if not x.has("FILLER", "COMMA")]
+        if self.next == 1 and words == ["right"] and after is not None and _is_full_sentence(after):
+            return True  # "right, count the cars"
+        if self.next == 1 and after is not None and full_match(_TIME_OF_DAY, clause.lexemes):
+            return True
+        if len(self.clauses) > 1 and clause.link in {",", "."} and full_match(_TOO_MUCH, clause.lexemes):
+            return True
+        if clause.link in {",", "and", "."} and isinstance(self.last, Move) and full_match(_NO_MORE, clause.lexemes):
+            return True
+        if clause.link != "," or not isinstance(self.last, Move):
+            return False
+        return says_size_again(self.last, clause) or bool(match_start(_WANTS_A_LOOK, clause.lexemes))
+
+    def _with_order(self, clause: Clause, steps: tuple[Step, ...], before: Step | None) -> list[Linked] | None:
+        """Return the steps of a clause and of the "before ..." or "after ..." that follows it; None if the two are separate.
+
+        Args:
+            clause: The clause.
+            steps: Its steps.
+            before: The step before them.
+        """
+        after, later = self.clauses[self.next], self._peek(1)
+        if after.marker == "BEFORE" and is_event(after.lexemes):
+            self._take()
+            return self._ended(clause, steps)  # "take a picture before the bus leaves"
+        leads = later is not None and later.link == "," and not later.marker
+        if after.link == "and" and leads:
+            return self._ended(clause, steps)  # "take a picture, and after panning left, go home"
+        if after.link not in {"", ",", "and"} or not steps:
+            return None
+        self._take()
+        if after.link == "and" and later is not None and later.link == "and" and not later.marker:
+            return [Linked(clause.link, _WHICH_FIRST)]  # "pan left and after you zoom in take a picture"
+        if after.link == "," and leads:
+            return [Linked(clause.link, _WHICH_FIRST)]  # "take a picture, after panning left, go home"
+        if (unclear := _adverbial_order(after)) is not None:
+            return [Linked(clause.link, unclear)]
+        other = self.reader.read(after.lexemes)
+        if before is not None and isinstance(steps[0], DoAgain):
+            steps = (before,)  # "count the cars now, and again after panning left"
+        first, second = (steps, other) if after.marker == "BEFORE" else (other, steps)
+        return [Linked(clause.link, s) for s in first] + [Linked("then", s) for s in second]
 
     def _tour(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked] | None:
         """Return the steps of a clause that visits presets one by one, with what is to be done at each; None for other clauses."""
@@ -212,7 +300,9 @@ class Sentences(ClauseReading):
         """Return the repetition of "three times: pan left 20 and count the cars"."""
         match = full_match(
             (
-                r"(FILLER|do DET following|REPEAT|REPEAT SELF)* ((?P<number>NUM) X|(?P<twice>TWICE)|(?P<thrice>THRICE)) "
+                r"(FILLER|(do|execute|perform|carry_out|run) (DET following|this|that|it)?|REPEAT|REPEAT SELF)* "
+                r"((?P<number>NUM) X|X (?P<number>NUM)|(?P<twice>TWICE)|"
+                r"(?P<thrice>THRICE)) "
                 r"(COMMA|FILLER|do this|INTURN)*"
             ),
             clause.lexemes,
@@ -226,127 +316,11 @@ class Sentences(ClauseReading):
             body = compose(self._linked(), body)
         return Repeat(tuple(body), max(1, min(times, 50)))
 
-    # Conditions --------------------------------------------------------------------------------------------------------
-    def _condition(self, clause: Clause) -> tuple[Condition, tuple]:  # type: ignore[type-arg]
-        """Return the condition of a clause, and the presets at which it is tested."""
-        condition = condition_of(self.reader.source, clause.lexemes)
-        places: tuple = ()  # type: ignore[type-arg]
-        rest, found = place_after(self.reader.source, clause.lexemes)
-        owner = full_match(_PLACE_WITH, clause.lexemes)
-        if owner and (owners := places_of(self.reader.source, owner["place"])):
-            rest, found = tuple(owner["rest"]), owners
-        inner = condition_of(self.reader.source, rest) if found and rest and not isinstance(condition, PresetOutnumbers) else None
-        if owner and inner is None and found and (thing := thing_of(self.reader.source, owner["rest"])) is not None:
-            inner = Seen(thing)  # "the gate has people"
-        if inner is not None and found is not None:
-            condition, places = inner, found
-        if condition is None or (isinstance(condition, Seen) and condition.thing.text in {"something", "anything"}):
-            raise NotUnderstoodError(clause.lexemes)  # "until something moves" describes nothing that a picture shows
-        if clause.marker == "UNLESS" or clause.marker == "NEVER":
-            condition = Negated(condition)
-        return condition, places
-
-    def _conditional(self, clause: Clause) -> Step:
-        condition, places = self._condition(clause)
-        step = self._branches(condition, clause)
-        return AtPlaces(places, (step,)) if places and isinstance(step, If) else step
-
-    def _branches(self, condition: Condition, clause: Clause) -> Step:
-        """Return the condition with the clauses that follow it as its branches."""
-        then: list[Step] = []
-        if clause.marker in {"IFSO", "IFNOT"} and clause.lexemes:
-            then = compose([Linked("", s) for s in self.reader.read(clause.lexemes, asked=clause.is_question)], then)
-        then = self._block(then)
-        otherwise: list[Step] = []
-        after = self._peek()
-        if after is not None and after.marker == "IFNOT" and clause.marker != "IFNOT":
-            self._take()
-            if after.lexemes:
-                otherwise = compose([Linked("", s) for s in self.reader.read(after.lexemes)], otherwise)
-            otherwise = self._block(otherwise)
-        otherwise = [step for step in otherwise if not isinstance(step, Forbid)]
-        if not then:
-            raise NotUnderstoodError((clause.opener, *clause.lexemes) if clause.opener else clause.lexemes)
-        return If(condition, tuple(then), tuple(otherwise))
-
-    def _block(self, steps: list[Step]) -> list[Step]:
-        """Return steps with those of the clauses up to the end of the sentence or the next "otherwise"."""
-        while (clause := self._peek()) is not None:
-            if _bound_of(clause) is not None and steps:
-                break
-            if clause.marker == "IFNOT" or (clause.link == "." and steps) or (clause.marker == "IFSO" and steps):
-                break
-            if clause.marker in {"IF", "UNLESS"} and steps and clause.link in {",", "and", ".", "then"}:
-                break
-            steps = compose(self._linked(), steps)
-        return steps
-
-    def _trailing(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
-        """Return "take a picture if ...", with the "otherwise" that may follow."""
-        condition, places = self._condition(clause)
-        otherwise: list[Step] = []
-        after = self._peek()
-        if after is not None and after.marker == "IFNOT":
-            self._take()
-            if after.lexemes:
-                otherwise = compose([Linked("", s) for s in self.reader.read(after.lexemes)], otherwise)
-            otherwise = self._block(otherwise)
-        step = If(condition, tuple(compose([Linked("and", s) for s in steps], [])), tuple(otherwise))
-        return AtPlaces(places, (step,)) if places else step
-
-    # Loops -------------------------------------------------------------------------------------------------------------
-    def _loop(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
-        """Return the loop of a clause and the "until ..." that follows it."""
-        until = self._take()
-        is_turn = full_match("(KEEP|FILLER|CAMERA|DET)* (PAN|TURN|PAN-ING|TURN-ING) (AROUND|FILLER|CAMERA|DET)*", clause.lexemes)
-        if is_turn and self._peek() is None and (centred := full_match(_CENTRED, until.lexemes)):
-            thing = thing_of(self.reader.source, centred["thing"])
-            if thing is not None and thing.text:
-                return ZoomTo(thing)  # "pan until the excavator is in the middle"
-        condition, places = self._condition(until)
-        if places or not steps:
-            raise NotUnderstoodError(until.lexemes)
-        if (
-            isinstance(steps[0], AtPlaces)
-            and not steps[0].body
-            and isinstance(condition, Seen)
-            and condition.quantity == Quantity()
-        ):
-            return FirstWith(condition.thing, steps[0].places)  # "go round the presets, stopping as soon as you see a wheelchair"
-        if isinstance(steps[0], Unclear) and full_match(
-            "(KEEP|FILLER|CAMERA|it|DET)* (PAN|TURN|SCAN|PAN-ING|TURN-ING|SCAN-ING) (AROUND|FILLER|CAMERA|DET)*", clause.lexemes
-        ):
-            steps = (Move((Turn("pan", 1),)),)  # "pan until ..." pans right
-        if all(isinstance(step, Forbid | Report) for step in steps):
-            return Unclear("I cannot wait for something to happen. Shall I look for it now?")
-        if until.marker == "WHILE":
-            condition = Negated(condition)
-        bound: Bound | None = None
-        while (after := self._peek()) is not None and (found := _bound_of(after)) is not None:
-            self._take()
-            bound = found
-        otherwise: list[Step] = []
-        if after is not None and after.marker == "IFNOT":
-            self._take()
-            if after.lexemes:
-                otherwise = compose([Linked("", s) for s in self.reader.read(after.lexemes)], otherwise)
-            otherwise = self._block(otherwise)
-        return Loop(tuple(steps), condition, bound, tuple(otherwise))
-
-    def _loop_ahead(self, clause: Clause) -> Step:
-        """Return the loop of "while there are no cars, pan right 10"."""
-        condition, places = self._condition(clause)
-        body = self._block([])
-        if places or not body:
-            raise NotUnderstoodError(clause.lexemes)
-        bound = _bound_of(after) if (after := self._peek()) is not None else None
-        if bound is not None:
-            self._take()
-        return Loop(tuple(body), Negated(condition) if clause.marker == "WHILE" else condition, bound)
-
     # Order -------------------------------------------------------------------------------------------------------------
     def _ordered(self, clause: Clause) -> list[Linked]:
         """Return the steps of "before going home take a picture" and "after panning left, zoom in"."""
+        if clause.marker == "BEFORE" and is_event(clause.lexemes):
+            return []  # "before I forget, take a picture"
         other = self.reader.read(clause.lexemes)
         if self._peek() is None:
             raise NotUnderstoodError(clause.lexemes)
@@ -354,6 +328,35 @@ class Sentences(ClauseReading):
         if clause.marker == "BEFORE":
             return [Linked("then", s) for s in (*block, *other)]
         return [Linked("then", s) for s in (*other, *block)]
+
+
+def _begins_at_place(clause: Clause) -> bool:
+    """Return whether a clause begins with the preset at which all of it is done: "at the gate, take a picture"."""
+    place = "(DET? PRESET PRESETNOUN?|EVERY PRESETNOUN)"
+    return match_start(f"(FILLER|COMMA)* (at|in|from|on) {place} COMMA", clause.lexemes) is not None
+
+
+def _with_body(there: AtPlaces | None, step: Step) -> Step:
+    """Return a step, to be carried out at places if there are any: "at the gate, take a picture if there is a van"."""
+    return step if there is None else replace(there, body=(step,))
+
+
+def _adverbial_order(clause: Clause) -> Unclear | None:
+    """Return the question about "take a picture, after go home", in which "after" may stand for "afterwards"."""
+    if clause.opener is None or clause.opener.word not in {"after", "before"} or not clause.link:
+        return None
+    is_imperative = any(x.has(*VERBS) and verb_form(x.word) == "base" for x in clause.lexemes[:1])
+    return _WHICH_FIRST if is_imperative else None
+
+
+def _arrival(source: Source, clause: Clause) -> GoToPreset | None:
+    """Return the step that goes to the preset at which a clause says to arrive: "once you're at the gate"."""
+    match = full_match(
+        "(SELF|CAMERA|it|DET CAMERA)* ((BE|CARRY|get_to|reach|reached|arrive) (at|on|to|in)?|at|on|in) (?P<place>_+)",
+        clause.lexemes,
+    )
+    place = place_of(source, match["place"]) if match else None
+    return GoToPreset(place) if place is not None else None
 
 
 def _is_full_sentence(clause: Clause) -> bool:
@@ -373,30 +376,13 @@ def _lists_place(source: Source, clause: Clause) -> bool:
     return clause.link in {",", "and"} and not clause.marker and not clause.is_question and bool(places_of(source, lexemes))
 
 
-def _says_again(before: Step | None, steps: Sequence[Step]) -> bool:
-    """Return whether a move goes the same way as the move before it: "pan left 10, ten degrees to the left".
-
-    It may just be a rewording of that move, so it must not be carried out as a second one.
-    """
-    if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
-        return False
-    return bool(_ways(before) & _ways(steps[0]))
-
-
-def _ways(move: Move) -> set[tuple[str, bool]]:
-    """Return the axes that a move changes by an amount, each with the direction."""
-    ways: set[tuple[str, bool]] = {(part.axis, part.sign > 0) for part in move.parts if isinstance(part, Turn)}
-    for part in move.parts:
-        if isinstance(part, Zoom) and part.kind in {"factor", "percent"}:
-            ways.add(("zoom", part.value > (1 if part.kind == "factor" else 0)))
-    return ways
-
-
 def _merged(steps: list[Step]) -> list[Step]:
     """Merge "go to A if there is" and "to B if there is not" into one condition with two branches."""
     if len(steps) < 2:
         return steps
     first, second = steps[-2], steps[-1]
+    if isinstance(first, If) and isinstance(second, If) and not first.otherwise and _denies(first.condition, second.condition):
+        return [*steps[:-2], replace(first, otherwise=second.then)]
     if (
         isinstance(first, If)
         and isinstance(second, If)
@@ -408,21 +394,16 @@ def _merged(steps: list[Step]) -> list[Step]:
     return steps
 
 
-def _bound_of(clause: Clause) -> Bound | None:
-    """Return the limit of a loop that a clause states: "at most 8 times", "but stop after 5 tries"."""
-    lexemes = bare_clause(clause.lexemes)
-    if match := full_match(r"(ATMOST|FILLER|but|BUT|to|AMOUNTISH|for|or)* (?P<number>NUM) (DEG) (FILLER|INTURN|of turn)*", lexemes):
-        return Bound(degrees=abs(match["number"][0].value)) if any(x.has("ATMOST") for x in lexemes) else None
-    if match := full_match(
-        (
-            r"(ATMOST|up to|BUT|HALT|HALT-ING|after|FILLER|but|or|of)+ ((?P<number>NUM)|(?P<twice>TWICE)|"
-            r"(?P<thrice>THRICE)|(?P<once>once)) (X|TRIES|STEPNOUN|TURNNOUN|FILLER|max|ATMOST|INTURN|PAN-S)*|"
-            r"(?P<late>NUM) (X|TRIES|STEPNOUN) (max|ATMOST|maximum|FILLER)+"
-        ),
-        lexemes,
-    ):
-        number = match["number"] or match["late"]
-        return Bound(
-            moves=max(1, round(number[0].value) if number else 2 if match.has("twice") else 3 if match.has("thrice") else 1)
-        )
-    return None
+def _presence(clause: Clause, step: Step) -> Step:
+    """Return the count for "look for a skateboard, and if there is one, ...", which only asks whether there is one."""
+    if isinstance(step, AtPlaces) and len(step.body) == 1:
+        return replace(step, body=(_presence(clause, step.body[0]),))
+    is_search = isinstance(step, ZoomTo) and any(x.word in _SEARCHING for x in clause.lexemes[:3])
+    return Count((step.thing,)) if is_search and isinstance(step, ZoomTo) and not step.thing.definite else step
+
+
+def _denies(condition: Condition, other: Condition) -> bool:
+    """Return whether a condition is that nothing is seen of what the condition before it looks for: "if none is visible"."""
+    if not isinstance(condition, Seen) or not isinstance(other, Seen) or condition.quantity != Quantity():
+        return False
+    return other.quantity == Quantity("==", 0) and other.thing.text in {"", condition.thing.text}

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.planner.grammar.execution.answer_sentences import continued
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
+    AtPlaces,
     Mention,
     Step,
     Unclear,
@@ -14,16 +16,88 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
+from scope_ptz.planner.grammar.parsing.parts.courtesy import completes_question
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
-from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, place_after
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
 _NO_TOPIC = "(PAN|TILT|ZOOM|DEG|THEN|UNTIL|IFSO|IFNOT|IF|WRAPPER|NEGATED|to (CARRY|TURN|FREE))"
+
+
+_STATES = frozenset({
+    "open", "shut", "closed", "locked", "unlocked", "wet", "dry", "lit", "empty", "full", "free", "occupied", "busy", "broken",
+    "damaged", "raised", "lowered", "clear", "blocked", "parked", "running", "moving", "on", "off", "clean", "dirty", "ready",
+    "present", "missing", "stuck", "flat", "loaded", "unattended", "secure", "flooded", "frozen", "crowded", "up", "down",
+    "connected", "attached", "loose",
+})  # fmt: skip
+"""Adjectives that end a question without a verb, such as "barrier up?" and "floor wet by the fountain?"."""
+
+_PROPERTIES = frozenset({
+    "colour", "color", "state", "status", "number", "type", "make", "price", "text", "name", "size", "height", "condition", "plate",
+    "position", "registration", "reading", "level", "temperature",
+})  # fmt: skip
+"""Nouns that end a question about a thing, such as "excavator colour?"."""
+
+
+_IDENTITIES = (
+    "(((number|licence|license|registration|reg) plate|numberplate|registration) (of|off|on|from)|"
+    "(plate|registration|reg|serial|fleet) (number (off|on|from)|number_of))"
+)
+"""What identifies a thing and can only be read: "I need the number plate of the blue lorry"."""
+
+
+def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> str | None:
+    """Return the question that "barrier open?", "driver wearing a helmet?" and "excavator colour?" stand for; None for others."""
+    if (question := _identity_question(source, lexemes)) is not None:
+        return question
+    if (
+        not asked
+        or search(_NO_TOPIC, lexemes)
+        or not match_start("(DET|EVERY)? FREE{1,3}", lexemes)
+        or search("SELF|NUM DEG|COMMA", lexemes)
+    ):
+        return None
+    text = text_of(source, lexemes)
+    if lexemes[-1].word in _PROPERTIES and 1 < len(lexemes) < 6:
+        article = "" if lexemes[0].has("DET") else "the "
+        return f"What is {article}{continued(text)}?"
+    if lexemes[0].word in _PROPERTIES and match_start("_ (of|on|for) _", lexemes):
+        return f"What is the {continued(text)}?"
+    subject = 1 if lexemes[0].has("DET", "EVERY") else 0
+    for x in lexemes[subject + 1 : subject + 4]:
+        if x.word in _STATES or (x.word.endswith("ing") and x.has("FREE")) or x.word in {"wearing", "holding", "carrying"}:
+            return f"{text}?"
+    return None
+
+
+def _identity_question(source: Source, lexemes: Sequence[Lexeme]) -> str | None:
+    """Return the question that "the number plate of the blue lorry" stands for; None for other clauses."""
+    match = full_match(f"(DET)? (?P<what>{_IDENTITIES} (?P<thing>_+))", lexemes)
+    if match is None or search(_NO_TOPIC, lexemes) or thing_of(source, match["thing"]) is None:
+        return None
+    return f"What is the {text_of(source, match['what'])}?"
+
+
+def _with_options_at_place(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+    """Read "barrier at the gate: up or down?" as a question at the preset; None for other clauses."""
+    match = full_match("(?P<thing>_+) COLON (?P<options>_+ OR _+)", lexemes)
+    rest, places = place_after(source, match["thing"]) if match else ((), None)
+    if match is None or not places or search(_NO_TOPIC, rest):
+        return None
+    return AtPlaces(places, (Ask(f"{text_of(source, rest)}: {text_of(source, match['options'])}?"),))
+
+
+def _described(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step:
+    """Return the request to describe something; at a preset, the whole view is described."""
+    if places := places_of(source, lexemes):
+        return AtPlaces(places, (Ask("describe", view),))
+    return Ask(f"describe {text_of(source, lexemes)}", view)
 
 
 def _is_personal(lexemes: Sequence[Lexeme]) -> bool:
@@ -36,7 +110,7 @@ def question_step(
     source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], view: View | None, *, asked: bool
 ) -> Step | tuple[Step, ...] | None:
     """Read questions, direct or after "tell me"."""
-    lexemes = trimmed(lexemes, "COMMA", "FILLER", "QUOTE")
+    lexemes = tuple(lexemes) if completes_question(lexemes) else trimmed(lexemes, "COMMA", "FILLER", "QUOTE")
     while lexemes and lexemes[0].has("FIRSTLY", "COMMA", "NOW") and len(lexemes) > 1:
         lexemes = lexemes[1:]
     if not lexemes:
@@ -44,11 +118,32 @@ def question_step(
     scope: View | None = "full" if has_full_scope(lexemes) else view
     end = "?" if asked else ""
     if match := full_match(rf"(DESCRIBE|DESCRIBE-ING|list) {ME} (?P<rest>_*)", lexemes):
+        if lexemes[0].has("DESCRIBE", "DESCRIBE-ING") and places_of(source, match["rest"]):
+            return _described(source, match["rest"], scope)
         return Ask(text_of(source, lexemes) + end, scope)
     if match := full_match(
         rf"{SKIP} (CARRY|TAKE|SHOW|give) (me|us)? DET (description|overview|summary|rundown|account) of (?P<rest>_+)", lexemes
     ):
-        return Ask(f"describe {text_of(source, match['rest'])}", scope)
+        return _described(source, match["rest"], scope)
+    if match := full_match(
+        rf"{SKIP} (TELL|SHOW|DESCRIBE|LISTING|give) {ME} (about)? (?P<all>(everything|anything|"
+        rf"all|WHOLETHING) (that)? SELF (can)? SEE _*)",
+        lexemes,
+    ):
+        return Ask("describe", scope)
+    if match := full_match(
+        rf"{SKIP} (CARRY|TAKE|SHOW|give|DOACT) {ME} DET (FREE)? (description|overview|summary|"
+        rf"rundown|account) of (?P<rest>_+)",
+        lexemes,
+    ):
+        return _described(source, match["rest"], scope)
+    match = full_match(
+        rf"{SKIP} (name|list) {ME} (?P<some>(NUM|ANY|SEVERAL|EVERY|DET)+ (things|items|objects|"
+        rf"WHOLETHING|FREE)) (?P<where>PREP _+)",
+        lexemes,
+    )
+    if match and not search(_NO_TOPIC, lexemes) and not search("PRESETNOUN|PRESET", match["some"]):
+        return Ask(text_of(source, lexemes) + end, scope)  # "name two things on the table"
     told = full_match(
         (
             rf"{SKIP} (TELL|TELL-ING|know|READ|SHOW (?=(me|us)* (what|where|which|who|how|WHQ))) "
@@ -74,18 +169,44 @@ def question_step(
             and not search(_NO_TOPIC, rest)
         ):
             return Ask("whether " + text_of(source, rest) + end, scope, embedded=True)  # "make sure the gate is shut"
+        if rest[0].word in _PROPERTIES and match_start("_ (of|on|for)", rest) and not search(_NO_TOPIC, rest):
+            return Ask(f"the {text_of(source, rest)}{end}", scope, embedded=True)  # "confirm colour of the beacon"
         if not search(_NO_TOPIC, rest) and rest[0].word in {"the", "its", "their", "his", "her", "this", "that"}:
             if lexemes[0].has("SHOW", "FIND", "SWITCH") and not lexemes[0].has("TELL"):
                 return None
             return Ask(text_of(source, rest) + end, scope, embedded=True)
         if match_start("about", rest):
             return Ask(text_of(source, rest) + end, scope, embedded=True)
+    return _untold_question(source, lexemes, bare, scope, asked=asked)
+
+
+def _untold_question(
+    source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], scope: View | None, *, asked: bool
+) -> Step | tuple[Step, ...] | None:
+    """Read questions without "tell me", whole or shortened: "is it open?", "over five trucks in view?", "barrier open?"."""
+    end = "?" if asked else ""
+    if lexemes[0].word == "whether" and not search(_NO_TOPIC, lexemes):
+        return Ask(text_of(source, lexemes) + end, scope, embedded=True)  # "I was wondering whether it is open"
+    if asked and match_start("(SOMEONE|NOONE|everyone|everybody|nothing|something) _", lexemes):
+        return Ask(text_of(source, lexemes) + end, scope)
+    if asked and match_start("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM _", lexemes) and not search(_NO_TOPIC, lexemes):
+        return Ask(f"Are there {continued(text_of(source, lexemes))}?", scope)  # "over five trucks in view?"
     if search("between (DET)? PRESET (PRESETNOUN)? and (DET)? PRESET", lexemes) and is_question(lexemes):
         return Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?")
     if is_question(lexemes) and not _is_personal(lexemes):
-        return Ask(text_of(source, lexemes) + end, scope)
+        is_indirect = not asked and (lexemes[0].has("WHQ") or lexemes[0].word == "how")
+        return Ask(text_of(source, lexemes) + end, scope, embedded=is_indirect)  # "I need to know what colour it is"
+    tag = full_match("(?P<told>_+) COMMA (BE|DOV|HAVEV|MODAL|can|do) (not)? (PRON|it|there|they)", lexemes) if asked else None
+    if tag and tag["told"][0].word != "it" and not search(f"NOT|not|{_NO_TOPIC}", tag["told"]):
+        return Ask(f"whether {text_of(source, tag['told'])}?", scope, embedded=True)  # "the gate is open, isn't it?"
+    if asked and (placed := _with_options_at_place(source, lexemes)) is not None:
+        return placed
     if asked and (search("COLON", lexemes) or match_start("(DET)? FREE+ of ", lexemes)) and not search(_NO_TOPIC, lexemes):
         return Ask(text_of(source, lexemes) + "?", scope)  # "display case: open or shut?"
+    is_choice = len(lexemes) > 3 and lexemes[-2].has("OR") and lexemes[-1].word in _STATES and lexemes[-3].word in _STATES
+    question = _verbless_question(source, lexemes, asked=asked or is_choice)
+    if question is not None:
+        return Ask(question, scope)
     if match := full_match(r"(what|how) about (?P<thing>_+)|(and) (?P<other>_+)", bare):
         thing = thing_of(source, match["thing"] or match["other"])
         return WhatAbout(thing) if thing and asked else None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.instruction_tree import (
-    Amount,
     Back,
     CameraState,
     Help,
@@ -20,16 +19,17 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a clause about the camera itself: where it points, where it was, or what it can do."""
     where = (
         r"(to|where|from|SELF|it|CAMERA|BE|HAVEV|DOV|start|started|began|begin|came|before|SWITCH-ED|CARRY-ED|"
-        r"AIM-ING|BEFORE|how|DET|previous|original|last|old|VIEWNOUN|PRESETNOUN|FILLER|AGAINWORD|GLUE|INSTEAD)*"
+        r"AIM-ING|BEFORE|how|DET|previous|earlier|former|original|last|old|pose|VIEWNOUN|PRESETNOUN|FILLER|AGAINWORD|GLUE|INSTEAD)*"
     )
     if full_match("(TURN|TURN-ING|CARRY) (your|my|its|his|her|their) BACK _*", lexemes):
         return Unclear("Which way shall I turn, and how far?")  # "turn your back to us"
     if full_match(
         (
             rf"(CARRY|TURN|PAN|SWITCH|RESET|put|take)* (it|CAMERA|SELF|right|straight|DET)* (BACK|BACK again) {where}|"
-            rf"UNDO {where}|(SWITCH|CARRY|RESET) (it|CAMERA|SELF)* (to where SELF|to (DET)* (previous|original|last|"
-            rf"old|start)) {where}|(return|come_back|go_back|swing_back|turn_back|switch_back|revert|get_back|"
-            rf"move_back|head_back) {where}"
+            rf"(CARRY|TURN|PAN|TILT|FILLER)* BACK (UP|DOWN|LEFT|RIGHT|IN|OUT) to where SELF {where}|UNDO {where}|"
+            rf"(SWITCH|CARRY|RESET) (it|CAMERA|SELF)* "
+            rf"(to where SELF|to (DET)* (previous|earlier|former|original|last|old|start)) {where}|"
+            rf"(return|come_back|go_back|swing_back|turn_back|switch_back|revert|get_back|move_back|head_back) {where}"
         ),
         lexemes,
     ) and not any(x.has("PRESET") for x in lexemes):
@@ -42,23 +42,6 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     ):
         return Back(zoom_only=any(x.has("ZOOMNOUN", "ZOOM") or x.word == "enlargement" for x in lexemes))
-    if match := full_match(
-        (
-            r"(CARRY|TURN|SWITCH|AIM|PAN|TILT)? (in|to|DET)* (other|opposite) (way|direction|side) (by|AMOUNTISH|"
-            r"GLUE)* ((?P<number>NUM) DEG?|(?P<same>SAMEAMOUNT)) (FILLER)*"
-        ),
-        lexemes,
-    ):
-        return Back(amount=Amount("degrees", match["number"][0].value)) if match.has("number") else Back()
-    if match := full_match(
-        (
-            r"(CARRY|TURN|SWITCH|AIM|PAN|TILT)? (it|CAMERA|DET)* (BACK|go_back|come_back|turn_back|swing_back|"
-            r"move_back) (by|AMOUNTISH)* ((?P<number>NUM) DEG?|(?P<little>LITTLE)|(?P<lot>LOT)) (FILLER|AGAINWORD)*"
-        ),
-        lexemes,
-    ):
-        kind = "little" if match.has("little") else "lot" if match.has("lot") else "degrees"
-        return Back(amount=Amount(kind, match["number"][0].value if match["number"] else 0.0))  # type: ignore[arg-type]
     if full_match(r"(FILLER)* HELP (FILLER)*", lexemes):
         return Help()
     if (

@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     Read,
     Step,
+    Thing,
     Track,
     Unclear,
     ZoomTo,
@@ -18,7 +19,7 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS, duration_of
 
 if TYPE_CHECKING:
@@ -45,10 +46,24 @@ def read_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> S
         return None
     if (inner := full_match(r"(what (BE)? (written|DET|it|on|says|say|there|PRON|text|printed) _*)", match["thing"])) is not None:
         return Ask(text_of(source, match["thing"]), view, embedded=True) if inner else None
-    things = things_of(source, match["thing"])
+    words = match["thing"]
+    if full_match(
+        "(EVERY|DET|all|FULL|WHOLETHING|everything|anything|what|of)* (that|which)? (SELF (can|do)? SEE|VISIBLE|BE VISIBLE)*", words
+    ):
+        return Ask("What text can you see?", view)  # "read everything you can see"
+    if seen := full_match(
+        "(EVERY|all|each|ANY|DET)+ (of)? (DET)? (?P<thing>_+?) ((that|which)? SELF (can|do)? (SEE|"
+        "FIND)|INTURN|separately|VISIBLE)*",
+        words,
+    ):
+        words = seen["thing"]  # "every sign you can see"
+    things = things_of(source, words)
     if things is None:
         return None
     return Read(things[0], view) if len(things) == 1 else tuple(Read(thing, view) for thing in things)
+
+
+_CANNOT_WAIT = Unclear("I cannot wait. Shall I follow it now?")
 
 
 def track_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
@@ -57,7 +72,9 @@ def track_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     match = full_match(
         (
             rf"{SKIP} (for {SECONDS})? (COMMA)? {head} (?P<thing>_+?) (with DET? CAMERA)? (COMMA)? ((for|during|over|"
-            rf"FILLER|about)* {SECONDS} (long)?)? {SKIP}"
+            rf"FILLER|about)* {SECONDS} (long)?)? ((COMMA|for|with|DET)* (default|usual|standard|normal) (duration|"
+            rf"time|length|period))? "
+            rf"(as (PRON|it|they|he|she) _+)? {SKIP}"
         ),
         lexemes,
     )
@@ -69,8 +86,23 @@ def track_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             ),
             lexemes,
         )
+    if not match:
+        match = full_match(
+            rf"{SKIP} (keep|hold|KEEP|STAY|leave|LEAVE) (DET)? (CAMERA|VIEWNOUN|focus|eyes|lens|it) (trained|fixed|"
+            rf"pointed|focused|locked)? "
+            rf"(on|onto) (?P<thing>_+?) (as PRON _+)? ((for|AMOUNTISH)* {SECONDS})? {SKIP}",
+            lexemes,
+        )
+    if not match:
+        match = full_match(
+            rf"{SKIP} (do not|NEGATED|never|DOV not) (lose|let go of|lose sight of|lose track of|(take|TAKE) (your)? "
+            rf"eyes off) (?P<thing>_+)",
+            lexemes,
+        )
     if not match or not (thing := thing_of(source, match["thing"])):
         return None
+    if match["thing"][-1].word in {"in", "within", "after"}:
+        return _CANNOT_WAIT  # "follow the van in five minutes"
     seconds = 10.0
     if match.has("unit"):
         seconds = duration_of(match)
@@ -97,7 +129,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         r"(SHOW|FIND|show|let_me_see|let_us_see) (me|us)* where ((?P<thing>_+?) BE|BE (?P<thing>_+))",
         (
-            r"(AIM|AIM-ING|(PAN|TILT|turn) (?=_*? (to|towards|toward|to face))|(TURN|SCAN|RAISE) (?=_* (LEFT|RIGHT|UP|"
+            r"(AIM|AIM-ING|(PAN|TILT|turn) (?=_*? (to|towards|toward|to face))|(TURN (?!_*? at)|SCAN|RAISE) (?=_* (LEFT|RIGHT|UP|"
             r"DOWN))|SHOW at) (DET (?=CAMERA|VIEWNOUN|PICTURE)|CAMERA|FILLER|it|SELF|over|across|AROUND|LEFT|RIGHT|UP|"
             r"DOWN|AMOUNTISH|LITTLE|back|straight|to face|view|VIEWNOUN|directly|again|now|PICTURE)* (at|on|onto|to "
             r"face|to|towards|toward|over to|over at|upon) (?P<thing>_+)"
@@ -108,6 +140,7 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             r"PICTURE|tighter PICTURE|"
             r"PICTURE|WIDER|closer view|view) (PICTURE|VIEWNOUN|look)? (of|at|on) (?P<thing>_+)"
         ),
+        r"close_up (?P<thing>(FREE|DET) _*)",
         r"(CLOSER|tighter|in) (on|to) (?P<thing>_+)",
         r"(?P<thing>DET _+?) ((up|in) close|close up|CLOSER)",
         r"(ZOOM|ENLARGE|CARRY|TIGHTEN) (IN|CLOSER)* (GLUE|so_that|until|so|FILLER)* (?P<thing>(DET|it) _*?) (fills|takes up) _+",
@@ -120,11 +153,15 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         r"(put|get|CARRY|have|bring|TAKE) (?P<thing>(DET|it) _*?) CENTREWORD",
         r"(fill) (DET)? (PICTURE|VIEWNOUN|frame) with (?P<thing>_+)",
     )
+    if full_match(rf"{SKIP} (fill) (DET)? (PICTURE|VIEWNOUN|frame) {SKIP}", lexemes):
+        return ZoomTo(Thing())
     for pattern in patterns:
         match = full_match(rf"{SKIP} {pattern} {SKIP}", lexemes)
         if not match:
             continue
         words = trimmed(match["thing"], "FILLER")
+        if search("PRESETNOUN (for|of|CALLED)", words[:3]):
+            return None  # "show me the preset for the laundry room"
         if (
             not words
             or words[0].has("WHQ", "HOWMANY", "IF")
@@ -133,9 +170,10 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             continue
         if full_match(r"(DET)? (left|right|LEFT|RIGHT|UP|DOWN|SIDE)+", words):
             return None
-        if full_match("(DET)* (HOME|FULL|VIEWNOUN|HORIZON|LEVEL|WHOLETHING|CAMERA|CAMERA BACK|CENTREWORD)", words) or (
-            words[0].has("NUM") and len(words) > 1 and words[1].has("X", "PERCENT", "DEG")
-        ):
+        if full_match(
+            "(DET|current|present|whole|same|overall)* (HOME|FULL|VIEWNOUN|HORIZON|LEVEL|WHOLETHING|CAMERA|CAMERA BACK|CENTREWORD)",
+            words,
+        ) or (words[0].has("NUM") and len(words) > 1 and words[1].has("X", "PERCENT", "DEG")):
             continue
         if (thing := thing_of(source, words)) is not None:
             similar = [preset for preset in source.presets if set(preset_key(thing.text)) < set(preset_key(preset))]

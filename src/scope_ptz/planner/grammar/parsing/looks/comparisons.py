@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
@@ -10,28 +11,35 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Compare,
     CompareWithBefore,
     Comparison,
-    Count,
-    FirstWith,
     Step,
     Thing,
     Unclear,
     WhichPreset,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.looks.preset_presence import preset_presence_step
+from scope_ptz.planner.grammar.parsing.looks.rankings import ranking_step
 from scope_ptz.planner.grammar.parsing.parts.clause import NotUnderstoodError, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, place_after, without_view
 
-_SKIP = "(FILLER|FIRSTLY|LEADFILLER|TELL|me|us|SELF|if|whether|IF|COMMA|and|COMPARE|check|see)*"
-_SEE = r"(BE there|DOV SELF (SEE|have|count)|can SELF SEE|SELF SEE|there BE|BE|can be SEE-ED|HAVEV SELF got)"
+if TYPE_CHECKING:
+    from scope_ptz.tools.arguments import View
+
+_SKIP = "(FILLER|FIRSTLY|LEADFILLER|TELL|know|WRAPPER|wonder|me|us|SELF|if|whether|IF|COMMA|and|COMPARE|COLON|check|see)*"
+_SEE = (
+    r"(BE there|BE it|it BE|HAVEV SELF|SELF (HAVEV|have)|DOV SELF (SEE|have|count)|can SELF SEE|SELF SEE|there "
+    r"BE|BE|can be SEE-ED|HAVEV SELF got)"
+)
 _SHOWS = (
     r"(BE there|where BE|have|has|HAVEV|SHOW|SHOW-S|show|shows|SEE-S|contain|contains|hold|holds|BE showing|"
-    r"there BE|got|HAVEV got|see)"
+    r"there BE|(BE)? got|HAVEV got|see)"
 )
 _WAY = (
-    r"(the)? (?P<way>SUPERLATIVE|LEADMORE|more|most|fewer|fewest|less|least|(higher|lower|greater|highest|"
+    r"(the)? (?P<nth>ORDINAL)? (?P<way>(busier|busiest|fuller|fullest|quieter|quietest|emptier|emptiest) with|SUPERLATIVE|"
+    r"LEADMORE|more|most|fewer|fewest|less|least|(higher|lower|greater|highest|"
     r"lowest|larger|biggest|largest) (number|count) of)"
 )
 _WHICH = (
@@ -45,7 +53,12 @@ ReadMoves = Callable[[Sequence[Lexeme]], "tuple[Step, ...] | None"]
 def _comparison(words: Sequence[Lexeme]) -> Comparison:
     return (
         "fewer"
-        if any(x.has("FEW") or x.has("FEWERTHAN") or x.word in {"fewer", "less", "lower", "lowest"} for x in words)
+        if any(
+            x.has("FEW")
+            or x.has("FEWERTHAN")
+            or x.word in {"fewer", "less", "lower", "lowest", "quieter", "quietest", "emptier", "emptiest"}
+            for x in words
+        )
         else "more"
     )
 
@@ -59,13 +72,19 @@ def comparison_step(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadM
         read_moves: Reads the moves in "before or after panning left 20".
     """
     lexemes = trimmed(lexemes, "FILLER", "COMMA", "FIRSTLY", "LEADFILLER")
+    if (
+        guess := full_match("(?P<asked>_+?) (COMMA)? (do SELF|DOV SELF|MODAL SELF|would_you) (say|reckon|think|guess)", lexemes)
+    ) is not None:
+        lexemes = tuple(guess["asked"])  # "more people at the gate or in the yard, would you say?"
+    if (asked := full_match("((FILLER|COMMA)* WHQ BE it COMMA)? (?P<asked>_+?) ((COMMA)? (or|OR) not)?", lexemes)) is not None:
+        lexemes = tuple(asked["asked"])  # "which is it, more girls or more boys?", "fewer cars than vans, or not?"
     return (
         _same_thing_at_two(source, lexemes)
+        or ranking_step(source, lexemes)
         or _presets(source, lexemes)
         or _before_after(source, lexemes, read_moves)
         or _things(source, lexemes)
-        or _first_with(source, lexemes)
-        or _first_preset(source, lexemes)
+        or preset_presence_step(source, lexemes)
     )
 
 
@@ -74,21 +93,29 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     listing = r"(COMMA|COLON|DASH|between|out of|of|at|OPEN)* (?P<places>_+?) (CLOSE)?"
     patterns = (
         rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) ((COMMA|COLON|DASH|OPEN|of)+ {listing})?",
+        rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) (?P<places>(DET)? PRESET "
+        rf"_*? (or|and) _+)",
+        rf"(SWITCH|CARRY|SHOW|AIM|TAKE|me|us|to|at|FILLER|COMMA)* whichever (PRESETNOUN|one)? (of)? (?P<places>_+?)? "
+        rf"(PRESETNOUN|one)? {_SHOWS} {_WAY} (?P<thing>_+?)",
+        rf"(SWITCH|CARRY|SHOW|AIM|TAKE|me|us|to|at|FILLER)+ (?P<places>_+? (or|and) _+?) (COMMA|DASH)* whichever (one|PRESETNOUN)? "
+        rf"(of them)? {_SHOWS} {_WAY} (?P<thing>_+?)",
+        rf"{_SKIP} (?P<places>_+? (AND|THAN|OR) _+?) (COMMA|COLON|DASH) {_WHICH} {_SHOWS} {_WAY} (?P<thing>_+)",
+        rf"{_SKIP} ({_WHICH} BE)? {_WAY} (?P<thing>_+?) (COMMA|COLON|DASH)+ (at|in)? (?P<places>_+? (or|OR) _+)",
         rf"{_SKIP} {_WHICH} (?P<places>_+?) {_SHOWS} {_WAY} (?P<thing>_+?)",
-        rf"{_SKIP} (between|out of|of|among|DET presets) (?P<places>_+?) COMMA? {_WHICH} {_SHOWS} {_WAY} (?P<thing>_+?)",
+        rf"{_SKIP} (between|out_of|of|among|DET presets) (?P<places>_+?) COMMA? {_WHICH} {_SHOWS} {_WAY} (?P<thing>_+?)",
         (
             rf"{_SKIP} ({_SEE})? {_WAY} (?P<thing>_+?) (at|in|on|from) (?P<places>_+? (than|than_at|than_in|or|OR|THAN) "
             rf"(at|in|on|from)* _+)"
         ),
         rf"{_SKIP} {_SEE} {_WAY} (?P<thing>_+) (at|in|on|from) (?P<places>_+? (than_at|than_in|or|THAN) (at|in|on|from)* _+)",
-        rf"{_SKIP} (DOV) (?P<one>_+?) {_SHOWS} {_WAY} (?P<thing>_+?) (than|THAN) (DOV)? (?P<other>_+?)",
+        rf"{_SKIP} (DOV|BE) (?P<one>_+?) ({_SHOWS}|with) {_WAY} (?P<thing>_+?) (than|THAN) (DOV)? (?P<other>_+?)",
         (
             rf"{_SKIP} (is|BE) (the)? (COUNTNOUN|number of) (?P<thing>_+?) (at|in|on|from) (?P<one>_+?) ({_WAY} (than|"
             rf"THAN)|(?P<way>MORETHAN|FEWERTHAN)) (at|in)* (?P<other>_+?)"
         ),
         (
             rf"{_SKIP} COMPARE (DET)? (COUNTNOUN|count of|number of|HOWMANY)* (?P<thing>_+?) (SELF SEE|there BE|"
-            rf"VISIBLE)? (at|in|on|from|between|for) (?P<places>_+ (and|AND|with|to|THAN) _+)"
+            rf"VISIBLE)? (at|in|on|from|between|for|COMMA|COLON|DASH) (?P<places>_+ (and|AND|with|to|THAN) _+)"
         ),
         (
             rf"{_SKIP} COMPARE (?P<one>_+?) (with|to|AND|and) (?P<other>_+?) (for|by|COLON|COMMA)+ (number of|COUNTNOUN|"
@@ -105,6 +132,8 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             rf"{_WAY} (?P<thing>_+?) ((COMMA|COLON|DASH|OPEN|of)+ {listing})?"
         ),
         rf"{_SKIP} (COMPARE)? (presets)? (?P<places>_+?) (COLON|COMMA)+ {_WHICH} {_SHOWS} {_WAY} (?P<thing>_+)",
+        rf"{_SKIP} COMPARE (?P<one>_+?) (with|to|AND|THAN) (?P<other>_+?) (AND|COMMA)+ {_SKIP} {_WHICH} ({_SHOWS}|"
+        rf"{_SEE}) {_WAY} (?P<thing>_+)",
     )
     more_patterns = (
         rf"{_SKIP} WHQ FREE {_SHOWS} {_WAY} (?P<thing>_+?) (COMMA|COLON|DASH) (?P<places>_+)",
@@ -122,7 +151,7 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         if "one" in match.names:
             refs = (place_of(source, match["one"]), place_of(source, match["other"]))
             places = tuple(ref for ref in refs if ref) if all(refs) else None
-        elif "places" in match.names:
+        elif match.has("places"):
             places = places_of(source, match["places"])
         else:
             places = ()
@@ -130,7 +159,10 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         if places is None or thing is None or any(x.has("COMMA") for x in match["thing"]):
             continue
         go = bool(lexemes[0].has("SWITCH", "CARRY") and not lexemes[0].has("HAVEV"))
-        return WhichPreset(thing, _comparison(match["way"]) if "way" in match.names else "more", places, go=go)
+        go |= any(x.word == "whichever" for x in lexemes) and lexemes[0].word != "whichever"
+        rank = round(match["nth"][0].value) if "nth" in match.names and match["nth"] else 1
+        way = _comparison(match["way"]) if "way" in match.names else "more"
+        return WhichPreset(thing, way, places, go=go, rank=rank, yes_no=bool(places) and _is_yes_no(lexemes))
     if full_match(rf"{_SKIP} {_WHICH} {_SHOWS} (NONE|no|MORETHAN|ATLEAST|FEWERTHAN|ATMOST|EXACTLY) _+", lexemes) and any(
         x.has("PRESETNOUN", "PRESET") for x in lexemes[:6]
     ):
@@ -139,20 +171,6 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         x.has("PRESET", "PRESETNOUN") for x in lexemes
     ):
         raise NotUnderstoodError(match["places"])
-    if match := full_match(
-        rf"{_SKIP} {_WHICH} (can|do|could) SELF (SEE|have) (?P<thing>_+?) (from|at|in)? ((COMMA|COLON|DASH)+ (?P<places>_+))?",
-        lexemes,
-    ):
-        places = places_of(source, match["places"]) if match.has("places") else ()
-        thing = thing_of(source, match["thing"])
-        if thing and thing.text != "available" and places is not None and any(x.has("PRESETNOUN") for x in lexemes[:6]):
-            return WhichPreset(thing, "more", places, any_of=True)
-    if match := full_match(rf"{_SKIP} {_WHICH} {_SHOWS} (?P<thing>(ANY|DET|NUM) _+?|people) ((COMMA)+ (?P<places>_+))?", lexemes):
-        places = places_of(source, match["places"]) if match.has("places") else ()
-        has_place = any(x.has("PRESETNOUN") for x in lexemes[:5])
-        thing = thing_of(source, match["thing"])
-        if thing and places is not None and (has_place or places):
-            return WhichPreset(thing, "more", places, any_of=True)
     if full_match(
         rf"{_SKIP} (WHQ|which|BE) _* (busier|quieter|emptier|fuller|fullest|busiest|quietest|calmer|most crowded) _*", lexemes
     ) and any(x.has("PRESET", "PRESETNOUN") for x in lexemes):
@@ -172,6 +190,15 @@ def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
     if thing is None or again != thing or not places[0] or not places[1]:
         return None
     return WhichPreset(thing, "more", (places[0], places[1]))
+
+
+def _is_yes_no(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a comparison is to be confirmed: "are there more cars than vans?", unlike "which ..." and "... or vans?"."""
+    first = next((x for x in lexemes if not x.has("FILLER", "TELL", "FIRSTLY") and x.word not in {"me", "us", "check"}), lexemes[0])
+    asks = first.has("BE", "DOV", "MODAL", "IF") or first.word in {"if", "whether", "have"}
+    return (
+        asks and any(x.has("THAN") or x.word in {"outnumber", "exceed"} for x in lexemes) and not any(x.has("OR") for x in lexemes)
+    )
 
 
 def _before_after(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadMoves) -> Step | None:
@@ -217,6 +244,28 @@ def _before_after(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadMov
     return None
 
 
+_HALVES = {"left": "right", "top": "bottom", "upper": "lower"}
+
+
+def _halves(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | None:
+    """Read "which half of the picture has more cars?" and "which side has more people, left or right?"."""
+    match = full_match(
+        rf"{_SKIP} (on|in)? (WHQ|which) (half|side|SIDE) (of DET (PICTURE|VIEWNOUN|frame|FREE))? {_SHOWS} {_WAY} (?P<thing>_+?) "
+        r"((COMMA|COLON|DASH)+ (DET)? (?P<one>left|right|top|bottom|upper|lower|LEFT|RIGHT|UP|DOWN) (half|side|SIDE)? "
+        r"(or|OR) (DET)? "
+        r"(?P<other>left|right|top|bottom|upper|lower|LEFT|RIGHT|UP|DOWN) (half|side|SIDE)?)?",
+        lexemes,
+    )
+    thing = thing_of(source, match["thing"]) if match else None
+    if match is None or thing is None or not thing.text or (not match.has("one") and any(x.word in {"side"} for x in lexemes)):
+        return None
+    one, other = (match["one"][0].word, match["other"][0].word) if match.has("one") else ("left", "right")
+    if _HALVES.get(one, "") != other and _HALVES.get(other, "") != one:
+        return None
+    first, second = (Thing(f"{thing.text} in the {end} half") for end in (one, other))
+    return Compare(first, second, _comparison(match["way"]), view)
+
+
 def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read comparisons of the counts of two things in one view."""
     words, view = without_view(lexemes)
@@ -226,15 +275,19 @@ def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     words, places = place_after(source, words)
     patterns = (
         (
-            rf"{_SKIP} {_SEE}? (any)? {_WAY} (?P<first>_+?) (than|THAN|or|OR|ORMORE|ORFEWER) (there BE|the|more|"
+            rf"{_SKIP} (WHQ BE it COMMA)? {_SEE}? (any)? {_WAY} (?P<first>_+?) (than|THAN|or|OR|ORMORE|ORFEWER) (there BE|the|more|"
             rf"fewer)* (?P<second>_+?)"
         ),
         (
             rf"{_SKIP} (HOWMANYMORE|(by|in) HOWMANY BE there more|HOWMANY MORE) (?P<first>_+?) (BE there|VISIBLE|SELF "
             rf"SEE|than|do SELF SEE)* than (?P<second>_+?) (BE there|VISIBLE|there BE|do SELF SEE|can SELF SEE|SELF "
-            rf"SEE)*"
+            rf"SEE|SELF HAVEV|SELF have|PRON HAVEV|(do|DOV) SELF (HAVEV|have)|BE)*"
         ),
         rf"{_SKIP} (WHQ BE)? (DET)? difference between (DET)? COUNTNOUN (?P<first>_+?) and (DET)? COUNTNOUN (?P<second>_+)",
+        rf"{_SKIP} BE DET (?P<first>_+?) (?P<way>fewer_than|more_than|(LEADMORE|more|fewer) (numerous)? (than|THAN)) "
+        rf"DET (?P<second>_+)",
+        rf"{_SKIP} DET (?P<first>_+?) BE (?P<way>fewer_than|more_than|(LEADMORE|more|fewer) (numerous)? (than|THAN)) "
+        rf"DET (?P<second>_+)",
         rf"{_SKIP} {_SEE} as many (?P<first>_+?) as (there BE)? (?P<second>_+?)",
         (
             rf"{_SKIP} COMPARE (DET)? (COUNTNOUN|number of|count of|HOWMANY)* (?P<first>_+?) (and|AND|with|to|against) "
@@ -244,10 +297,16 @@ def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             rf"{_SKIP} WHQ BE (?P<way>LEADMORE|larger|bigger|smaller|greater) COMMA? (DET)? COUNTNOUN (?P<first>_+?) "
             rf"or (DET)? COUNTNOUN (?P<second>_+)"
         ),
+        rf"{_SKIP} (DOV|BE)? (DET)? COUNTNOUN (?P<first>_+?) (exceed|exceeds|BE? MORETHAN|BE? (?P<way>FEWERTHAN)) "
+        rf"(DET|that of)* (COUNTNOUN)? (?P<second>_+)",
+        rf"{_SKIP} BE (DET)? (?P<first>_+?) (?P<way>LEADMORE|more|less) (common|numerous|frequent|plentiful) (than|"
+        rf"THAN) (DET)? (?P<second>_+)",
         rf"{_SKIP} (WHQ) BE there more of COMMA (?P<first>_+?) or (?P<second>_+)",
         rf"{_SKIP} (by HOWMANY|HOWMANY) DOV DET (?P<first>_+?) outnumber DET (?P<second>_+)",
         rf"{_SKIP} (DOV|BE) (the)? (?P<first>_+?) outnumber (the)? (?P<second>_+)",
     )
+    if (halves := _halves(source, words, view)) is not None:
+        return AtPlaces(places, (halves,)) if places else halves
     sides = r"(on|at|in|to|near|by) _+?"
     if match := full_match(
         rf"{_SKIP} {_SEE} (any)? {_WAY} (?P<thing>_+?) (?P<first>{sides}) (than|THAN|or|OR) (?P<second>({sides})|_+)", words
@@ -256,84 +315,15 @@ def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ends = [text_of(source, match[name]) for name in ("first", "second")]
         if thing and not place_of(source, match["first"]):
             lead = "" if match["second"][0].has("PREP") else f"{match['first'][0].word} "
-            return Compare(
-                Thing(f"{thing.text} {ends[0]}"), Thing(f"{thing.text} {lead}{ends[1]}"), _comparison(match["way"]), view
-            )
+            one, other = Thing(f"{thing.text} {ends[0]}"), Thing(f"{thing.text} {lead}{ends[1]}")
+            return Compare(one, other, _comparison(match["way"]), view, yes_no=_is_yes_no(lexemes))
     for pattern in patterns:
         match = full_match(pattern, words)
         if not match:
             continue
         first, second = thing_of(source, match["first"]), thing_of(source, trimmed(match["second"], "VISIBLE"))
         if first and second and first.text and second.text:
-            step: Step = Compare(first, second, _comparison(match["way"]) if "way" in match.names else "more", view)
+            way = _comparison(match["way"]) if "way" in match.names else "more"
+            step: Step = Compare(first, second, way, view, yes_no=_is_yes_no(lexemes))
             return AtPlaces(places, (step,)) if places else step
     return None
-
-
-def _first_with(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
-    """Read "go through the presets and stop at the first with a crane"."""
-    stop = (
-        r"(STAY|stop|stopping|HALT-ING|pause|STOP|CARRY|remain|halt|TAKE|end) (at|on|up)? (the)? first (one|PRESETNOUN|place)? "
-        r"(with|that has|that shows|which has|showing|where SELF SEE|where there BE|that HAVEV|where SELF FIND|"
-        r"where SELF can SEE|with_a|that SHOW-S|that SELF SEE) (?P<thing>_+)"
-    )
-    match = full_match(
-        (
-            rf"{_SKIP} (SWITCH|CARRY|step|try|check|through|to|at|AIM|SCAN|visit|TRY|SHOW)* (?P<places>_+?) (INTURN|COMMA|"
-            rf"AND|and|FILLER|until)* {stop}"
-        ),
-        lexemes,
-    )
-    if not match:
-        return None
-    places, thing = places_of(source, match["places"]), thing_of(source, match["thing"])
-    return FirstWith(thing, places) if thing is not None and places is not None else None
-
-
-def _first_preset(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
-    """Read "find the first preset with a van"."""
-    match = full_match(
-        (
-            rf"{_SKIP} (FIND|SWITCH|CARRY|SHOW|to|me|at)* (the)? first PRESETNOUN (with|that HAVEV|that SHOW-S|showing|"
-            rf"where SELF SEE|where there BE) (?P<thing>_+)"
-        ),
-        lexemes,
-    )
-    thing = thing_of(source, match["thing"]) if match else None
-    return FirstWith(thing, ()) if thing is not None else None
-
-
-def sum_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
-    """Read counts over several presets: "add up the people at the gate and in the yard"; None for other clauses."""
-    match = full_match(
-        (
-            r"(FILLER|TELL|SELF|me|COUNT|COUNTNOUN|HOWMANY|WHQ|BE|DET|difference|between|in|number of|COMPARE|CARRY|"
-            r"total|up|sum|of|CALCULATE|work_out)+ (?P<thing>_+?) (BE there|VISIBLE|in total|altogether)* (at|in|from|"
-            r"on) (?P<first>(DET)? PRESET (PRESETNOUN)?) (COMMA|and|AND|minus|plus|versus|THAN)+ (DET|those|the ones|"
-            r"COUNTNOUN|number of)* (?P<other>_+?)?? (at|in|from|on) (?P<second>_+)"
-        ),
-        lexemes,
-    )
-    if not match and (
-        match := full_match(
-            (
-                r"(FILLER|TELL|SELF|WHQ|BE|DET|in|COMPARE|of)* (COUNTNOUN|HOWMANY|difference|sum|total|COUNT) (COUNTNOUN|"
-                r"in|of|DET|number)* (?P<thing>_+?) (BE there|VISIBLE)* between (?P<places>_+)"
-            ),
-            lexemes,
-        )
-    ):
-        places, things = places_of(source, match["places"]), things_of(source, match["thing"])
-        return AtPlaces(places, (Count(things),)) if places and things and len(places) > 1 else None
-    if not match:
-        return None
-    things = things_of(source, match["thing"])
-    first, second = places_of(source, match["first"]), places_of(source, match["second"])
-    if not (things and first and second):
-        return None
-    other = things_of(source, match["other"]) if match.has("other") else things
-    if other is None:
-        return None
-    if other != things:  # "count cars at the gate and vans at the yard"
-        return (AtPlaces(first, (Count(things),)), AtPlaces(second, (Count(other),)))
-    return AtPlaces((*first, *second), (Count(things),))

@@ -5,24 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     Count,
     Step,
     Thing,
+    Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.calculations import without_sum
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, thing_of, things_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
-_LOOKING = r"(TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SEE|have|AIM|do|give|get|CARRY|LISTING|FIND|and|DET)"
+_LOOKING = r"(got|HAVEV|TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SEE|have|AIM|do|give|get|CARRY|LISTING|FIND|and|DET)"
 
 
 _SEEING = (
@@ -36,22 +39,56 @@ _SEEING = (
 _IN_ALL = "in_total|in total|altogether|in_all|in all|overall"
 
 
+_WITH_PART = {
+    "wear": "wearing",
+    "have": "with",
+    "carry": "carrying",
+    "hold": "holding",
+    "ride": "riding",
+    "sit": "sitting",
+    "stand": "standing",
+}
+_KIND_OF_COUNT = "total|exact|overall|rough|approximate|precise|current|quick|estimated|full"
+
+
 def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | tuple[Step, ...] | None:
     """Read "count the cars", "how many cars are there" and "the number of cars"."""
+    if match := full_match(
+        rf"{SKIP} (of|OFNOUN|out_of|among) (EVERY|DET|all)* (?P<whole>_+?) (COMMA)? HOWMANY (of "
+        rf"(PRON|those))? (?P<rest>_+)",
+        lexemes,
+    ):
+        part = _WITH_PART.get(match["rest"][0].word)
+        if part is None:
+            return _count_those(source, (*match["whole"], *match["rest"]), view)
+        whole = thing_of(source, trimmed(match["whole"], "VISIBLE"))  # "of the people in view, how many wear a hat?"
+        return Count((Thing(f"{whole.text} {part} {text_of(source, match['rest'][1:])}"),), view) if whole and whole.text else None
     if match := full_match(rf"{SKIP} {_LOOKING}* {ME} HOWMANYMORE (?P<first>_+) than (?P<second>_+)", lexemes):
         return None
-    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ|BE|DET|that)* (?P<how>HOWMANY) (?P<rest>_+)", lexemes):
+    if match := full_match(
+        rf"{SKIP} ({_LOOKING}|{ME}|WHQ|BE|DET|that|about|roughly|around|EXACTLY)* (?P<how>HOWMANY) (?P<rest>_+)", lexemes
+    ):
         if match["how"][0].word in {"how much", "how_much"} and match["rest"][0].word == "of":
             return None  # "how much of the blade is iced" asks for a share
         return _counted(source, match["rest"], view, lexemes, match["how"][0])
     if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
         return Count((Thing(),), view)
-    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ BE|DET|total|exact|overall)* COUNTNOUN (DET|all)? (?P<rest>_+)", lexemes):
+    if match := full_match(rf"{SKIP} ({_LOOKING}|{ME}|WHQ BE|DET|{_KIND_OF_COUNT})* COUNTNOUN (DET|all)? (?P<rest>_+)", lexemes):
         return _counted(source, match["rest"], view, lexemes, None)
     if match := full_match(
-        rf"{SKIP} (do|TAKE|CARRY)? {ME} DET? (?P<thing>FREE) (count|headcount) (of)? (VISIBLE|FILLER)*", lexemes
+        rf"{SKIP} (do|TAKE|CARRY)? {ME} DET? (?P<thing>FREE{{1,2}}) (count|headcount) (of)? (VISIBLE|FILLER)*", lexemes
     ):
         return _counted(source, match["thing"], view, lexemes, None)  # "people count"
+    if match := full_match(rf"{SKIP} (do|TAKE|CARRY)? DET? (headcount|head_count) (of|on|for)? (?P<rest>_+)", lexemes):
+        if place_of(source, match["rest"]) is not None:
+            return None  # "a headcount on the bridge" does not say of what
+        listed = full_match("(?P<place>(DET)? PRESET PRESETNOUN?) COMMA (?P<things>_+)", match["rest"])
+        if listed and (place := place_of(source, listed["place"])) is not None:
+            things = things_of(source, without_sum(listed["things"]))
+            return AtPlaces((place,), (Count(things, view),)) if things else None
+        return _counted(source, match["rest"], view, lexemes, None)
+    if match := full_match(r"(?P<rest>_+) (COMMA|DASH) (DET)? (number|count|total|headcount|tally)", lexemes):
+        return _counted(source, match["rest"], view, lexemes, None)  # "persons in frame, number?"
     if match := full_match(rf"{SKIP} (COUNT|COUNT-ING) {ME} (?P<rest>_+)", lexemes):
         if match["rest"][0].has("NUM", "to") and not match["rest"][0].has("DET") and len(match["rest"]) < 3:
             return None
@@ -67,7 +104,16 @@ def _counted(
         view = "full"
     if (aside := full_match(f"(?P<thing>_+?) COMMA (?P<sum>{_IN_ALL}) COMMA (?P<rest>_+)", rest)) is not None:
         rest = (*aside["thing"], *aside["rest"])  # "how many vans, in total, can be seen?"
-    rest, inner = without_view(trimmed(rest, "FILLER", "COMMA", "AMOUNTISH"))
+    if (
+        guess := full_match("(?P<thing>_+?) (would_you|MODAL SELF|do SELF) (say|reckon|think|guess) (?P<rest>_*)", rest)
+    ) is not None:
+        rest = (*guess["thing"], *guess["rest"])  # "how many lorries would you say there are?"
+    if full_match("_+ in (AMOUNTISH|DET)* NUM (MINUTES|HOURS)", rest):
+        return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
+    rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
+    while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also"}:
+        rest = rest[:-1]
+    rest, inner = without_view(trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
     view = view or inner
     if full_match(r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again)*", rest) and not any(
         x.has("FREE") for x in rest
@@ -90,6 +136,8 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
     """Read "how many cars are in the left lane" or "... are red" as a count of a longer description."""
     if match := full_match(r"(?P<part>_+?) (does|do|has|have) (?P<whole>_+?) (have|got|show|contain)", rest):
         part, whole = thing_of(source, match["part"]), thing_of(source, match["whole"])
+        if part and (place := place_of(source, match["whole"])) is not None:
+            return AtPlaces((place,), (Count((part,), view),))  # "how many windows does the back gate have?"
         return Count((Thing(f"{part.text} of the {whole.text}"),), view) if part and whole else None
     match = full_match(
         (
@@ -101,9 +149,11 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
     if not match or not (thing := thing_of(source, match["thing"])):
         return None
     words, verb = trimmed(match["rest"], "FILLER"), match["verb"]
+    if words[:1] and words[0].word == "been" and len(words) > 1:
+        return Count((Thing(described(f"{thing.text} {text_of(source, words[1:])}")),), view)  # "... have been left in the shed"
     text = text_of(source, words)
     negated = match.has("not")
-    if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words):
+    if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words) or search("(COMMA|AND) WHQ", words):
         return None
     if not thing.text:
         return Count((Thing(f"{'not ' if negated else ''}{text} ones"),), view)
@@ -112,14 +162,13 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
     adjective = (
         len(words) == 1 and (words[0].has("FREE") or words[0].word in {"open", "shut"}) and not text.endswith("ing") and not negated
     )
-    return Count(
-        (Thing(described(f"{text} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{text}")),), view
-    )
+    description = described(f"{text} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{text}")
+    return Count((Thing(description),), view) if looks_like_description(description) else None
 
 
 def check_places_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read "check the gate and the yard for people"."""
-    if (bare := full_match(rf"{SKIP} (check|TELL|scan|SCAN) for (?P<things>_+)", lexemes)) is not None:
+    if (bare := full_match(rf"{SKIP} ((check|TELL|scan|SCAN) for|presence check (for|of)?) (?P<things>_+)", lexemes)) is not None:
         things = things_of(source, bare["things"])
         return Count(things, "full" if lexemes[0].has("SCAN") else None) if things else None  # "check for smoke"
     if (wide := full_match(rf"{SKIP} (check|look|SCAN|TELL|search) FULL for (?P<things>_+)", lexemes)) is not None:

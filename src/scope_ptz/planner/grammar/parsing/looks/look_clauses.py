@@ -40,7 +40,8 @@ def look_step(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> Step
     if (
         asked
         and (match := full_match(r"(FILLER|SEE|SHOW|any|got)* (ANY|DET) (?P<thing>_+?) (VISIBLE|there|here|about|anywhere)*", bare))
-        and lexemes[0].has("SEE", "ANY")
+        and (lexemes[0].has("SEE", "ANY") or lexemes[0].word == "got")
+        and not any(x.has("PICTURE", "CLOSER", "SNAP") for x in bare)
         and (thing := thing_of(source, match["thing"])) is not None
         and thing.text
     ):

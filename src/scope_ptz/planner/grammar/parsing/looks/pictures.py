@@ -15,7 +15,7 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import SKIP, Source, trimmed
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 
 if TYPE_CHECKING:
     pass
@@ -32,6 +32,8 @@ _MAX_PICTURES = 50
 
 def picture_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read "take three photos of the van", "photograph it" or "snap"."""
+    if named := full_match(rf"{SKIP} (photo|snapshot|screenshot) (?P<rest>(it|him|her|them|PRON|that) {SKIP})", lexemes):
+        return _pictured(source, named["rest"], 1, ())
     lead = rf"{SKIP} (TAKE|TAKE-ING|SNAP|SNAP-ING|with|CARRY|FILLER|me|us|SELF|it)*"
     if match := full_match(rf"{lead} (?P<words>{_PICTURE_WORDS}) (PICTURE|SNAP) (?P<rest>_*)", lexemes):
         is_verbless = not any(
@@ -49,7 +51,9 @@ def picture_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         return _pictured(source, match["rest"], 1, ())
     if full_match(
         rf"{SKIP} (TAKE|TAKE-ING|and|SNAP) (DET)? (ANOTHER|NUM|one|ORDINAL) (one|PICTURE|ANOTHER)? {SKIP}", lexemes
-    ) and any(x.word in {"take", "snap", "taking", "shoot", "grab", "capture", "photograph"} for x in lexemes):
+    ) and any(
+        x.word in {"take", "snap", "taking", "shoot", "grab", "capture", "photograph", "record", "save", "store"} for x in lexemes
+    ):
         return Snap()
     if full_match(
         (
@@ -78,6 +82,11 @@ def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequenc
         return Snap(times)
     if not rest or rest[0].word in {"for", "as"} or match_start("of (this|these) FREE", rest):
         return Snap(times)
+    if match := full_match(
+        r"(of|at|from|in|on) (?P<one>_+?) (and|AND) (another|one) (PICTURE)? (of|at|from|in|on) (?P<other>_+)", rest
+    ):
+        refs = (place_of(source, match["one"]), place_of(source, match["other"]))
+        return AtPlaces((refs[0], refs[1]), (Snap(times),)) if refs[0] and refs[1] else None
     if match := full_match(r"(each)? (of|from|at|in)? (?P<places>_+)", rest):
         places = places_of(source, match["places"])
         if places is not None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Literal
 
+from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Further, Move, Part, Repeat, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.moves.special_turns import AXIS_TARGET, special_turn
@@ -25,6 +26,14 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 
 HasClass = Callable[..., bool]
 """Tells whether one of the words that add nothing belongs to a class."""
+
+_UNKNOWN_CARRIER = "FREE (it|her|him|DET CAMERA|DET VIEWNOUN|CAMERA)"
+"""An unknown verb with the camera as its object, which can only be one of moving: "lob it 15 degrees to the left"."""
+
+_OPPOSED_VERBS = frozenset({
+    "avoid", "ban", "cancel", "deny", "dislike", "forbid", "forget", "hate", "ignore", "miss", "omit", "oppose", "postpone",
+    "prevent", "prohibit", "refuse", "reject", "resist", "skip", "suppress", "withhold",
+})  # fmt: skip
 
 _UNCLEAR_WAY = Unclear("Which way shall I turn, and how far?")
 _CONTRADICTION = Unclear("Those two directions contradict each other. Which way shall I turn?")
@@ -51,14 +60,24 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
         unread += camera["number"]  # "camera 2 left" is about another camera
     if lexemes[-1].word in DANGLING and not found.directions:
         unread.append(lexemes[-1])
+    if unread == [lexemes[0]] and found.directions and found.amounts and _moves_camera(lexemes):
+        unread = []
     if unread:
         raise NotUnderstoodError(unread)
     step = _step(found, silent, lexemes)
     return Repeat((step,), found.times) if found.times > 1 and isinstance(step, Move) else step
 
 
+def _moves_camera(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a clause begins with an English verb that is not in the vocabulary, and the camera as its object."""
+    verb = lexemes[0].word
+    return bool(match_start(_UNKNOWN_CARRIER, lexemes)) and verb_form(verb) == "base" and verb not in _OPPOSED_VERBS
+
+
 def _is_about_turning(lexemes: Sequence[Lexeme]) -> bool:
-    if full_match(rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) ({AXIS_TARGET})+", lexemes):
+    if full_match(rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) (ABSOLUTE)? ({AXIS_TARGET})+", lexemes):
+        return True
+    if any(x.has("EQUALS") for x in lexemes) and full_match(rf"({AXIS_TARGET})+", lexemes):
         return True
     if any(x.has("ZOOM", "ZOOMNOUN", "PERCENT", "ENLARGE", "WIDEN", "HALVE", "PRESET") for x in lexemes):
         return False
@@ -133,7 +152,7 @@ def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme])
     amounts = found.amounts
     exact = [amount for amount in amounts if amount.kind == "degrees"]
     if len(ways) == 1:
-        if len(exact) > 1 or (len(amounts) > 1 and not exact):
+        if len(set(exact)) > 1 or (len({amount.kind for amount in amounts}) > 1 and not exact):
             return Unclear("By how many degrees shall I turn?")
         amount = exact[0] if exact else amounts[0] if amounts else None
         return Move((_turn(ways[0], amount, found),), has_verb)
@@ -180,7 +199,7 @@ def _undirected(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequen
     amount = next(iter(found.amounts), None)
     axis: Literal["pan", "tilt"] = "tilt" if has("TILT", "TILTNOUN") or search("TILT", lexemes) else "pan"
     is_axis = has("PAN", "TILT", "PANNOUN", "TILTNOUN") or bool(search("PAN|TILT", lexemes))
-    if len(found.amounts) > 1 or (has("PAN") and has("TILT")):
+    if len(set(found.amounts)) > 1 or (has("PAN") and has("TILT")):
         return _UNCLEAR_WAY
     if has("INCREASE", "DECREASE") and is_axis and amount:
         return Move((Turn(axis, -1 if has("DECREASE") else 1, amount),))

@@ -26,48 +26,44 @@ _GO = (
     r"PAN|SHOW|KEEP|FIND|TAKE|SWITCH-ING|CARRY-ING|SHOW-ING|TURN-ING|HOMEWARD|BACK|over|straight|on|up|to|"
     r"onto|into|at|me|us|it|SELF|CAMERA|FILLER|FIRSTLY|AROUND|DET|VIEWNOUN|back|towards|toward|for|"
     r"from|out|in|PRON|next|now|with|through|again|by|of|down|along|LEADFILLER|look|GLUE|TRACK|HOMEVERB|QUOTE|"
-    r"AGAINWORD)*"
+    r"AGAINWORD|DOACT)*"
 )
 _TAIL = (
-    r"(FILLER|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
-    r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
+    r"(FILLER|on (DET)? VIEWNOUN|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
+    r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
 _HOW = {"SHOW": "show", "AIM": "look", "USE": "use"}
 
 
+_STORED = (
+    "(FILLER)* ((LISTING|TELL)? (me|us)? (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? (DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
+    "hold|holds|know|keep|save|saved|store|stored|set|set_up|up|programmed|loaded|available|in|on|DET|CAMERA|FILLER|this|"
+    "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|(this|"
+    "DET) FREE \\Z)*)"
+)
+"""A question after the presets themselves: "presets?", "what views have we got saved on this thing?"."""
+
+
 def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a clause that goes to a preset or home, or lists the presets; None for other clauses."""
+    if (parked := full_match("(FILLER)* park (CAMERA|it|DET|SELF)* (?P<place>(at|on|over|by|in) _+)", lexemes)) is not None:
+        place = place_of(source, parked["place"])
+        return Home() if full_match("_ HOME (FILLER)*", parked["place"]) else GoToPreset(place) if place else None
     if full_match(
         (
             r"(SWITCH|CARRY|SWITCH-ING|CARRY-ING|TURN|TAKE|back|BACK|to|it|CAMERA|DET|FILLER|FIRSTLY|SELF|RESET|GLUE|"
-            r"VIEWNOUN|PRON|LEADFILLER|AIM|straight|PAN|up|at)* HOME (FILLER|FIRSTLY|ORDINAL|now|again|position|"
+            r"VIEWNOUN|PRON|LEADFILLER|AIM|straight|PAN|up|at|from)* HOME (FILLER|FIRSTLY|ORDINAL|now|again|position|"
             r"VIEWNOUN|GLUE|PRESETNOUN|CAMERA)*|(FILLER)* RESET (FILLER|GLUE|to|HOME|CAMERA|DET|VIEWNOUN|PRESETNOUN)*|"
             r"(FILLER)* park (CAMERA|it|DET)* (FILLER)*"
         ),
         lexemes,
     ):
         return Home()
-    if (
-        full_match(
-            (
-                r"(LISTING|SHOW|TELL|WHQ|DET|SELF|me|us|FILLER|list of|DOV|BE|have|HAVEV|there|available|saved|stored|"
-                r"defined|of|EVERY|know|for|VISIBLE|got|set|up|does|CAMERA|can|MODAL|use|i|to|go|list|the|names of|"
-                r"HOWMANY|NAMES|name|names|save|PICTURES|SWITCH|CARRY|in|on|has|been|this|choose|from|and|which|existing|"
-                r"configured|exist|at|here|saving|offer|your|what)* (presets|preset list|positions|views|bookmarks|"
-                r"PRESETNOUN) (LISTING|SHOW|DET|SELF|FILLER|list|DOV|BE|have|HAVEV|there|available|saved|stored|for|of|to|"
-                r"can|MODAL|SWITCH|i|go|does|CAMERA|exist|are|you|know|got|set|up|this|use|defined|configured|on|in|the|"
-                r"here|CARRY|names|have|choose|from|we|offer|VISIBLE|PREP|name|(of|for|at) FREE+)*"
-            ),
-            lexemes,
-        )
-        and any((x.word.endswith("s") and x.has("PRESETNOUN")) or x.word in {"list"} for x in lexemes)
-        and any(
-            x.has("LISTING", "WHQ", "SHOW", "TELL", "HOWMANY") or x.word == "names" or x.word in {"list", "available", "names"}
-            for x in lexemes
-        )
-        and not any(x.word in {"check", "both"} for x in lexemes)
+    if opened := full_match(
+        rf"(FILLER)* open (up)? (DET)? (PRESETNOUN|VIEWNOUN) (of|for|CALLED)? (?P<place>{PLACE}) (FILLER)*", lexemes
     ):
-        return ListPresets()
+        place = place_of(source, opened["place"])
+        return GoToPreset(place) if place else None
     if match := full_match(rf"{_GO} {PLACE} {_TAIL}", lexemes) or full_match(
         (
             rf"(PAN|TILT|TURN|AIM|SWITCH|CARRY) (CAMERA|it|FILLER|over|AMOUNTISH)* (LEFT|RIGHT|UP|DOWN) (over|back|"
@@ -85,6 +81,37 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     ) and any(x.has("SWITCH", "CARRY") for x in lexemes):
         return GoThere()
+    return None
+
+
+def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
+    """Return the step of a clause that asks which presets there are; None for other clauses."""
+    if (
+        full_match(
+            (
+                r"(LISTING|SHOW|TELL|WHQ|DET|SELF|me|us|FILLER|list of|DOV|BE|have|HAVEV|there|available|saved|stored|"
+                r"defined|of|EVERY|know|for|VISIBLE|got|set|up|does|CAMERA|can|MODAL|use|i|to|go|list|the|names of|"
+                r"HOWMANY|NAMES|name|names|save|PICTURES|SWITCH|CARRY|in|on|has|been|this|choose|from|and|which|existing|"
+                r"configured|exist|at|here|them|saving|offer|your|what|hold|save-ED|keep)* (presets|preset list|positions|"
+                r"views|bookmarks|"
+                r"PRESETNOUN) (LISTING|SHOW|DET|SELF|FILLER|list|DOV|BE|have|HAVEV|there|available|saved|stored|for|of|to|"
+                r"can|MODAL|SWITCH|i|go|does|CAMERA|exist|are|you|know|got|set|up|this|use|defined|configured|on|in|the|"
+                r"here|CARRY|names|have|choose|from|we|offer|VISIBLE|PREP|name|hold|WHOLETHING|system|memory|got|keep|"
+                r"(of|for|at) FREE+)*"
+            ),
+            lexemes,
+        )
+        and any((x.word.endswith("s") and x.has("PRESETNOUN")) or x.word in {"list", "names"} for x in lexemes)
+        and any(
+            x.has("LISTING", "WHQ", "SHOW", "TELL", "HOWMANY") or x.word == "names" or x.word in {"list", "available", "names"}
+            for x in lexemes
+        )
+        and not any(x.word in {"check", "both"} for x in lexemes)
+    ):
+        return ListPresets()
+    is_plural = any((x.has("PRESETNOUN") and x.word.endswith("s")) or x.word == "names" for x in lexemes)
+    if is_plural and full_match(_STORED, lexemes) and not any(x.has("EVERY") or x.word == "both" for x in lexemes):
+        return ListPresets()
     return None
 
 
@@ -109,7 +136,8 @@ def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, .
         (
             rf"(SWITCH|CARRY|SCAN|SHOW|AIM|TURN|SWITCH-ING|CARRY-ING|through|to|at|in|me|SELF|CAMERA|FILLER|over|on|"
             rf"for|from|up|DET (tour|round|lap|circuit) of|tour|around|round|FIRSTLY|around|AROUND|a tour of|of|TAKE|it|TRACK|do|"
-            rf"run|each)* (?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
+            rf"run|each|DOACT|DET (rounds|round) of|DET rounds COMMA|DET FREE? (tour|round) of)* "
+            rf"(?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
         ),
         lexemes,
     )

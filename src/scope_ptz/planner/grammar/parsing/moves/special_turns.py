@@ -10,24 +10,46 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.moves.turn_words import SILENT_IN_TURNS, TURN_VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
-AXIS_TARGET = r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|is)? (?P<number>NUM) (DEG|X)?"
+AXIS_TARGET = (
+    r"(AND|COMMA|and)* (DET)? (?P<axis>PAN|TILT|ZOOM|PANNOUN|TILTNOUN|ZOOMNOUN) (to|of|at|on|is|EQUALS)? (?P<number>NUM) (DEG|X)?"
+)
+
+_ON_TARGET = r"(AND|COMMA|and)* (DET)? (PAN|TILT|PANNOUN|TILTNOUN) (on|to|at) NUM DEG?"
 
 _NO_COMPASS = Unclear(
     "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
 )
 
+CLOCK_POSITION = "NUM (o_'_clock|o_clock)"
+_NO_CLOCK = Unclear(
+    "A clock position can mean a turn or a place in the picture. By how many degrees shall I turn, and which way, or "
+    "what shall I look at?"
+)
+"""The answer to "look at 3 o'clock", which some say for a quarter turn and others for the right edge of the picture."""
+
 
 def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a turn whose words name no direction and amount: "turn around", "level the camera"."""
     glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
+    if search(CLOCK_POSITION, lexemes):
+        return _NO_CLOCK
     if any(x.word in {"bearing", "heading"} for x in lexemes) and any(x.has("NUM") for x in lexemes):
         return _NO_COMPASS
-    if full_match(rf"{glue} (REVERSE|(TURN|TURN-ING|CARRY|AIM) {glue} (AROUND|REVERSE)) {glue}", lexemes):
+    opposite = (
+        r"((so_that|so|to) (SELF|it|CAMERA|DET|is)* (AIM|AIM-ING|AIM-S) (in)? (REVERSE|DET (other|opposite) (way|direction|SIDE)))?"
+    )
+    if full_match(rf"{glue} (REVERSE|(TURN|TURN-ING|CARRY|AIM) {glue} (AROUND|REVERSE)) {glue} {opposite}", lexemes):
         return Move((Turn("pan", 1, Amount("degrees", 180.0)),))
     if match := full_match(rf"{glue} (?P<way>VERTICALUP|VERTICALDOWN) {glue}", lexemes):
         return Move((Turn("tilt", 1 if match["way"][0].has("VERTICALUP") else -1, Amount("limit")),))
-    if match := full_match(rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) (?P<targets>({AXIS_TARGET})+)", lexemes):
+    if (
+        match := full_match(
+            rf"(CARRY|AIM|SWITCH|FILLER|CAMERA|DET|GLUE)* (to|at) (ABSOLUTE)? (?P<targets>({AXIS_TARGET})+)", lexemes
+        )
+    ) or (any(x.has("EQUALS") for x in lexemes) and (match := full_match(rf"(?P<targets>({AXIS_TARGET})+)", lexemes))):
         return _targets(match["targets"])
+    if match := full_match(rf"(FILLER)* (set|put) (CAMERA|DET CAMERA)? (?P<targets>({_ON_TARGET})+)", lexemes):
+        return _targets(match["targets"])  # "set the pan on -35 and the tilt on 4"
     if search("too (LOT|LEFT|RIGHT|UP|DOWN|much)", lexemes):
         return Unclear("Which way shall I turn, and how far?")  # "too far left" is a complaint
     if full_match(f"{glue} RIGHT AROUND {glue}", lexemes):
@@ -44,7 +66,7 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     if full_match(
         (
             rf"{glue} CENTREALL {glue}|(FILLER)* CENTREWORD (DET)* (CAMERA|it|VIEWNOUN) (FILLER)*|(CARRY|SWITCH|TURN) "
-            rf"{glue} (BACK)? to CENTREWORD (FILLER)*"
+            rf"{glue} (BACK)? to CENTREWORD (FILLER)*|BACK to CENTREWORD (FILLER|AGAINWORD)*"
         ),
         lexemes,
     ):
@@ -62,7 +84,11 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     ):
         return Move((Aim("tilt", 0.0),))
-    if full_match(rf"{glue} (AIM|TURN|PAN|AIM-ING|CARRY) {glue} AHEAD {glue}", lexemes):
+    if full_match(
+        rf"{glue} (AIM|TURN|PAN|AIM-ING|CARRY) {glue} AHEAD {glue}|(BACK to|FILLER)* (straight_ahead|dead_ahead) "
+        rf"(FILLER|AGAINWORD)*",
+        lexemes,
+    ):
         if any(x.has("CARRY") and not x.has("AIM", "PAN", "TURN") for x in lexemes) and any(
             x.word.startswith("forward") for x in lexemes
         ):

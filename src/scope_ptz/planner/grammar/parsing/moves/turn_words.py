@@ -8,7 +8,8 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, DIRECTIONS, fraction_of
+from scope_ptz.planner.grammar.parsing.moves.returns import MULTIPLE, multiple_of
+from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, DIRECTIONS, UNTIL_LIMIT, fraction_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, match_start
 
 TURN_VERBS = ("PAN", "TILT", "TURN", "CARRY", "DOACT", "AIM", "RAISE", "LOWER", "INCREASE", "DECREASE", "KEEP", "SCAN", "SHOW")
@@ -25,10 +26,12 @@ SILENT_IN_TURNS = (
 """Classes of words that a turn may contain besides amounts and directions."""
 
 
-_NUMBER = "(AMOUNTISH|and)* (?P<number>NUM) (AMOUNTISH)*"
+_NUMBER = "(AMOUNTISH|and)* (?P<number>NUM) (?!VIEWNOUN|PICTURE) (AMOUNTISH)*"
 
 
 _CHUNKS = (
+    ("shared", r"each (way|direction|SIDE)"),
+    ("reverse", r"REVERSE"),
     ("turn", r"LIMIT AROUND"),
     ("right angle", r"(by|through|DET)* ((?P<fraction>FRACTION) (of)? (DET)? )?RIGHTANGLE"),
     ("parts", r"(in|over) (?P<count>NUM) STEPNOUN"),
@@ -37,6 +40,8 @@ _CHUNKS = (
     ("steps", r"(in|with|by|using|at)? (DET)? STEPNOUN of (about|AMOUNTISH)? (?P<size>NUM) DEG?"),
     ("steps", r"(in|with|by|using|at)? (?P<size>NUM) DEG? (STEPNOUN|ATATIME)"),
     ("steps", r"(in|with|using|by) (?P<small>small|little|short|LITTLE) STEPNOUN"),
+    ("steps", r"(?P<small>LITTLE) ATATIME"),
+    ("same", rf"(by)? {MULTIPLE}"),
     ("times", (
 r"(?P<number>NUM) X (INTURN|AMOUNTISH)*(?! SAMEAMOUNT)|X (?P<number2>NUM)|(?P<twice>TWICE)(?! (SAMEAMOUNT|"
 r"ASCLOSE))|(?P<thrice>THRICE)(?! SAMEAMOUNT)"
@@ -50,17 +55,19 @@ r"MAX)? (TURNNOUN|(of the|the)? (way|LIMIT) AROUND|way AROUND|of the way AROUND)
     ("turn", r"(?P<number>NUM) (turns|rotations|revolutions|circles)"),
     ("part", r"(AMOUNTISH|DET)* ((?P<times>NUM) )?(?P<fraction>FRACTION) (of)? ((?P<number>NUM)|DET)? DEG"),
     ("turn", r"by DET? (?P<fraction>FRACTION)"),
+    ("turn", r"DET (?P<fraction>quarter) (?=(to)? (DET|SELF)? (LEFT|RIGHT))"),
     ("axis", r"(?P<axis>PANNOUN|TILTNOUN) (to|of|at|is)? (?P<number>NUM) DEG?"),
     ("target", (
 r"(to|at|until it is at) (DET|ABSOLUTE|PANNOUN|TILTNOUN|TURNNOUN|of|exactly)* (?P<number>NUM) DEG? "
 r"(ABSOLUTE)?(?! (to|LEFT|RIGHT|UP|DOWN|on))"
 )),
     ("limit", AS_FAR_AS),
+    ("limit", UNTIL_LIMIT),
     ("limit", r"(LIMIT) (of)? (DET)* "),
     ("amount", rf"{_NUMBER} (DEG)? "),
     ("lot", r"(AMOUNTISH|DET)* LOT (MORE)? "),
     ("little", r"(AMOUNTISH|DET)* LITTLE (MORE|of)* "),
-    ("same", r"(by)? SAMEAMOUNT"),
+    ("same", r"(by)? (SAMEAMOUNT|(same|same_again) (?=(to)? (DET|SELF)? (LEFT|RIGHT|UP|DOWN)))"),
     ("direction", r"(?P<LEFT>LEFT)|(?P<RIGHT>RIGHT)|(?P<UP>UP)|(?P<DOWN>DOWN)"),
 )  # fmt: skip
 
@@ -129,6 +136,8 @@ def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list
 def _add(found: TurnParts, name: str, match: Match) -> None:
     """Add the part of a turn that a pattern found."""
     value = match["number"][0].value if "number" in match.names and match["number"] else None
+    if name == "shared":
+        return  # one amount always holds for all directions
     if name == "steps":
         size = _SMALL_STEP_DEG if "small" in match.names else abs(match["size"][0].value)
         found.step = Amount("degrees", size)
@@ -154,6 +163,10 @@ def _add(found: TurnParts, name: str, match: Match) -> None:
         found.target = value
     elif name == "amount":
         found.parts.append(Amount("degrees", value or 0.0))
+    elif name == "reverse":
+        found.parts.append(Amount("degrees", 180.0))  # "do a one-eighty to the right"
+    elif name == "same":
+        found.parts.append(Amount("same", factor=multiple_of(match)))
     elif name == "direction":
         found.parts.append(next(way for way in DIRECTIONS if match[way]))
     else:

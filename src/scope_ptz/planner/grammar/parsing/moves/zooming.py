@@ -7,7 +7,14 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Back, Move, Repeat, Step, Unclear, Zoom
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, DANGLING, DIRECTIONS, NotUnderstoodError, fraction_of
+from scope_ptz.planner.grammar.parsing.parts.clause import (
+    AS_FAR_AS,
+    DANGLING,
+    DIRECTIONS,
+    UNTIL_LIMIT,
+    NotUnderstoodError,
+    fraction_of,
+)
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 _MAX_PLAUSIBLE_FACTOR = 20.0  # larger numbers without a unit may be percentages
@@ -54,9 +61,16 @@ ZOOM_TOPICS = (
     "HALVE",
 )
 _SIZES = frozenset({"close", "big", "large", "near", "tight", "wide"})
-_MAG = r"(as|of|DET|current|present)* (ASCLOSE|ZOOMNOUN|level|close|big|large|near|tight|wide)"
+_MAG = (
+    r"((as|of|DET|current|present)* (ASCLOSE|ZOOMNOUN|level|close|big|large|near|tight|wide)|(of)? what (SELF HAVEV|it BE) (now)?)"
+)
+_RELATIVE_MAG = (
+    r"((as|of|DET|current|present)+ (ZOOMNOUN|level|close|big|large|near|tight|wide)|(as|of|DET|current|present)* ASCLOSE)"
+)
+"""What an amount is a multiple of. Unlike "3 times the magnification", "3x zoom" is not relative."""
+
 _CHUNKS = (
-    ("to factor", rf"(to|at) (DET|AMOUNTISH)* (?P<number>NUM) X? {_MAG}"),
+    ("to factor", rf"(to|at) (DET|AMOUNTISH)* (?P<number>NUM) X? {_RELATIVE_MAG}"),
     ("to factor", rf"to (?P<multiple>TWICE|THRICE) {_MAG}"),
     ("to", (
 r"(to|at|up to|down to|back to|ABSOLUTE) (DET|AMOUNTISH|ZOOMNOUN|FACTOR|of|ABSOLUTE)* (?P<number>NUM) "
@@ -68,6 +82,7 @@ r"(?P<percent>PERCENT)? X? ZOOMNOUN?"
     ("factor", rf"(AMOUNTISH|by|FACTOR|X|of)* (?P<number>NUM) (X)? (INTURN)? (FACTOR)? ({_MAG})?"),
     ("factor", rf"(AMOUNTISH|by)* (?P<multiple>TWICE|THRICE) ({_MAG})?"),
     ("limit", AS_FAR_AS),
+    ("limit", UNTIL_LIMIT),
     ("limit", r"(AMOUNTISH)* LIMIT "),
     ("little", r"in (small|little|LITTLE) STEPNOUN"),
     ("nothing", r"(that)? SELF (can|HAVEV) (do|manage|get|got|CARRY|HAVEV)"),
@@ -80,13 +95,27 @@ r"(?P<percent>PERCENT)? X? ZOOMNOUN?"
 _NOT_CLEAR = Unclear("Shall I zoom in or out?")
 
 
+def _with_way(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return lexemes with "in there" after "zoom" as a direction and a filler: "zoom in there as close as it goes"."""
+    for i, x in enumerate(lexemes):
+        if x.word in {"in_there", "in_here"} and 0 < i < len(lexemes) - 1 and lexemes[i - 1].has("ZOOM", "ZOOM-ING"):
+            way = Lexeme("in", x.start, x.start + 2, frozenset({"IN", "GLUE"}))
+            return (*lexemes[:i], way, Lexeme(x.word[3:], x.start + 2, x.end, frozenset({"GLUE"})), *lexemes[i + 1 :])
+    return tuple(lexemes)
+
+
 def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a clause that changes the magnification; None if the clause is about something else.
 
     Raises:
         NotUnderstoodError: The clause zooms, but has words that are not accounted for.
     """
-    if search(r"(on|onto|upon|at) (DET|PRON|FREE|PICTURE|EVERY|SOMEONE)|(on|onto|upon) NUM|to (PRON|DET) (FREE|\Z)", lexemes):
+    lexemes = _with_way(lexemes)
+    if search(
+        r"(on|onto|upon|at) (?!(DET)? (ZOOM|ZOOMNOUN|(current|present) (VIEWNOUN|PICTURE))) (DET|PRON|FREE|PICTURE|"
+        r"EVERY|SOMEONE)|(on|onto|upon) NUM|to (PRON|DET) (FREE|\Z)",
+        lexemes,
+    ):
         return None  # "zoom in on it"
     if search("CLOSER of (DET|PRON|FREE|EVERY)", lexemes):
         return None  # "get a close-up of it"
@@ -111,7 +140,11 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
         bool(
             match_start(
                 (
-                    r"(FILLER|DET|BACK)* (IN|OUT)? (BACK)? NUM (X|PERCENT)|(CARRY|DET|CAMERA|FILLER)* (to|at) NUM X|CARRY (it|"
+                    r"(FILLER|NOW|FIRSTLY|BACK)* (OUT LITTLE|OUT LOT|IN LOT) (FILLER)*|(FILLER)* (IN|OUT) as far as|"
+                    r"(FILLER|FIRSTLY)* NOW IN LITTLE (FILLER)*|"
+                    r"(FILLER|DET|BACK)* (IN|OUT)? (BACK)? NUM (X|PERCENT)|(CARRY|SWITCH|DET|CAMERA|FILLER)* (to|at) "
+                    r"NUM X|(FILLER|FIRSTLY|DET|"
+                    r"BACK)* (IN|OUT) (by (AMOUNTISH)* NUM|X NUM|(by)? FRACTION)|CARRY (it|"
                     r"DET VIEWNOUN|CAMERA)? NUM X"
                 ),
                 lexemes,
@@ -130,6 +163,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
         x.has("PAN", "TILT", "TURN") for x in lexemes
     ):
         return None
+    lexemes = _in_active_voice(lexemes)
     amounts: list[tuple[str, float]] = []
     silent: list[Lexeme] = []
     unread: list[Lexeme] = []
@@ -145,9 +179,11 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
             if name != "nothing":
                 amounts.append(_amount(name, match))
             i += match.size
-        elif (rest[0].has(*_SILENT) or (rest[0].has("UP", "DOWN") and _has_zoom_noun(lexemes))) and not rest[0].has(
-            "NEGATED", "NOT", "NONE"
-        ):
+        elif (
+            rest[0].has(*_SILENT)
+            or rest[0].word in {"present", "current"}
+            or (rest[0].has("UP", "DOWN") and _has_zoom_noun(lexemes))
+        ) and not rest[0].has("NEGATED", "NOT", "NONE"):
             silent.append(rest[0])
             i += 1
         else:
@@ -160,6 +196,19 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
     step = _step(amounts, silent, lexemes)
     has_verb = bool(amounts) or any(x.has(*_VERBS, *(f"{verb}-ING" for verb in _VERBS)) for x in lexemes)
     return replace(step, has_verb=has_verb) if isinstance(step, Move) else step
+
+
+def _in_active_voice(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return "increase the zoom by 20 percent" for "the zoom should be increased by 20 percent"; other clauses unchanged."""
+    verbs = "|".join(f"{verb}-ED" for verb in _VERBS)
+    match = full_match(
+        rf"(?P<noun>(DET|FILLER)* ZOOMNOUN) (MODAL|needs to|has to|ought to) be (?P<verb>{verbs}) (?P<rest>_*)", lexemes
+    )
+    if match is None:
+        return lexemes
+    verb = match["verb"][0]
+    active = frozenset(name.removesuffix("-ED") for name in verb.classes if name.endswith("-ED"))
+    return (replace(verb, classes=active), *match["noun"], *match["rest"])
 
 
 def _has_zoom_noun(lexemes: Sequence[Lexeme]) -> bool:
@@ -194,12 +243,14 @@ def _step(amounts: list[tuple[str, float]], silent: Sequence[Lexeme], lexemes: S
     verbs = next((x for x in silent if x.has("DOUBLE", "TRIPLE", "QUADRUPLE", "HALVE")), None)
     inwards = any(x.has(*_INWARDS, *(f"{c}-ING" for c in _INWARDS)) for x in silent)
     outwards = any(x.has(*_OUTWARDS, *(f"{c}-ING" for c in _OUTWARDS)) for x in silent)
+    if outwards and any(x.has("OUT") for x in silent) and all(x.has("TIGHT", "OUT") or not x.has(*_INWARDS) for x in silent):
+        inwards = False  # "full zoom out"
     if search(r"BACK (IN|OUT)", lexemes) or (any(x.has("BACK") for x in silent) and outwards):
         inwards = inwards and bool(search("BACK IN", lexemes))
     has_zoom_noun = _has_zoom_noun(lexemes)
     inwards = inwards or _view_limit(lexemes) > 0 or lexemes[0].word == "up" or (has_zoom_noun and any(x.has("UP") for x in silent))
     outwards = outwards or _view_limit(lexemes) < 0 or (has_zoom_noun and any(x.has("DOWN") for x in silent))
-    if search("(pull|bring|take|ZOOM) _* BACK", lexemes) and not inwards:
+    if search("(pull|bring|take|ease|wind|ZOOM) _* BACK|(BACK|ease) DET? ZOOMNOUN (off|BACK)", lexemes) and not inwards:
         outwards = True  # "pull the zoom back"
     if inwards and outwards:
         return _NOT_CLEAR
@@ -252,6 +303,8 @@ def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequen
         if sign < 0 and value >= 100:
             return Unclear("I can zoom out by less than 100 per cent. By how many times shall I zoom out?")
         return Move((Zoom("percent", (sign or 1) * value),))
+    if kind == "fraction" and search("FRACTION as (close|big|large|near|tight)", lexemes):
+        return Move((Zoom("factor", value),))
     if kind == "fraction":
         if bare:
             return Move((Zoom("factor", value),)) if search("to|of|ZOOMNOUN", lexemes) else _NOT_CLEAR

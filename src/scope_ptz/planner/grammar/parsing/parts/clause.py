@@ -26,10 +26,16 @@ DANGLING = frozenset({"on", "onto", "to", "at", "of", "with", "by", "for", "towa
 
 
 AS_FAR_AS = (
-    r"as (?P<extent>far|much|high|low|wide|close|tight|near|FREE) (DET|FREE|VIEWNOUN|PICTURE)* as (DET|PRON|SELF|"
+    r"(as)? (?P<extent>far|much|high|low|wide|close|tight|near|FREE) (DET|FREE|VIEWNOUN|PICTURE)* (as|as_the) (DET|PRON|SELF|"
     r"CAMERA|possible|she|it)+ (MODAL|DOV|CARRY|CARRY-S|get|will|can|go|goes|manage|allows|FREE)*"
 )
 """The pattern for "as far as it goes", which means all the way."""
+
+UNTIL_LIMIT = (
+    r"UNTIL (SELF|it|PRON|DET CAMERA) (MODAL)? (hit|hits|reach|reaches|get_to|gets_to|get to|gets to|CARRY to) (DET|its)? "
+    r"(LIMIT|end|limit|limits|maximum|max|minimum|stop|stops)"
+)
+"""The pattern for "until you hit the limit", which means all the way."""
 
 
 SKIP = "(FILLER|FIRSTLY|LEADFILLER|QUOTE|COMMA)*"
@@ -49,10 +55,15 @@ class NotUnderstoodError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text of an instruction, and the presets of the camera; none if they are unknown."""
+    """The text of an instruction, and the presets of the camera; none if they are unknown.
+
+    Attributes:
+        has_moved: Whether an earlier clause moves the camera. Then "the people on the bridge" are looked for from there.
+    """
 
     text: str
     presets: tuple[str, ...] = ()
+    has_moved: bool = False
 
 
 @dataclass(frozen=True, slots=True)

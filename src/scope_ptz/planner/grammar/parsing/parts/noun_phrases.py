@@ -9,6 +9,7 @@ from itertools import pairwise
 from scope_ptz.english import COLOURS
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS, Source, text_of, trimmed
@@ -20,11 +21,15 @@ _NEVER = (
 )  # fmt: skip
 """Classes of words that no description contains."""
 
+_AROUND_NOUN_PHRASE = ("ATLEAST", "MORETHAN", "FEWERTHAN", "EXACTLY", "ADVERB", "VISIBLE", "SELF")
+"""Classes of words before and after a noun phrase that a description may contain: "fewer than 20 people", "boats alongside"."""
+
 _COMMANDS = ("TELL", "SWITCH", "TAKE", "SHOW", "FIND", "CARRY", "READ", "COUNT", "SNAP", "AIM", "TRACK", "TURN", "SCAN", "KEEP")
 _LEAD = r"(me|us|FILLER|OFNOUN|all of|both of|any of|some of)*"
 _DETERMINERS = ("DET", "EVERY", "ANY")
 _DEFINITE = frozenset({"the", "that", "this", "these", "those", "all_the", "all_of_the", "each_of_the", "my", "our", "your"})
 _PRONOUN = re.compile(r"(?:it|them|they|that|this|those|these|him|her|that one|this one|he|she|one|the one)", re.IGNORECASE)
+_NO_NOUNS = frozenset({"than", "nor", "neither", "minus", "outnumber", "outnumbers", "exceed", "exceeds"})
 _RELATIVE = (
     (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
     (
@@ -37,6 +42,7 @@ _RELATIVE = (
     (re.compile(r"(?<!\bthat)(?<!\bwho)(?<!\bwhich) (?:have|has) (?=\w)", re.IGNORECASE), " with "),
     (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:of|in) the (?:picture|frame|image|view|shot|screen|scene)$", re.IGNORECASE), ""),
+    (re.compile(r" (?:in|on) (?:it|them)$", re.IGNORECASE), ""),
     (re.compile(r"^(?:me |us )?(?:all )?(?:of )?(?:the |these |those )?(?=\w)", re.IGNORECASE), ""),
 )
 """Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
@@ -66,17 +72,21 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
         return None  # several things
     while len(lexemes) > 1 and lexemes[-1].word in {"there", "here"}:
         lexemes = lexemes[:-1]  # "at least 3 awnings there"
+    if lexemes[0].word == "there" and len(lexemes) > 1:
+        lexemes = lexemes[1:]  # "there a van" of "is there a van"
     first = 0
     while first < len(lexemes) - 1 and lexemes[first].has(*_DETERMINERS) and not lexemes[first].has("SOMEONE", "NUM"):
         first += 1
     definite = any(x.word in _DEFINITE for x in lexemes[:first])
     text = described(text_of(source, lexemes[first:]))
-    return Thing(text, definite=definite) if text else None
+    core = described(text_of(source, trimmed(lexemes[first:], *_AROUND_NOUN_PHRASE)))
+    is_read = looks_like_description(text) or looks_like_description(core)
+    return Thing(text, definite=definite) if is_read else None
 
 
 def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether lexemes are one noun phrase, or several joined by "and", "or" or commas."""
-    if any((x.has("LIMIT", "INTURN") and "_" in x.word) or x.word in {"than", "nor", "neither", "minus"} for x in lexemes):
+    if any((x.has("LIMIT", "INTURN") and "_" in x.word) or x.word in _NO_NOUNS for x in lexemes):
         return False
     if any(x.has(*_NEVER) or (x.has(*MARKERS) and not x.has("DET", "PREP", "REL", "SOMEONE")) for x in lexemes):
         return False
@@ -92,6 +102,8 @@ def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
         return False
     if search("as (PRON|SELF)", lexemes) or match_start("NUM OR NUM|NUM DEG? (the|a|an)|(it|them|him|her) PREP", lexemes):
         return False
+    if search("(ZOOM-ED|PAN-ED|TILT-ED) (LIMIT|LITTLE|LOT|RIGHT)? (IN|OUT|LEFT|RIGHT|UP|DOWN)|instead_of", lexemes):
+        return False  # "the gate zoomed in" says how the camera is set
     if search(r"EVERY (of)? (DET)* PRESETNOUN", lexemes):
         return False
     if not has_noun(tuple(lexemes)):
@@ -212,3 +224,9 @@ def _is_separate(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> bool:
     if after[0].word in COLOURS and all(x.word in COLOURS for x in before if not x.has("DET")):
         return False  # "red and white barriers"
     return not any(x.has("PREP", "REL") or x.word.endswith("ing") for x in before[1:])
+
+
+def people(source: Source, rest: Sequence[Lexeme]) -> Thing:
+    """Return "people in the lane" for "anyone in the lane"."""
+    rest = trimmed(rest, "VISIBLE", "FILLER", "BE")
+    return Thing(described(" ".join(["people", text_of(source, rest)]).strip()))

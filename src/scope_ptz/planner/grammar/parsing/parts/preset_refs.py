@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.instruction_tree import (
@@ -11,8 +12,10 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
+_PRESETS_NAMED = re.compile(r"\b(?:preset|position|view|bookmark|viewpoint|waypoint|location|spot|place|stop)s?\b", re.IGNORECASE)
 PLACE = (
-    r"((DET)? (PRESETNOUN)? (CALLED)? (QUOTE)? (?P<name>PRESET) (QUOTE)? (PRESETNOUN|one|VIEWNOUN|CAMERA|PICTURE|position)?"
+    r"((DET)? (PRESETNOUN)? (CALLED|(for|of) (DET)?)? (QUOTE)? (?P<name>PRESET) (QUOTE)?"
+    r" (PRESETNOUN|one|VIEWNOUN|CAMERA|PICTURE|position)?"
     r"|(DET)? PRESETNOUN (NUMBERWORD)? (?P<number>NUM)|(DET)? (?P<ordinal>ORDINAL) (PRESETNOUN|one))"
 )
 """A reference to a preset that the camera has, or to its number."""
@@ -34,6 +37,8 @@ def place_of(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
         explicit = any(x.has("PRESETNOUN") for x in lexemes) or not any(x.has("DET") for x in lexemes)
         return PresetRef(match["name"][0].preset, explicit=explicit)
     number = match["number"] or match["ordinal"]
+    if not any(x.has("PRESETNOUN") for x in lexemes) and not _PRESETS_NAMED.search(source.text):
+        return None  # "and the second one?" after a question about cars
     return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
 
 

@@ -15,7 +15,8 @@ _LEAD = (
 _FORMS = (
     r"(in|at|on|from|to|of|by|with|for|under|behind)? (WHQ|what|which|who|where|how|HOWMANYMORE|HOWMANY)",
     r"have (SELF|they|any|the FREE+ (been|got|gone|left|arrived))",
-    r"do the _ _ _*|do (SELF|these|those|all|any|PRON|SOMEONE|both|EVERY)",
+    r"do the (?!(rounds|round|usual|tour|lot|following|trick|thing|job|FULL|PRESET)) _ _ _*|do (SELF|these|those|"
+    r"all|any|PRON|SOMEONE|both|EVERY)",
     (
 r"(BE|does|did|has|had) (not)? (there|DET|PRON|SOMEONE|NOONE|FREE|SELF|PRESET|ANY|NUM|CAMERA|PICTURE|"
 r"EVERY|VISIBLE|LEADMORE|MORE|NONE|it|NOW|everyone|everybody|everything|ATLEAST|MORETHAN|FEWERTHAN|PREP)"
@@ -24,7 +25,7 @@ r"EVERY|VISIBLE|LEADMORE|MORE|NONE|it|NOW|everyone|everybody|everything|ATLEAST|
 r"(can|could|did|does|would|will|might|MODAL) (SELF|DET|PRON|SOMEONE|FREE|EVERY|ANY) (ADVERB|FILLER)* "
 r"(SEE|READ|TELL|FREE|count|spot|be|find|have|BE|HAVEV|look|fit|get|make_out|identify|LOOKSLIKE)"
 ),
-    r"(SOMEONE|NOONE|anyone|anybody|anything|nothing|something) (_)+ \Z",
+    r"(anyone|anybody|anything|NOONE|nothing) (?!(HAVEV|MODAL)) (_)+ \Z",
     r"from (LEFT|RIGHT|nearest|UP|DOWN|top|bottom) to _+? (WHQ|in which|which|what)",
     r"(put|rank|arrange|sort) _+? in_order (of|by|from) _+",
     r"(out_of|of|among|between) _+ (COMMA) (which|what|who)",

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.instruction_tree import PresetRef
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
@@ -15,13 +17,26 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 _TRIVIAL = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "INSTEAD", "QUOTE", "ATSAMETIME")
+_FIXED_TO_THINGS = frozenset({
+    "sign", "signs", "text", "word", "words", "writing", "written", "letters", "lettering", "logo", "number", "name", "label",
+    "notice", "poster", "lock", "padlock", "handle", "says", "say", "printed", "painted", "colour", "color",
+})  # fmt: skip
+"""Words for parts of a thing and for writing on it: "the sign on the gate" is not a thing at the preset "gate"."""
+
+_PARTS_OF_DAY = frozenset({"morning", "afternoon", "evening", "arvo", "minute", "moment", "time", "week"})
+_PARTICLES = frozenset({"over", "up", "off", "out", "down", "away", "in"})
+_AT_PRESENT = frozenset({
+    "now", "right_now", "currently", "at_the_moment", "at_present", "just_now", "at_this_moment", "presently", "this_instant",
+    "at_the_minute", "at_this_point", "this_moment",
+})  # fmt: skip
+
 _TIMES = (
     r"(COMMA)? (for)? (?P<times>(?P<number>NUM) X(?! (DET|as|ASCLOSE|ZOOMNOUN|ZOOM|IN|OUT|more|further|"
     r"further_in))|(?P<twice>twice)|(?P<thrice>thrice)|X (?P<number2>NUM)) (INTURN|FILLER)*"
 )
 MAX_TIMES = 50
 SECONDS = (
-    r"((?P<a>DET|about|AMOUNTISH)* (?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
+    r"((?P<a>DET|about|AMOUNTISH|next)* (?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
     r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS)?)"
 )
 
@@ -30,6 +45,10 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
     """Return a clause without the words for the part of the scene, and that part: "current", "full" or None."""
     view: View | None = None
     lexemes = trimmed(lexemes, *_TRIVIAL)
+    if seen := full_match(
+        "(?P<body>_+?) COMMA? (AIM-ING|SCAN-ING|looking|checking) (over|across|through)* (?P<scope>FULL)", lexemes
+    ):
+        lexemes = (*seen["body"], *seen["scope"])  # "the number of flags, looking over the whole area"
     changed = True
     while changed and len(lexemes) > 1:
         changed = False
@@ -79,21 +98,33 @@ def _is_part_of_noun(rest: Sequence[Lexeme]) -> bool:
 
 def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
     """Return a clause without the preset that ends it ("count the cars at the gate"), and this preset; None for none."""
-    lexemes = trimmed(lexemes, *_TRIVIAL)
+    lexemes = _without_time(trimmed(lexemes, *_TRIVIAL))
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
         lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to) (?P<place>_+)", tail)
+        is_past_particle = before.word in _PARTICLES and len(lexemes) > size + 1 and lexemes[len(lexemes) - size - 2].has("FREE")
         is_likeness = before.word == "like" and lexemes[0].has("WHQ")  # "what is the queue like at the gate?"
-        if not lead or (before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB") and not is_likeness):
+        if not lead or (
+            before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB") and not is_likeness and not is_past_particle
+        ):
             continue
         if lead["place"][0].has("PREP"):
             continue
         places = places_of(source, lead["place"])
         if places is None or (lead["prep"][0].word in {"for", "to", "between"} and places):
             continue
+        preposition = lead["prep"][0].word
         is_certain = (
-            not places or lead["prep"][0].word in {"at", "from", "in", "using"} or any(x.has("PRESETNOUN") for x in lead["place"])
+            not places
+            or preposition in {"at", "from", "in", "using"}
+            or any(x.has("PRESETNOUN") for x in lead["place"])
+            or (
+                preposition == "on"
+                and not source.has_moved
+                and _can_be_on(lexemes[: len(lexemes) - size])
+                and not _is_thing(places)
+            )
         )
         nouns = (
             "" if len(places) > 1 else "sign|word|text|"
@@ -103,11 +134,40 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
     return lexemes, None
 
 
+def _without_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return lexemes without the words for the present at their end: "... on the bridge at the minute", "... this morning"."""
+    lexemes = tuple(lexemes)
+    if len(lexemes) > 3 and lexemes[-1].word in {"yet", "still", "already"}:
+        lexemes = lexemes[:-1]
+    counts = any(x.has("HOWMANY", "COUNT", "COUNTNOUN") for x in lexemes) or bool(search("BE there|ANY", lexemes[:3]))
+    if counts and len(lexemes) > 3 and lexemes[-2].word == "this" and lexemes[-1].word in _PARTS_OF_DAY:
+        return lexemes[:-2]
+    if len(lexemes) > 3 and lexemes[-1].word in {"yet", "already", "still"} and lexemes[-2].has("PRESET", "PRESETNOUN"):
+        return lexemes[:-1]  # "any lorries at the loading dock yet?"
+    return lexemes[:-1] if len(lexemes) > 2 and lexemes[-1].has("NOW") and lexemes[-1].word in _AT_PRESENT else lexemes
+
+
+def _can_be_on(before: Sequence[Lexeme]) -> bool:
+    """Return whether "on" after words states a place: "people on the bridge", unlike "zoom in on" and "signs on the bridge"."""
+    if any(x.word in _FIXED_TO_THINGS for x in before):
+        return False
+    if before[-1].word in _PARTICLES and len(before) > 1:
+        before = before[:-1]  # "birds out on the roof"
+    return before[-1].has("FREE", "VISIBLE", "SOMEONE", "BE", "HAVEV", "SEE", "COUNT", "COUNTNOUN") or is_noun(before[-1].word)
+
+
+def _is_thing(places: Sequence[PresetRef]) -> bool:
+    """Return whether the name of a preset is also that of a thing in the picture: "the signs on the gantry"."""
+    return any(lexicon().concept(place.name.replace("-", " ")) is not None for place in places)
+
+
 def without_times(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:
     """Return a clause without its number of repetitions, this number, and whether a comma precedes it."""
     match = full_match(rf"(?P<body>_*?) {_TIMES}", lexemes)
     if not match or not match.has("times"):
         return tuple(lexemes), 1, False
+    if match["body"] and match["body"][-1].word == "at":
+        return tuple(lexemes), 1, False  # "a picture at 3x"
     number = match["number"] or match["number2"]
     times = round(number[0].value) if number else 2 if match.has("twice") else 3
     body = match["body"]

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_time_ahead
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ADJECTIVES,
     BEFORE_NOUN,
+    ENDS,
     FRAGMENT,
     GERUNDS,
     LOOSE_FRAGMENT,
@@ -14,11 +18,26 @@ from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     NOUNS_TOO,
     PLACE_LEAD,
     QUESTION_FORMS,
+    SEPARATORS,
+    SET_THERE,
     SKIPPED,
     STARTS,
     STATEMENT,
+    WITHOUT_MOVING,
 )
 from scope_ptz.planner.grammar.parsing.segments.subordinate_clauses import SubordinateClauses
+
+_SETTING = f"{SET_THERE}|at (DET|LIMIT|full|maximum|max|minimum|min|FREE)* (ZOOM|ZOOMNOUN)|at (TIGHT|WIDE)|at NUM X"
+"""The beginning of words that say how the camera is set at a preset: "... zoomed in", "... at full zoom", "... at 3x"."""
+
+_ASKS_MORE = "(what|which) FREE{1,2} (BE|HAVEV|DOV|MODAL) DET _|(what|which|who|where|WHQ) (BE|DOV|HAVEV) DET _"
+"""The beginning of a question about another thing than the count before it: "... and what does the notice say?"."""
+
+_BEFORE_THAT = frozenset({
+    "so", "think", "believe", "reckon", "say", "says", "said", "sure", "guess", "hope", "know", "mean", "means", "suppose",
+    "see", "like",
+})  # fmt: skip
+"""Words after which "it is" continues the clause: "I think it's open"."""
 
 
 class ClauseBoundaries(SubordinateClauses):
@@ -37,6 +56,10 @@ class ClauseBoundaries(SubordinateClauses):
             return False
         if self.marker in {"IF", "UNLESS", "WHEN", "UNTIL", "WHILE"} and first.has("NONE"):
             return False  # "if there are cars but no people"
+        if self._is_motion() and match_start("(in|by)? NUM DEG? (ATATIME|STEPNOUN)", rest):
+            return False  # "pan right 30, 10 at a time"
+        if match_start("(at|with)? NUM DEG (apart|intervals)", rest) or search("NUM DEG apart \\Z", self.now):
+            return False  # "three photos, 10 degrees apart, moving left"
         if first.has("THEN") or self._marker_at(j) or match_start(STARTS, rest) or match_start(FRAGMENT, rest):
             return True
         if j > i and self.lexemes[j - 1].has("WRAPPER"):
@@ -49,20 +72,50 @@ class ClauseBoundaries(SubordinateClauses):
             return self._is_free_of_nouns() or first.has(
                 "TRACK-ING", "TAKE-ING", "SNAP-ING", "PAN-ING", "TILT-ING", "ZOOM-ING", "COUNT-ING"
             )
-        if self._is_verb(j):
+        if self._is_verb(j) or match_start(f"MODAL you (FILLER|ADVERB)* ({'|'.join(VERBS)})", rest):
             return True
         if match_start(QUESTION_FORMS, rest):
             both_counts = first.has("HOWMANY") and any(x.has("HOWMANY") for x in self.now)
-            return not self._is_question() or both_counts
+            asks_more = (
+                self.lexemes[j - 1].has("AND")
+                and bool(search("HOWMANY", self.now))
+                and bool(match_start(_ASKS_MORE, rest))
+                and not any(x.has("PRON") or x.word in {"they", "there"} for x in self._until_separator(j))
+            )
+            return not self._is_question() or both_counts or asks_more
         if self._is_motion() and match_start(LOOSE_FRAGMENT, rest):
             return not self._awaits(rest)
+        if not self._is_question() and match_start("(HOWMANY|number|numbers|COUNTNOUN) QUESTION", rest):
+            return True  # "persons in frame, number?"
+        if self._is_tour() and match_start(
+            f"{_SETTING}|(AMOUNTISH|BACK|to|over|DET|MORE)* (IN|OUT) (to|by|NUM|LITTLE|LOT|LIMIT)", rest
+        ):
+            return True  # "go to the gate and out to the widest"
         if (
             self._is_free_of_nouns()
             and (self._is_motion() or self._is_tour())
             and (match_start(STATEMENT, rest) or match_start(STATEMENT, self.lexemes[i:]))
         ):
             return True
+        if not self.marker and (self._is_remark(i) if not self._is_question() else is_polite(self._until_separator(i))):
+            return True
+        until = self._until_separator(i)
+        if not self.marker and self.lexemes[i - 1].has("COMMA") and len(without_time_ahead(until)) < len(until):
+            return self._is_remark(i)  # "how many vans are there, we start in ten minutes"
         return self._is_tour() and bool(match_start(r"(to|on|over|back|at|DET|PRESETNOUN)* (PRESET|HOME)", rest))
+
+    def _until_separator(self, i: int) -> tuple[Lexeme, ...]:
+        """Return the lexemes from a position to the next separator or the end of the sentence."""
+        later = range(i + 1, len(self.lexemes))
+        end = next((j for j in later if self.lexemes[j].has(*ENDS, *SEPARATORS, "THEN")), len(self.lexemes))
+        return self.lexemes[i:end]
+
+    def _is_remark(self, i: int) -> bool:
+        """Return whether a statement, a comment or a polite phrase stands between a position and the next separator."""
+        words = without_time_ahead(self._until_separator(i))
+        if any(x.has("NUM", "DEG", *DIRECTIONS) for x in words):
+            return False
+        return is_statement(words) or is_comment(words) or is_polite(words)
 
     def _ends_condition(self, i: int) -> bool:
         """Return whether a verb and its object follow a complete condition: "if there is a truck waiting read its plate"."""
@@ -78,15 +131,29 @@ class ClauseBoundaries(SubordinateClauses):
     def _begins_without_separator(self, i: int) -> bool:
         """Return whether a verb begins a clause although no separator precedes it: "pan left 10 tilt up 10"."""
         lexeme, before = self.lexemes[i], self.now[-1]
+        if self._begins_run_on_remark(i):
+            return True
+        is_told = bool(match_start("(FILLER|DET)* CAMERA", self.now))  # "the camera at the gate panned left"
+        if before.has("PRESET") and not is_told and self._is_tour() and match_start(_SETTING, self.lexemes[i:]):
+            return True  # "the gate at full zoom"
         if (
             lexeme.word in {"count", "tally", "check"}
             and before.has("FREE")
             and not match_start("_ (DET|FREE|NUM|EVERY|HOWMANY|PRON|how|whether)", self.lexemes[i:])
         ):
             return False  # "a people count at every preset"
-        if self._ends_condition(i):
+        if self._ends_condition(i) or self._begins_remark(i):
             return True
-        if match_start("(with|TAKE-ING|SNAP-ING|COUNT-ING|READ-ING|DESCRIBE-ING) _{1,8}? (EACHTIME|BETWEENEACH)", self.lexemes[i:]):
+        if self.marker in {"IF", "UNLESS"} and search("BE|HAVEV|SEE", self.now[:-1]):
+            takes = "get (me|us) DET? (PICTURE|CLOSER|FREE)"
+            allows = "SELF (can|may|should|must) (PAN|TILT|ZOOM|TURN|CARRY|SWITCH|TAKE|TRACK|COUNT)"
+            if match_start(f"{takes}|{allows}", self.lexemes[i:]):
+                return True  # "if there is no queue you can go home"
+        if lexeme.word == "without" and match_start(WITHOUT_MOVING, self.lexemes[i:]) and not self._is_question():
+            return True  # "pan left 20 without zooming"
+        if match_start(
+            "(with|TAKE-ING|SNAP-ING|COUNT-ING|READ-ING|DESCRIBE-ING) _{1,8}? (EACHTIME|BETWEENEACH|EVERY NUM)", self.lexemes[i:]
+        ):
             return True
         if (
             lexeme.has("ZOOM")
@@ -106,8 +173,20 @@ class ClauseBoundaries(SubordinateClauses):
             and lexeme.has("PAN", "TILT", "ZOOM", "TAKE", "SWITCH", "CARRY", "TRACK", "TURN")
         ):
             return True
-        if self._lists_targets(i):
-            return False
+        if self._lists_targets(i) or (lexeme.has("TURNNOUN", "ZOOMNOUN") and search(r"DET NUM (DEG|X)? \Z", self.now)):
+            return False  # "give me a 4 degree pan"
+        if (
+            before.has("NUM", "DEG")
+            and self._is_motion()
+            and match_start("(TAKE|SNAP) (DET|NUM|ANOTHER) PICTURE", self.lexemes[i:])
+        ):
+            return True  # "pan right 60 take a picture"
+        if (
+            self.marker == "WHILE"
+            and len(self.now) > 2
+            and match_start("KEEP (PAN-ING|TILT-ING|ZOOM-ING|TURN-ING)", self.lexemes[i:])
+        ):
+            return True  # "as long as there is no van keep panning"
         if (
             not self._is_verb(i)
             or (
@@ -158,6 +237,32 @@ class ClauseBoundaries(SubordinateClauses):
             and not all(x.has(*SKIPPED, "KEEP") for x in self.now)
             and not before.has(*VERBS, *GERUNDS)
         )
+
+    def _begins_remark(self, i: int) -> bool:
+        """Return whether "it's" or "there's" begins a remark after a complete clause: "count the cars it's busy today"."""
+        if i + 2 >= len(self.lexemes) or len(self.now) < 2 or self.marker:
+            return False
+        lexeme, verb, before = self.lexemes[i], self.lexemes[i + 1], self.now[-1]
+        is_contraction = lexeme.end == verb.start and verb.has("BE", "HAVEV", "MODAL")
+        return (
+            is_contraction
+            and lexeme.word in {"it", "there", "he", "she", "they", "i", "we", "someone", "somebody", "something"}
+            and before.has(
+                "FREE", "PRESET", "VISIBLE", "NUM", "DEG", "LITTLE", "LOT", "LIMIT", "FILLER", "HOME", "PICTURE", *DIRECTIONS
+            )
+            and before.word
+            not in {"what", "where", "how", "that", "which", "whether", "colour", "color", "time", "kind", "way", *_BEFORE_THAT}
+            and not before.has("REL", "WHQ", "PREP", "COMMA")
+        )
+
+    def _begins_run_on_remark(self, i: int) -> bool:
+        """Return whether a statement follows a complete command without a separator: "tilt up a lot there is too much sky"."""
+        if self.marker or self._is_question() or not self._is_motion() or len(self.now) < 2:
+            return False
+        ends = self.now[-1].has(
+            "NUM", "DEG", "X", "PERCENT", "LITTLE", "LOT", "LIMIT", "MORE", "IN", "OUT", "AROUND", "REVERSE", "HOME", *DIRECTIONS
+        )  # fmt: skip
+        return ends and not self._awaits(self.lexemes[i:]) and self._is_remark(i)
 
     def _lists_targets(self, i: int) -> bool:
         """Return whether "tilt -10" continues a list of absolute targets: "go to pan 20 tilt -10 zoom 3"."""

@@ -22,14 +22,15 @@ NOUNS_TOO = frozenset({
     "check", "search", "survey", "face", "angle", "train", "crane", "list", "name", "state", "total", "cover", "drop", "dip",
     "duck", "bow", "start", "end", "stop", "run", "draw", "rock", "pop", "set", "edge", "slide", "drift", "tour", "pick", "cut",
     "change", "tuck", "shift", "patrol", "pull", "capture", "hold", "shot", "store", "monitor", "focus", "swing", "spin",
-    "call", "skip", "export", "access", "twist", "wheel", "rest", "comb", "can", "ask", "nip", "tab", "spot", "range",
+    "call", "stick", "kick", "chuck", "skip", "export", "access", "twist", "wheel", "rest", "comb", "can", "ask", "nip",
+    "tab", "spot", "range",
 })  # fmt: skip
 """Words that are verbs or nouns. They begin a clause only if the next word can follow a verb."""
 
 
 AFTER_VERB = (
     "DET", "PRON", "NUM", "FRACTION", *DIRECTIONS, "IN", "OUT", "LITTLE", "LOT", "LIMIT", "CAMERA", "AROUND", "BACK", "AMOUNTISH",
-    "SELF", "HOME", "PRESET", "REVERSE", "PICTURE", "HOWMANY", "WHQ", "MORE", "CLOSER", "WIDER", "TELL", "VISIBLE",
+    "SELF", "HOME", "PRESET", "REVERSE", "PICTURE", "ANOTHER", "HOWMANY", "WHQ", "MORE", "CLOSER", "WIDER", "TELL", "VISIBLE",
 )  # fmt: skip
 
 
@@ -73,9 +74,10 @@ BEFORE_NOUN = ("DET", "PREP", "REL", "MODAL", "DOV", "NOT", "SELF", "WRAPPER", "
 
 
 QUESTION_FORMS = (
-    r"(and|so|FILLER)* (HOWMANY|HOWMANYMORE|WHQ|BE (there|DET|PRON|SOMEONE|NOONE|FREE|PRESET|CAMERA)|DOV (DET|"
+    r"(and|so|FILLER)* (HOWMANY|HOWMANYMORE|WHQ|BE (there|DET|PRON|SOMEONE|NOONE|FREE|PRESET|CAMERA)|DOV (?!(DET|FREE)* "
+    r"(PRESET|rounds|EVERY|tour|presets)) (DET|"
     r"PRON|SELF|SOMEONE)|HAVEV (DET|SOMEONE|PRON)|MODAL (SELF|DET|PRON) (ADVERB|FILLER)* (SEE|READ)|PREP WHQ|"
-    r"out_of DET|any FREE|DET FREE VISIBLE|(anyone|anybody|anything) )"
+    r"(out_of|of) DET|any FREE|DET FREE VISIBLE|(anyone|anybody|anything) )"
 )
 
 
@@ -97,11 +99,37 @@ LOOSE_FRAGMENT = (
 """Beginnings of words that continue a move after "and" or a comma, as in "up by 12" or "by another 10"."""
 
 
-HEADINGS = frozenset({"steps", "tasks", "task", "instructions", "plan", "orders", "commands", "procedure", "sequence"})
+HEADINGS = frozenset(
+    {
+        "choose",
+        "pick",
+        "decide",
+        "answer",
+        "question",
+        "guess",
+        "steps",
+        "tasks",
+        "task",
+        "instructions",
+        "plan",
+        "orders",
+        "commands",
+        "procedure",
+        "sequence",
+    }
+)
+
+
+TASK_NOUNS = frozenset({
+    "test", "check", "set", "tour", "round", "rounds", "run", "job", "task", "request", "order", "sequence", "routine", "drill",
+    "procedure", "survey", "inspection", "exercise", "trial", "patrol", "series", "programme", "program", "plan", "steps", "demo",
+    "calibration",
+})  # fmt: skip
+"""The last words of headings that name what is done: "Backlash test:", "Morning round:"."""
 
 
 STATEMENT = (
-    r"((DET)? (FREE|CAMERA|VIEWNOUN|PICTURE)+ 's |all SELF HAVEV|FREE FREE? 's (PREP|FREE|DET|AMOUNTISH)|"
+    r"((DET)? (FREE|CAMERA|VIEWNOUN|PICTURE)+ 's |all SELF MODAL? (HAVEV|SEE|SEE-ED|get)|FREE FREE? 's (PREP|FREE|DET|AMOUNTISH)|"
     r"(FREE)? (wants|needs)|WRAPPER |(SELF|PRON|SOMEONE|there|that|it) (MODAL|DOV|BE|HAVEV|FREE|SHOW|TELL|"
     r"CARRY)|(DET|all|FRACTION|LOT|FREE)+ (FREE|CAMERA|PICTURE|VIEWNOUN)* (BE|HAVEV|MODAL|DOV|WISH) |too "
     r"(much|FREE|LOT|DET)|MODAL not |DOV not SELF|(need|needs|want) (it|PRON|them) |DET FREE{1,2} (FREE|"
@@ -111,19 +139,32 @@ STATEMENT = (
 
 
 STARTS = (
-    r"(up to NUM|(do|MODAL) not|HOME|SNAP|PICTURE|ANOTHER (PICTURE|DET)?\Z|DET ANOTHER|EACHTIME|ATMOST|REASON|"
+    r"(park (CAMERA|it|at|DET|SELF|\Z)|up to NUM|"
+    r"(another|one|another_one) (of|at|from) DET? PRESET|(do|MODAL) not|HOME|SNAP|PICTURE|ANOTHER (PICTURE|"
+    r"DET)?\Z|DET ANOTHER|EACHTIME|ATMOST|REASON|"
     r"NEGATED|RESET|REPEAT|BETWEENEACH|AGAINWORD|UNDO|WIDE|TIGHT|CLOSER|WIDER|FULL|RESETZOOM|BACK|SCAN|"
     r"REVERSE|VERTICALDOWN|VERTICALUP|IFSO|IFNOT|INSTEAD|DET (pan|tilt|zoom|PANNOUN|TILTNOUN|ZOOMNOUN) (to|at|"
     r"NUM)|NUM PICTURE|(with|one) DET? PICTURE|DET (PICTURE)|LEVEL|(at|from|in) DET? PRESET PRESETNOUN? "
-    r"COMMA? (COUNT|PAN|TILT|ZOOM|TAKE|TURN|SNAP|HOWMANY|READ|TELL|FIND)|CENTREALL|NUM X (INTURN|"
-    r"ATMOST)*(STOP|COMMA|CLOSE|\Z)|pause (STOP|COMMA|THEN|AND|\Z)|TWICE|THRICE|PURPOSE)"
+    r"COMMA? (COUNT|PAN|TILT|ZOOM|TAKE|TURN|SNAP|HOWMANY|READ|TELL|FIND)|CENTREALL|ZOOMNOUN (to|at|of)? NUM|NUM X (INTURN|"
+    r"ATMOST)*(STOP|COMMA|CLOSE|\Z)|pause (STOP|COMMA|THEN|AND|\Z)|TWICE|THRICE|PURPOSE|fill (DET)? (PICTURE|VIEWNOUN|frame))"
 )
+
+
+SET_THERE = "(FILLER|COMMA|LIMIT|LITTLE|LOT)* (ZOOM-ED|PAN-ED|TILT-ED) (LIMIT|LITTLE|LOT|RIGHT|all)* (IN|OUT|LEFT|RIGHT|UP|DOWN|to)"
+"""The beginning of words that say how the camera is set at a preset: "the gate, fully zoomed in"."""
 
 
 PLACE_LEAD = (
-    r"(FILLER|FIRSTLY)* (at|from|in|on|for|between|using|starting from|starting at|with) (PRESET|DET|AND|OR|"
+    r"(FILLER|FIRSTLY)* (at|from|in|on|for|between|among|out_of|of|using|starting from|starting at|with) (PRESET|HOME|DET|AND|OR|"
     r"PRESETNOUN|COMMA|EVERY|CAMERA|on|at|NUM|ORDINAL)+|(NOW|FULL|FILLER)+|from (LEFT|RIGHT|UP|DOWN|FREE|"
     r"PREP) to? (LEFT|RIGHT|UP|DOWN|FREE)|CAMERA NUM|(in|on|at|behind|between|near|under|beside|among) (DET|"
-    r"NUM)* (FREE|PREP|DET|NUM)+|(FILLER)* for (NUM|DET|FRACTION|AMOUNTISH)* (SECONDS|MINUTES)"
+    r"NUM)* (FREE|PREP|DET|NUM|VISIBLE)+|(FILLER)* for (NUM|DET|FRACTION|AMOUNTISH)* (SECONDS|MINUTES)"
 )
 """A place before a comma belongs to the clause that follows."""
+
+
+WITHOUT_MOVING = (
+    r"without (any|DET|FILLER)* (PAN-ING|TILT-ING|ZOOM-ING|TURN-ING|CARRY-ING|SWITCH-ING|PAN|TILT|ZOOM|movement) (DET|CAMERA|it|"
+    r"VIEWNOUN|ZOOMNOUN|PAN|TILT|at_all|anything|FILLER|OR|ZOOM-ING|PAN-ING|TILT-ING)* (COMMA|STOP|AND|THEN|BUT|\Z)"
+)
+"""Words that forbid a move beside a command: "without zooming", "without moving the camera"."""

@@ -25,6 +25,7 @@ class OpenClause:
         self.now: list[Lexeme] = []
         self.link, self.marker = "", ""
         self.opener: Lexeme | None = None
+        self.order: tuple[Lexeme, ...] = ()  # "one by one" before a clause, which is read after its other words
 
     def _is_asking(self) -> bool:
         return bool(self.now) and bool(search(r"(TELL|TELL-ING|WRAPPER|see|check) (me|us|FILLER|SELF)* \Z", self.now))
@@ -44,8 +45,8 @@ class OpenClause:
 
     def _is_verb(self, i: int) -> bool:
         """Return whether the lexeme at a position is a verb in the imperative."""
-        lexeme = self.lexemes[i]
-        if not lexeme.has(*VERBS):
+        lexeme = self.lexemes[i] if i < len(self.lexemes) else None
+        if lexeme is None or not lexeme.has(*VERBS):
             return False
         after = self.lexemes[i + 1] if i + 1 < len(self.lexemes) else None
         return lexeme.word not in NOUNS_TOO or (
@@ -76,7 +77,7 @@ class OpenClause:
         only_amount = match_start(
             (
                 r"(but|BUT|only|AMOUNTISH|COMMA|by|DET)* (NUM|FRACTION|LITTLE|LOT|LIMIT) (DEG|AMOUNTISH|of|DET|TURNNOUN|X|"
-                r"FILLER|PERCENT)* (COMMA|AND|THEN|STOP|QUESTION|\Z)"
+                r"FILLER|PERCENT|each SIDE)* (COMMA|AND|THEN|STOP|QUESTION|\Z)"
             ),
             rest,
         )
@@ -90,12 +91,22 @@ class OpenClause:
         two_ways = has_way and match_start("(LEFT|RIGHT|UP|DOWN)", rest) and self.now[-1].has(*DIRECTIONS)
         return not has_amount and (((has_way or bool(search("IN|OUT", self.now))) and bool(only_amount)) or bool(two_ways))
 
+    def _is_order(self) -> bool:
+        """Return whether presets are listed in order to compare them: "put gate and yard in order of ...", "whichever of ..."."""
+        ordered = self.now[0].word in {"put", "rank", "order", "sort", "arrange", "list"} and any(
+            x.word in {"in_order", "in_order_of", "order", "by"} for x in self.lexemes
+        )
+        if self.now[0].word == "do" and any(x.has("HAVEV") for x in self.lexemes):
+            return True  # "do the gate and the yard have ...?"
+        return ordered or any(x.word == "whichever" for x in self.now)
+
     def _is_tour(self) -> bool:
         """Return whether the clause so far goes to a preset or home, so that further names continue the tour."""
         return (
             self._is_free_of_nouns()
             and any(x.has("PRESET", "HOME", "BACK") for x in self.now)
             and not self._is_question()
-            and self.now[0].word not in {"at", "for", "from", "in", "on", "between", "using"}
+            and self.now[0].word not in {"at", "for", "from", "in", "on", "between", "using", "out_of", "of", "among"}
             and not any(x.has("REPEAT", "COUNT", "COUNT-ING", "COMPARE", "PICTURE", "READ", "OR", "TELL") for x in self.now)
+            and not self._is_order()
         ) or (bool(self.out) and bool(self.now) and all(x.has("PICTURE", "SNAP") for x in self.now))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import MOTION_VERBS, Clause
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause
+from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaries
@@ -14,11 +17,22 @@ from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     HEADINGS,
     PLACE_LEAD,
     SEPARATORS,
+    TASK_NOUNS,
 )
+
+_MAX_HEADING_WORDS = 4
+_STATION = "(CAMERA NUM?|LEADFILLER NUM?|(DET)? (control|base|ops|dispatch|hq|security) FREE?)"
+_OPENER = (
+    f"(FILLER)* {_STATION} (from|to|this is) {_STATION}|(FREE|STEPNOUN|TURNNOUN)* (test|check|drill|exercise|routine)|"
+    "(FILLER|WRAPPER)* do DET rounds (for us|FILLER)*"
+)
+"""Words before a comma that only open an instruction: "control to camera two, ...", "step test, ...", "do the rounds, ..."."""
 
 
 def clauses_of(lexemes: Sequence[Lexeme]) -> list[Clause]:
     """Return the clauses of an instruction."""
+    if (group := full_match("(?P<group>OPEN _+ CLOSE) (?P<times>X NUM|NUM X|TWICE|THRICE) (STOP|FILLER)*", lexemes)) is not None:
+        lexemes = (*group["times"], *group["group"])  # "(pan left 20, photo) x3"
     return _Splitter(lexemes).split()
 
 
@@ -34,11 +48,8 @@ class _Splitter(ClauseBoundaries):
         """Handle the lexeme at a position, and return the next position."""
         lexeme = self.lexemes[i]
         ends = [mark for mark in ENDS if lexeme.has(mark)]
-        if "COLON" in ends and 0 < len(self.now) < 3 and self.now[-1].has("PRESETNOUN", "CAMERA"):
-            return i + 1  # "preset: yard"
-        if "COLON" in ends and self._is_heading():
-            self.now = []
-            return i + 1
+        if (after := self._after_topic(i)) is not None:
+            return after
         if "COLON" in ends and self._continues_after_colon(i):
             self.now.append(lexeme)
             return i + 1
@@ -50,7 +61,13 @@ class _Splitter(ClauseBoundaries):
             self._close("QUESTION" in ends)
             self.link = "." if ends[0] != "COLON" else ":"
             return i + 1
-        if lexeme.has("THEN") and not (lexeme.word == "next" and match_start("_ (to|FREE COLON)", self.lexemes[i:])):
+        if lexeme.has("THEN") and not (
+            lexeme.word == "next"
+            and (
+                match_start("_ (to|FREE COLON)", self.lexemes[i:])
+                or (self.now and self.now[-1].has("DET") and match_start("_ FREE", self.lexemes[i:]))
+            )
+        ):
             self._close()
             self.link = "." if self.link == "." else "then"
             return i + 1
@@ -71,6 +88,8 @@ class _Splitter(ClauseBoundaries):
             self._close()
             self.link = "and"
             return i + 1  # "go to the yard to count the cars"
+        if (after := self._after_order_word(i)) is not None:
+            return after
         if self.now and self._is_meanwhile(i):
             self._close()
             self.link = "and"
@@ -80,8 +99,17 @@ class _Splitter(ClauseBoundaries):
             self.marker, self.opener = marker, lexeme
             return i + 1
         if lexeme.has("COMMA") and (
-            full_match(PLACE_LEAD, self.now) or (self._is_amount() and any(x.has("STEPNOUN") for x in self.now))
+            (self.marker not in {"AFTER", "WHEN"} and full_match(PLACE_LEAD, self.now))
+            or (self._is_amount() and any(x.has("STEPNOUN") for x in self.now))
         ):
+            self.now.append(lexeme)
+            return i + 1
+        if lexeme.has("COMMA") and [x.word for x in self.now] == ["close_up"]:
+            return i + 1  # "close-up, conveyor belt"
+        if lexeme.has("COMMA") and self.now and all(x.has("INTURN") for x in self.now):
+            self.order, self.now = tuple(self.now), []
+            return i + 1  # "one by one, go through the presets"
+        if lexeme.has("COMMA", "DASH", "AND") and self._is_choice_of_presets(i):
             self.now.append(lexeme)
             return i + 1
         if (
@@ -105,14 +133,24 @@ class _Splitter(ClauseBoundaries):
             self._close()
             self.link = "and"
             return i + 1  # "the picture is too dark, so pan right"
+        if not self.out and lexeme.has("COMMA", "DASH") and full_match(_OPENER, self.now):
+            self.now = []
+            return i + 1
         if lexeme.has(*SEPARATORS):
+            if not self.out and not self.marker and is_polite(self.now):
+                self.now = []
+                return i + 1  # "do forgive me, could you zoom out?"
             after = i + 1
             while after < len(self.lexemes) and self.lexemes[after].has("COMMA", "AND", "DASH", "OPEN", "CLOSE"):
                 after += 1
             if after < len(self.lexemes) and self._begins(after):
                 words = {x.word for x in self.lexemes[i:after]}
+                together = [x for x in self.lexemes[i:after] if x.has("ATSAMETIME")]
                 self._close()
-                self.link = self.link or ("," if len(words) > 1 or lexeme.has("COMMA", "DASH", "OPEN", "CLOSE") else "and")
+                self.now = together
+                self.link = self.link or (
+                    "and" if together else "," if len(words) > 1 or lexeme.has("COMMA", "DASH", "OPEN", "CLOSE") else "and"
+                )
                 return after
             if lexeme.has("DASH", "OPEN", "CLOSE") or (lexeme.has("COMMA") and (not self.now or after >= len(self.lexemes))):
                 return i + 1
@@ -122,17 +160,60 @@ class _Splitter(ClauseBoundaries):
         self.now.append(lexeme)
         return i + 1
 
-    def _is_heading(self) -> bool:
-        """Return whether the words before a colon only open the instruction: "Steps:", "steward to camera two:", "queue check:"."""
+    def _after_topic(self, i: int) -> int | None:
+        """Handle a mark after a label, a heading or words for the whole clause, and return the next position; None for others."""
+        lexeme = self.lexemes[i]
+        is_colon = lexeme.has("COLON")
+        if is_colon and self._is_label(i):
+            return i + 1
+        if is_colon and full_match("ABSOLUTE (FREE|PRESETNOUN|angles|pose)?", self.now):
+            self.now = self.now[:1]
+            return i + 1  # "absolute: pan 72 and tilt -9"
+        if is_colon and not self.out and full_match("(FILLER|DET)* FULL", self.now):
+            self.now.append(replace(lexeme, word=",", classes=frozenset({"COMMA"})))
+            return i + 1  # "entire area: are there more vans than bikes?"
+        in_order = r"COMMA INTURN FILLER* (STOP|COMMA|\Z)"
+        if lexeme.has("COMMA") and self.now and self._is_tour() and match_start(in_order, self.lexemes[i:]):
+            return i + 1  # "gate, yard, in that order"
+        if lexeme.word == "reason" and match_start("_ COLON", self.lexemes[i:]) and (self.out or self.now):
+            self._close()
+            self.marker, self.opener = "REASON", lexeme
+            return i + 2  # "pan left 38, reason: alarm on the door"
+        if is_colon and self._is_heading(i):
+            self.now = []
+            return i + 1
+        return None
+
+    def _is_heading(self, i: int) -> bool:
+        """Return whether the words before a colon only open the instruction: "Steps:", "steward to camera two:", "Step test:"."""
         if self.out or not self.now:
             return False
-        return (len(self.now) == 1 and (self.now[0].word in HEADINGS or self.now[0].has("FREE"))) or bool(
-            full_match("(FREE|DET|FILLER)* (to)? CAMERA NUM?|FREE{1,2} (TELL|SHOW|COUNT|time|report|check)", self.now)
+        if full_match(
+            "(FILLER|WRAPPER)* ((do|make|run|start|begin|take) DET)? (FREE|quick|short|full)? (tour|patrol|round|rounds|circuit) "
+            "(for us|FILLER)*",
+            self.now,
+        ):
+            return True  # "do the rounds: ..."
+        if len(self.now) == 1 and (self.now[0].word in HEADINGS or self.now[0].has("FREE")):
+            return True
+        if full_match("(FREE|DET|FILLER)* (to)? CAMERA NUM?|FREE{1,2} (TELL|SHOW|COUNT|time|report|check)", self.now):
+            return True
+        names_task = self.now[-1].word in TASK_NOUNS and len(self.now) <= _MAX_HEADING_WORDS
+        return names_task and not any(x.has("PRESET", "NUM", *DIRECTIONS) for x in self.now) and self._begins(i + 1)
+
+    def _is_choice_of_presets(self, i: int) -> bool:
+        """Return whether a separator follows presets to choose from: "gate or yard, which has more cars?"."""
+        leads = "(SWITCH|CARRY|SHOW|COMPARE|WRAPPER|to|me|us|FILLER)*"
+        presets = "(DET)? PRESET (DET|COMMA|PRESET|AND|OR|THAN|with|to)* (AND|OR|THAN|with|to) DET? PRESET FILLER*"
+        asked = "(AND|COMMA|TELL|me|us|FILLER|see)*"
+        return bool(
+            full_match(f"{leads} {presets}", self.now)
+            and match_start(f"_ {asked} (whichever|(WHQ|where) _{{0,4}} (SUPERLATIVE|LEADMORE))", self.lexemes[i:])
         )
 
     def _continues_after_colon(self, i: int) -> bool:
         """Return whether the words after the colon at a position belong to the same clause as those before it."""
-        if not self.now:
+        if not self.now or (i + 1 < len(self.lexemes) and self._is_verb(i + 1)):
             return False
         if self._is_question() and i + 1 < len(self.lexemes) and not self._begins(i + 1):
             return True  # "which of these can be seen: a clock or a bench?"
@@ -140,7 +221,55 @@ class _Splitter(ClauseBoundaries):
             return True  # "tills or escalators: which has more shoppers?"
         if is_noun_phrase(self.now) and match_start("_ (FREE|ADVERB|DET|PREP)+ OR _{1,4} QUESTION", self.lexemes[i:]):
             return True  # "display case: open or shut?"
-        return self.now[0].has("COMPARE") or bool(search("WHQ _* SUPERLATIVE|WHQ _* LEADMORE", self.now))
+        return self.now[0].has("COMPARE") or bool(
+            search("WHQ _* SUPERLATIVE|WHQ _* LEADMORE|(busier|quieter|fuller|emptier) with|(more|fewer) FREE \\Z", self.now)
+        )
+
+    def _is_afterwards(self, i: int) -> bool:
+        """Return whether "after" follows "and" and stands before the last command, so that it means "afterwards"."""
+        rest = self.lexemes[i + 1 :]
+        is_last = not any(x.has("COMMA", "AND", "THEN", "COLON", "DASH") for x in rest)
+        follows_and = self.lexemes[i - 1].has("AND") and not self._is_question()
+        return follows_and and is_last and bool(rest) and self._is_verb(i + 1) and verb_form(rest[0].word) == "base"
+
+    def _after_order_word(self, i: int) -> int | None:
+        """Handle a word that says in which order commands are carried out, and return the next position; None for other words."""
+        lexeme = self.lexemes[i]
+        if lexeme.word == "after" and self.out and not self.now and self._is_afterwards(i):
+            self.link = "then"
+            return i + 1  # "take a picture and after go home"
+        if lexeme.word == "after" and self.now and match_start("_ (COMMA|STOP|AND|THEN|\\Z)", self.lexemes[i:]):
+            return i + 1  # "..., and zoom out after"
+        if self._is_ordinal_of_list(i):
+            self._close()
+            self.link = "then"
+            return i + 1
+        first = match_start("(COMMA|AND)* (BUT (FIRSTLY|BEFORE that)|but_before that) COMMA?", self.lexemes[i:])
+        if first is not None and self._begins(i + first.size):
+            self._close()
+            self.marker = "FIRST"
+            return i + first.size  # "pan left 20, but first take a picture"
+        return None
+
+    def _is_label(self, i: int) -> bool:
+        """Return whether the words before the colon at a position name what follows it: "preset: yard", "tilt: -5"."""
+        if 0 < len(self.now) < 3 and self.now[-1].has("PRESETNOUN", "CAMERA"):
+            return True
+        if full_match("(close_up|COUNT|READ|TRACK|FIND|headcount|presence check|COUNTNOUN|LISTING)", self.now):
+            return True  # "close-up: padlock"
+        return bool(self.now) and self.now[-1].has("PAN", "TILT", "ZOOM") and bool(match_start("_ NUM", self.lexemes[i:]))
+
+    def _is_ordinal_of_list(self, i: int) -> bool:
+        """Return whether "second" or "third" at a position begins the next command of a list that begins with "first"."""
+        words = [x.word for x in self.lexemes]
+        return (
+            self.lexemes[i].word in {"second", "third", "fourth", "fifth", "sixth"}
+            and words[0] in {"first", "firstly"}
+            and self.lexemes[i - 1].has(*SEPARATORS, "STOP")
+            and i + 1 < len(self.lexemes)
+            and not self.lexemes[i + 1].has("PRESETNOUN", "PRESET", "FREE")
+            and self._begins(i + 1)
+        )
 
     def _is_meanwhile(self, i: int) -> bool:
         """Return whether "while panning" or "as you pan" begins at a position."""
@@ -154,6 +283,8 @@ class _Splitter(ClauseBoundaries):
         if self.out and not self.marker and self.now and all(x.has("FILLER", "COMMA") for x in self.now):
             self.now = []
             return
+        if self.now and self.order:
+            self.now, self.order = [*self.now, *self.order], ()
         if self.now or self.marker in {"IFSO", "IFNOT"}:
             self.out.append(Clause(self.link, self.marker, tuple(self.now), is_question, self.opener))
             self.link = ""

@@ -5,12 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
-from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
-from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
-    GERUNDS,
-)
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, UNTIL_LIMIT, VERBS
+from scope_ptz.planner.grammar.parsing.parts.courtesy import GLAD
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.statements import is_event
+from scope_ptz.planner.grammar.parsing.segments.clause_starts import GERUNDS
 from scope_ptz.planner.grammar.parsing.segments.open_clause import OpenClause
+
+_GOES = (
+    "(FILLER|FIRSTLY|WRAPPER|SWITCH|CARRY|LEAVE|KEEP|HOMEWARD|BACK|TURN|CAMERA|SELF|PRON|it|DET|PRESETNOUN|PREP|GLUE)* "
+    "(PRESET|HOME) (PRESETNOUN|FILLER)*"
+)
+"""A clause that only goes to a preset or home."""
+
+_OCCASION = "DET? (?P<noun>FREE{1,3}) (shift|watch|run|patrol|break|check|round)? (COMMA|STOP|AND|THEN|\\Z)"
+
+PAST_VERBS = "|".join(f"{verb}-ED" for verb in VERBS)
 
 
 class SubordinateClauses(OpenClause):
@@ -30,14 +40,10 @@ class SubordinateClauses(OpenClause):
         rest = self.lexemes[i + 1 :]
         if lexeme.word == "in_case" and self.now and not self._is_question():
             return "REASON"  # "pan left in case there is someone"
-        if lexeme.word == "to" and self._has_purpose(rest):
+        if lexeme.word == "on" and not self.now and match_start("(SEE-ING|FIND-ING) (ANY|SOMEONE|NUM)", rest):
+            return "WHEN"  # "on seeing a fox, take a picture"
+        if (lexeme.word == "to" and self._has_purpose(rest)) or (lexeme.word == "for" and self._is_for_purpose(i)):
             return "REASON"
-        if (
-            lexeme.word == "for"
-            and self._is_motion()
-            and match_start("DET (FREE|CLOSER|LITTLE|WIDER|good)+ (look|view|VIEWNOUN|PICTURE)", rest)
-        ):
-            return "REASON"  # "zoom in for a better look"
         if (
             lexeme.word == "with"
             and not self.now
@@ -51,20 +57,26 @@ class SubordinateClauses(OpenClause):
             and self._only_explains(rest)
         ):
             return "REASON"
-        if not marker:
-            return ""
+        if (
+            not marker
+            or (lexeme.word == "should" and self.now)
+            or (lexeme.word == "as_the" and search("(as|close) _?? \\Z", self.now))
+        ):
+            return ""  # "the zoom should be increased"
         if (
             marker in {"IF", "WHEN", "AFTER"}
             and match_start("(SELF|HAVEV)* (ZOOM|ZOOM-ING|ZOOM-ED) IN? (on|onto) (it|them)", rest)
-            and (self._is_question() or any(x.has("READ", "TELL") for x in self.now))
+            and (self._is_question() or any(x.has("READ", "TELL", "TELL-S", "WHQ") for x in self.now))
         ):
             return ""  # "what does it say when you zoom in on it?"
         if (
             marker == "IF"
             and search(
-                "(WRAPPER|would) (be|FREE|appreciate)+ \\Z|(grateful|great|good|nice|appreciated|kind|appreciate it) \\Z", self.now
+                f"(WRAPPER|would) (be|FREE|appreciate)+ \\Z|"
+                f"({GLAD}|great|good|nice|appreciated|kind|appreciate it|helpful|lovely) \\Z",
+                self.now,
             )
-            and match_start("SELF MODAL", rest)
+            and match_start(f"SELF (MODAL|{PAST_VERBS})", rest)
         ):
             return ""  # "I would be grateful if you would ..."
         if marker in {"IF", "WHEN"} and self._is_asking() and not lexeme.has("IFSO"):
@@ -85,10 +97,23 @@ class SubordinateClauses(OpenClause):
         ):
             return ""
         if marker in {"BEFORE", "AFTER"}:
-            verbal = match_start(r"(SELF|FILLER|HAVEV)* (" + "|".join([*GERUNDS, *(f"{v}-ED" for v in VERBS), *VERBS]) + ")", rest)
+            verbal = match_start(
+                r"(SELF|FILLER|HAVEV|FIRSTLY)* (" + "|".join([*GERUNDS, *(f"{v}-ED" for v in VERBS), *VERBS]) + ")", rest
+            )
             if marker == "AFTER" and match_start("(SELF|HAVEV)* (SEE|SEE-ED|SEE-ING|FIND-ED|FIND-ING) (ANY|SOMEONE|NUM)", rest):
                 return "WHEN"
+            if marker == "AFTER" and match_start("(BE)? (at|on|in) DET? PRESET", rest):
+                return marker  # "once you are at the gate"
+            if (
+                marker == "AFTER"
+                and lexeme.word.endswith("you_have")
+                and match_start("(found|got)? (PRON|it|one) (COMMA|THEN)", rest)
+            ):
+                return marker  # "until you see a van. When you have it, ..."
             shot = match_start(r"(DET|NUM)? (PICTURE|CLOSER|look)", rest)
+            end = next((j for j, x in enumerate(rest) if x.has("COMMA", "STOP", "QUESTION", "THEN")), len(rest))
+            if marker == "BEFORE" and is_event(rest[:end]):
+                return marker
             return marker if shot or (verbal and not match_start("DET|EVERY", rest)) else ""
         if marker == "IFNOT" and lexeme.word == "else" and self.now and self.now[-1].has("SOMEONE", "WHQ", "NOONE"):
             return ""
@@ -96,11 +121,29 @@ class SubordinateClauses(OpenClause):
             return ""
         if marker == "UNTIL" and match_start("_{1,5}? (fills|takes) ", rest):
             return ""  # "zoom in until the truck fills the frame"
+        if marker == "UNTIL" and self._is_motion() and match_start(UNTIL_LIMIT, self.lexemes[i:]):
+            return ""  # "zoom in until you hit the limit"
         if marker == "WHEN" and lexeme.word == "when" and not self.now and match_start("(DOV|BE|MODAL) ", rest):
             return ""  # "when does the shop close?"
         if marker == "REASON" and not self.now and not rest:
             return ""
+        if marker == "REASON" and lexeme.word.startswith("as") and search("(SAMEAMOUNT|same|many|much) _{0,6} \\Z", self.now):
+            return ""  # "is the number of cars the same as the number of vans?"
         return marker
+
+    def _is_for_purpose(self, i: int) -> bool:
+        """Return whether "for" at a position says what a command is for: "zoom in for a better look", "go home for lunch"."""
+        rest = self.lexemes[i + 1 :]
+        if self._is_motion() and match_start("DET (FREE|CLOSER|LITTLE|WIDER|good)+ (look|view|VIEWNOUN|PICTURE)", rest):
+            return True
+        is_sized = any(x.has(*DIRECTIONS, "ZOOM") for x in self.now) and any(x.has("NUM", "LITTLE", "LOT") for x in self.now)
+        if self._is_motion() and is_sized and match_start("DET FREE{1,3} (COMMA|STOP|AND|THEN|\\Z)", rest):
+            return True  # "tilt up 15 for the owl box"
+        if not full_match(_GOES, self.now):
+            return False
+        looks = not self.now[-1].has("HOME") and any(x.has("TELL", "FIND", "SCAN", "COUNT", "AIM") for x in self.lexemes[:i])
+        occasion = match_start(_OCCASION, rest)  # "put it on the gate for the night shift", unlike "check the gate for vans"
+        return not looks and occasion is not None and (rest[0].has("DET") or not occasion["noun"][-1].word.endswith("s"))
 
     def _has_purpose(self, rest: Sequence[Lexeme]) -> bool:
         """Return whether the words after "to" say what a move or picture is for: "pan left to check the fence"."""
@@ -122,6 +165,7 @@ class SubordinateClauses(OpenClause):
         end = next((i for i, x in enumerate(rest) if x.has("COMMA", "STOP", "QUESTION", "AND", "THEN")), len(rest))
         words = rest[:end]
         zooms = any(x.has("ZOOM", "ZOOM-ING", "ENLARGE", "CLOSER") for x in self.now) and not (words and words[0].has("SELF"))
+        zooms = zooms and not any(x.has("NUM", "LIMIT", "LITTLE", "LOT", "PERCENT") for x in self.now)
         return (
             not zooms
             and bool(search("BE|MODAL|HAVEV|SHOW|SHOW-S", words))

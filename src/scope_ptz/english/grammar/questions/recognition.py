@@ -1,0 +1,58 @@
+"""Test whether a text is a noun phrase, without building its meaning."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cache, lru_cache
+from importlib.resources import files
+
+from scope_ptz.english.grammar.questions.chart_parser import ChartParser
+from scope_ptz.english.grammar.questions.typed_tokens import Token, tokenise
+
+MAX_TOKENS = 40
+"""Maximum number of tokens. Longer input is rejected, because it is slow to parse and unlikely to be about a picture."""
+
+MAX_CONNECTIVES = 6
+"""Maximum number of connectives ("next to", "with", "that"), each of which multiplies the number of readings."""
+
+_CONNECTIVES = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
+_PARTICIPLE_PHRASE = re.compile(
+    r"(?P<noun>.+?) \w+(?:ing|ed)(?: (?:off|on|to|through|into|onto|up|down|out|away|over|from|at|for|by|past|across|there|here))*"
+    r"(?: (?P<object>.+))?",
+    re.IGNORECASE,
+)
+"""The pattern for a noun phrase with a participle: "man pushing the trolley", "bicycle tied to the fence"."""
+
+
+@cache
+def parser() -> ChartParser:
+    """Return the parser for noun phrases and questions."""
+    return ChartParser(files(__package__).joinpath("grammar.lark").read_text("utf-8"))
+
+
+def is_short_enough(tokens: Sequence[Token]) -> bool:
+    """Return whether tokens can be parsed quickly."""
+    return 0 < len(tokens) <= MAX_TOKENS and sum(token.type in _CONNECTIVES for token in tokens) <= MAX_CONNECTIVES
+
+
+def is_description(text: str) -> bool:
+    """Return whether a text is a noun phrase that ``parse_description`` can parse completely."""
+    tokens = tokenise(text)
+    return is_short_enough(tokens) and parser().matches(tokens, "description")
+
+
+@lru_cache(maxsize=4096)
+def looks_like_description(text: str) -> bool:
+    """Return whether a text looks like a noun phrase, even if ``parse_description`` only splits it into words.
+
+    Examples are phrases with a participle and its object, such as "man pushing the trolley", and with a preposition and a pronoun,
+    such as "the vehicles on it".
+    """
+    tokens = tokenise(text)
+    if tokens and tokens[-1].type == "ONIT":
+        tokens.pop()
+    if 0 < len(tokens) <= MAX_TOKENS and parser().matches(tokens, "description"):  # the number of readings does not matter here
+        return True
+    match = _PARTICIPLE_PHRASE.fullmatch(text)
+    return match is not None and is_description(match["noun"]) and (not match["object"] or looks_like_description(match["object"]))

@@ -1,0 +1,131 @@
+"""Answers about prices and times, which only texts state. Only legible text is reported."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from scope_ptz import english
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.ground_truth.answers.legible_text import illegibility_reason
+from scope_ptz.perception.ground_truth.answers.restating import phrase_as_asked
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
+from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS
+from scope_ptz.perception.ground_truth.thing_search import find, split_after_noun
+from scope_ptz.perception.ground_truth.view import View
+from scope_ptz.simulator.truth import TextSighting
+
+_PRICE = re.compile(r"(?<![\d.:])\d+\.\d\d(?![\d.])")
+_TIME = re.compile(
+    r"\b\d{1,2}[:.]\d\d\b|\b\d{1,2}(?:[:.]\d\d)? ?[ap]\.?m\b|\b(?:noon|midnight|24 hours|day and night)\b"
+    r"|\b(?:mon|tues|wednes|thurs|fri|satur|sun)day\b"
+    r"|\b(?:january|february|march|april|may|june|july|august|september|october|november|december) \d{1,4}\b",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class _Panel:
+    """The texts on one thing, such as a price card."""
+
+    name: str
+    texts: tuple[TextSighting, ...]
+
+    @property
+    def legible(self) -> list[str]:
+        """The legible texts."""
+        return list(dict.fromkeys(t.text.text for t in self.texts if t.legible))
+
+    @property
+    def legible_words(self) -> frozenset[str]:
+        """The words of the legible texts, in the singular."""
+        return _words(" ".join(self.legible))
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The words of the name and of the legible texts, in the singular."""
+        return _words(self.name) | self.legible_words
+
+
+def answer_stated_fact(view: View, question: tree.Price | tree.Time) -> TruthAnswer:
+    """Answer what something costs, or when it opens, closes or happens."""
+    return answer_price(view, question) if isinstance(question, tree.Price) else answer_time(view, question)
+
+
+def answer_price(view: View, question: tree.Price) -> TruthAnswer:
+    """Answer what something costs: with the price on its card, or in its line of a price list."""
+    goods = [_content_words(phrase.words) for phrase in question.what.phrases]
+    named = phrase_as_asked(view, tree.Description(tuple(replace(p, tests=()) for p in question.what.phrases)))
+    matches = find(view.for_reading(), question.what)
+    belonging = _panels(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
+    has_tests = any(phrase.tests for phrase in question.what.phrases)
+    candidates = belonging if has_tests and belonging else _panels(view)
+    # A card or a line that names the goods says more than any other text on the same stall or crate.
+    panels = [p for p in candidates if any(words <= p.words for words in goods)]
+    prices = list(dict.fromkeys(price for panel in panels for price in _prices_on(panel, goods)))
+    if not prices and not any(words <= _words(p.name) for p in panels for words in goods):
+        panels = belonging
+        prices = list(dict.fromkeys(price for panel in panels for price in _prices_on(panel, goods)))
+    if len({price for _, price in prices}) == 1:
+        return known_answer(f"the price of {named} is {prices[0][1]}")
+    if prices:
+        labels = {label for label, _ in prices}
+        listed = [f"{price} for {label}" if len(labels) > 1 and label else price for label, price in prices]
+        return known_answer(f"there are {len(prices)} prices for {named}: {english.listing(listed)}")
+    return _illegible(panels, f"the price of {named}") or unknown_answer(
+        f"I cannot tell: nothing that I can read in view states the price of {named}"
+    )
+
+
+def _prices_on(panel: _Panel, goods: Sequence[frozenset[str]]) -> list[tuple[str, str]]:
+    """Return labels and prices on a panel. In a list of several goods, only lines that name the goods count."""
+    lines = [(line, prices[0]) for line in panel.legible if (prices := _PRICE.findall(line))]
+    label = " ".join(line.lower() for line in panel.legible if not _PRICE.search(line))
+    if len(lines) == 1 and lines[0][0].strip() == lines[0][1]:
+        return [(label, lines[0][1])]
+    return [("", price) for line, price in lines if any(words <= _words(line) for words in goods)]
+
+
+def answer_time(view: View, question: tree.Time) -> TruthAnswer:
+    """Answer when something opens, closes or happens: with a text that states a time and is on the thing or names it."""
+    heads = tree.Description(tuple(replace(p, words=split_after_noun(view, p.words)[0]) for p in question.what.phrases))
+    matches = [t for what in (question.what, heads) for t in find(view.for_reading(), what)]
+    belonging = _panels(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
+    named = [
+        panel
+        for what in (question.what, heads)
+        for panel in _panels(view)
+        if any(_content_words(phrase.words) <= panel.legible_words for phrase in what.phrases)
+    ]
+    for panel in (*belonging, *named):
+        if any(_TIME.search(text) for text in panel.legible):
+            quoted = [f'"{text}"' for text in panel.legible]
+            return known_answer(f"the {panel.name} reads {english.listing(quoted)}")
+    subject = phrase_as_asked(view, heads)
+    return _illegible(belonging, f"the text about {subject}") or unknown_answer(
+        f"I cannot tell: nothing that I can read in view states a time for {subject}"
+    )
+
+
+def _illegible(panels: Sequence[_Panel], what: str) -> TruthAnswer | None:
+    """Return the answer that a text is on a panel, but cannot be read; None if no text on the panels is illegible."""
+    panel = next((p for p in panels if not all(t.legible for t in p.texts)), None)
+    if panel is None:
+        return None
+    reason = illegibility_reason([t for t in panel.texts if not t.legible])
+    return unknown_answer(f"{what} is on the {panel.name}, but it is {reason} to read")
+
+
+def _panels(view: View, includes: Callable[[str], bool] = lambda _: True) -> list[_Panel]:
+    """Return the texts in view by the thing that they are on, for the things whose id is included."""
+    parents = dict.fromkeys(t.text.parent for t in view.texts if includes(t.text.parent))
+    return [_Panel(view.instances[parent].name, tuple(t for t in view.texts if t.text.parent == parent)) for parent in parents]
+
+
+def _content_words(words: Iterable[str]) -> frozenset[str]:
+    return frozenset(english.singular(x) for x in words if x not in FILLER_WORDS)
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(english.singular(x) for x in english.letters(text).split())

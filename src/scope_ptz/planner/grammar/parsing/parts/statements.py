@@ -1,0 +1,146 @@
+"""Recognise statements and comments, which accompany a command and do not command anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+
+_PRONOUNS = frozenset({
+    "i", "we", "they", "he", "she", "it", "this", "that", "these", "those", "there", "someone", "somebody", "something", "everyone",
+    "everybody", "everything", "nobody", "no_one", "nothing", "you",
+})  # fmt: skip
+_PLURAL_PRONOUNS = frozenset({"i", "we", "they", "you", "these", "those"})
+_MAX_SUBJECT = 7  # maximum number of words of a subject
+_COMMANDS = (*VERBS, "HOME", "PRESET")
+
+
+def is_statement(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes begin with a subject and a finite verb: "the sun is in the lens", "something just banged"."""
+    first = 0
+    while (
+        first < len(lexemes) and lexemes[first].has("FILLER", "FIRSTLY", "COMMA", "BUT", "AND") and not _is_pronoun(lexemes[first])
+    ):
+        first += 1
+    if first < len(lexemes) and lexemes[first].has("PREP") and not lexemes[first].has("DET"):
+        return False
+    return any(_is_predicate(lexemes[first:], end) for end in _subject_ends(lexemes[first:]))
+
+
+def without_time_ahead(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return lexemes without the time until something happens at their end: "we start loading in five minutes"."""
+    match = full_match("(?P<body>_+) in (AMOUNTISH|DET)* (NUM|FRACTION|DET)+ (MINUTES|HOURS) (FILLER)*", lexemes)
+    return tuple(match["body"]) if match else tuple(lexemes)
+
+
+def is_comment(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes comment on a command without a subject: "lost my bearings", "far too close", "can't see it"."""
+    words = [x for x in lexemes if not x.has("FILLER", "COMMA")]
+    if not words:
+        return False
+    if full_match("(MODAL|DOV) not (SEE|READ|FREE) _*|(do)? NEGATED (FREE) _*|no FREE|not FREE", words):
+        return not words[1].has("FREE") or verb_form(words[-1].word if len(words) < 3 else words[2].word) in {"base", None}
+    if any(x.has(*_COMMANDS) for x in words):
+        return False
+    if words[0].has("FREE") and verb_form(words[0].word) in {"participle", "past"}:
+        # "lost my bearings", unlike "charging points"
+        return not (len(words) > 1 and not words[1].has("SELF", "DET") and is_only_noun(words[1]))
+    degrees = [x for x in words if x.word in {"too", "far", "way", "so", "very", "much", "a_bit", "not"}]
+    return words[0] in degrees and len(degrees) < len(words) and any(x.word in {"too", "so", "very"} for x in degrees)
+
+
+def is_event(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "before" only say what happens later: "I forget", "the ferry leaves"."""
+    if any(x.has(*_COMMANDS, "NUM", "DEG") for x in lexemes):
+        return False
+    ends_in_verb = len(lexemes) > 1 and _is_noun(lexemes[-2]) and verb_form(lexemes[-1].word) == "third person"
+    return ends_in_verb or is_statement(lexemes)
+
+
+def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
+    """Yield the numbers of lexemes that can be the subject at the beginning of a clause."""
+    if lexemes and _is_pronoun(lexemes[0]):
+        yield 1
+    for end, lexeme in enumerate(lexemes[:_MAX_SUBJECT], 1):
+        has_is = end > 1 and end < len(lexemes) and lexemes[end].word == "'s"
+        if has_is and "NOUN" in parts_of_speech(lexeme.word):
+            yield end  # "the stock check's at noon"
+            return
+        if not (_is_nominal(lexeme) or lexeme.has("DET", "PREP", "NUM", "EVERY", "ANY", "CAMERA") or _is_possessive(lexeme)):
+            return
+        if _is_noun(lexeme):
+            yield end
+
+
+def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
+    """Return whether a finite verb follows the subject, which ends before ``start``."""
+    verb = start
+    while verb < len(lexemes) and _is_adverb(lexemes[verb]):
+        verb += 1
+    if verb >= len(lexemes):
+        return False
+    lexeme, subject = lexemes[verb], lexemes[start - 1]
+    if lexeme.word == "'s":
+        return verb + 1 >= len(lexemes) or not is_only_noun(lexemes[verb + 1])  # "the sun's low", unlike "the chemist's shop"
+    if lexeme.has("BE", "HAVEV", "DOV") and lexeme.word not in {"be", "been", "being", "having", "become"}:
+        return True
+    if lexeme.has("MODAL"):
+        return True
+    after = lexemes[verb + 1] if verb + 1 < len(lexemes) else None
+    form = verb_form(lexeme.word)
+    if start == 1 and _is_pronoun(subject):
+        return (form == "base" and subject.word in _PLURAL_PRONOUNS and subject.word != "you") or form in {"third person", "past"}
+    if form == "third person":
+        is_only_verb = "NOUN" not in parts_of_speech(lexeme.word)
+        return is_only_verb or (after is not None and (after.has("DET", "PRON", "SELF") or verb_form(after.word) == "participle"))
+    if (
+        form == "base"
+        and subject.word.endswith("s")
+        and (lexemes[0].has("DET") or _is_possessive(lexemes[0]))
+        and not lexeme.has(*VERBS)
+    ):
+        return after is not None and after.has("DET", "PRON", "SELF", "ANOTHER")  # "my grandkids love that"
+    return form == "past" and after is not None and after.has("DET", "PRON", "SELF", "SOMEONE")
+
+
+def _is_adverb(lexeme: Lexeme) -> bool:
+    if lexeme.has("BE", "HAVEV", "MODAL", "DOV") or verb_form(lexeme.word) in {"third person", "past"}:
+        return False
+    known = parts_of_speech(lexeme.word)
+    if lexeme.has("FILLER") and "VERB" in known and "ADV" not in known:
+        return False  # "my children love it"
+    return lexeme.has("ADVERB", "FILLER") or parts_of_speech(lexeme.word) == {"ADV"}
+
+
+def _is_pronoun(lexeme: Lexeme) -> bool:
+    return lexeme.word in _PRONOUNS
+
+
+def _is_possessive(lexeme: Lexeme) -> bool:
+    return lexeme.word in {"my", "our", "your", "his", "her", "their", "its"}
+
+
+def _is_nominal(lexeme: Lexeme) -> bool:
+    """Return whether a lexeme can be part of a noun phrase: a noun, an adjective or an unknown word."""
+    if lexeme.word == "'s" or not lexeme.has("FREE", "ADVERB", "CAMERA", "PICTURE", "VIEWNOUN", "GLUE"):
+        return False
+    known = parts_of_speech(lexeme.word)
+    if not known:
+        return lexeme.has("FREE")
+    return bool(known & {"NOUN", "ADJ", "ADV", "PROPN"}) or verb_form(lexeme.word) == "past"
+
+
+def is_only_noun(lexeme: Lexeme) -> bool:
+    """Return whether a word is a noun and neither an adjective nor an adverb."""
+    known = parts_of_speech(lexeme.word)
+    return "NOUN" in known and not known & {"ADJ", "ADV"} and verb_form(lexeme.word) not in {"participle", "past"}
+
+
+def _is_noun(lexeme: Lexeme) -> bool:
+    if lexeme.has("CAMERA", "PICTURE", "VIEWNOUN"):
+        return True
+    known = parts_of_speech(lexeme.word)
+    return lexeme.has("FREE") and lexeme.word != "'s" and (not known or "NOUN" in known or "PROPN" in known)

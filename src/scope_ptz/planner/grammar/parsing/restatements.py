@@ -1,0 +1,46 @@
+"""Recognise moves that may only say again what was just said: "pan left 10, ten degrees to the left"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    Amount,
+    Move,
+    Step,
+    Turn,
+    Zoom,
+)
+from scope_ptz.planner.grammar.parsing.parts.clause import Clause
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+
+
+def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
+    """Return whether a move goes the same way as the move before it: "pan left 10, ten degrees to the left".
+
+    It may just be a rewording of that move, so it must not be carried out as a second one.
+    """
+    if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
+        return False
+    return bool(_ways(before) & _ways(steps[0]))
+
+
+def says_size_again(move: Move, clause: Clause) -> bool:
+    """Return whether a clause only repeats that the move before it is small or large: "a hair to the right, just slightly"."""
+    match = full_match("(FILLER|AMOUNTISH)* ((?P<little>LITTLE)|(?P<lot>LOT)) (in fact|FILLER)*", clause.lexemes)
+    if match is None:
+        return False
+    kind, factors = ("little", (1.25, 0.8)) if match.has("little") else ("lot", (4.0, 0.25))
+    return all(
+        part.value in factors if isinstance(part, Zoom) else isinstance(part, Turn) and part.amount == Amount(kind)  # type: ignore[arg-type]
+        for part in move.parts
+    )
+
+
+def _ways(move: Move) -> set[tuple[str, bool]]:
+    """Return the axes that a move changes by an amount, each with the direction."""
+    ways: set[tuple[str, bool]] = {(part.axis, part.sign > 0) for part in move.parts if isinstance(part, Turn)}
+    for part in move.parts:
+        if isinstance(part, Zoom) and part.kind in {"factor", "percent"}:
+            ways.add(("zoom", part.value > (1 if part.kind == "factor" else 0)))
+    return ways

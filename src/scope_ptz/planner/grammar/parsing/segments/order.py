@@ -1,0 +1,50 @@
+"""Put clauses in the order in which they are meant: "pan left 20, but first take a picture" begins with the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Clause, NotUnderstoodError, trimmed
+
+_BEFORE_FIRST = ("PICTURE", "NUM", "DEG", "HOME", *DIRECTIONS, "IN", "OUT", "X", "PERCENT", "PRON", "LITTLE", "LOT")
+"""Classes of the words that can end a command."""
+
+
+def in_order(clauses: Sequence[Clause]) -> list[Clause]:
+    """Return clauses with those that say "first" before the command that they follow.
+
+    Raises:
+        NotUnderstoodError: It is unclear which clauses come first, or before which others.
+    """
+    clauses = [_without_needless_first(clauses, i) for i in range(len(clauses))]
+    for i, clause in enumerate(clauses):
+        if clause.marker != "FIRST" and not _says_first_at_end(clauses, i):
+            continue
+        end = next((j for j in range(i + 1, len(clauses)) if clauses[j].link != "and"), len(clauses))
+        earlier, first, later = clauses[:i], clauses[i:end], clauses[end:]
+        is_clear = len(earlier) == 1 and not earlier[0].marker and (not later or later[0].link == ".")
+        if not is_clear or any(other.marker for other in first[1:]):
+            raise NotUnderstoodError(clause.lexemes)
+        lexemes = trimmed(clause.lexemes, "FIRSTLY", "COMMA")
+        begun = [replace(clause, link="", marker="", opener=None, lexemes=lexemes), *first[1:]]
+        return [*begun, replace(earlier[0], link="then"), *later]
+    return clauses
+
+
+def _without_needless_first(clauses: Sequence[Clause], i: int) -> Clause:
+    """Return a clause without a "first" at its end if another clause comes after it: "take a picture first, then pan left"."""
+    clause = clauses[i]
+    is_needless = i + 1 < len(clauses) and clauses[i + 1].link in {"then", ","} and _ends_with_first(clause)
+    return replace(clause, lexemes=trimmed(clause.lexemes, "FIRSTLY", "COMMA")) if is_needless else clause
+
+
+def _says_first_at_end(clauses: Sequence[Clause], i: int) -> bool:
+    """Return whether a clause ends with "first", and is the last of at least two: "pan left 20, take a picture first"."""
+    return 0 < i == len(clauses) - 1 and _ends_with_first(clauses[i])
+
+
+def _ends_with_first(clause: Clause) -> bool:
+    """Return whether a clause is a command that ends with "first". In "the gate first", it belongs to a name."""
+    lexemes = trimmed(clause.lexemes, "FILLER", "COMMA")
+    return len(lexemes) > 1 and not clause.marker and lexemes[-1].word == "first" and lexemes[-2].has(*_BEFORE_FIRST)

@@ -1,0 +1,123 @@
+"""Corrections, denials, order and amounts that refer to the turn before."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.plan import plan
+
+PRESETS = ("gate", "dock", "yard")
+
+
+def calls(instruction: str) -> list[tuple[str, dict[str, Any]]] | None:
+    made = plan(instruction, PRESETS)
+    return [(call.name, call.arguments) for call in made.calls] if made.understood else None
+
+
+def pan(degrees: float) -> tuple[str, dict[str, Any]]:
+    return ("adjust_ptz", {"pan_deg": degrees})
+
+
+def tilt(degrees: float) -> tuple[str, dict[str, Any]]:
+    return ("adjust_ptz", {"tilt_deg": degrees})
+
+
+def go(name: str) -> tuple[str, dict[str, Any]]:
+    return ("go_to_preset", {"name": name})
+
+
+PICTURE: tuple[str, dict[str, Any]] = ("take_image", {})
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("pan left 20, sorry, I meant right 30", [pan(30)]),
+        ("pan left, I mean right, 20", [pan(20)]),
+        ("pan right thirty, no, the other way", [pan(-30)]),
+        ("pan right 10, no, 20 the other way", [pan(-20)]),
+        ("pan left 20, scratch that, tilt down 5", [tilt(-5)]),
+        ("left 12, excuse me, I do mean right 12", [pan(12)]),
+        ("up 10, negative, up 14", [tilt(14)]),
+        ("go to the gate - actually make that the dock", [go("dock")]),
+        ("pan left 20 and tilt up 10, no, down 5", [("adjust_ptz", {"pan_deg": -20, "tilt_deg": -5})]),
+    ],
+)
+def test_repairs_replace_what_they_name(instruction: str, expected: list[Any]) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "left 20 up 10, no, right 20",
+        "pan left 20, tilt up 5, scratch that, go home",
+        "pan left 20, wait, tilt down 5",
+        "pan left 20 degrees, no, 2x",
+        "zoom out - sorry, in - 2x",
+        "gate, no hang on, let's do the other thing",
+    ],
+)
+def test_unclear_repairs_are_asked_about(instruction: str) -> None:
+    assert calls(instruction) is None
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("pan right, not left, 20", [pan(20)]),
+        ("go to the gate, not the dock", [go("gate")]),
+        ("not the dock, I want the yard", [go("yard")]),
+        ("pan left 20 without zooming", [pan(-20)]),
+    ],
+)
+def test_denials_beside_what_is_meant_change_nothing(instruction: str, expected: list[Any]) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("pan left 20, but first take a picture", [PICTURE, pan(-20)]),
+        ("pan left 20, take a picture first", [PICTURE, pan(-20)]),
+        ("take a picture first, then pan left 20", [PICTURE, pan(-20)]),
+        ("tilt up 5, having first panned left 30", [pan(-30), tilt(5)]),
+        ("tilt down 6 once you are at the gate", [go("gate"), tilt(-6)]),
+        ("first up 10, second left 20, third a photo", [tilt(10), pan(-20), PICTURE]),
+    ],
+)
+def test_order_follows_the_words(instruction: str, expected: list[Any]) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    ("instruction", "expected"),
+    [
+        ("pan right 40, then half of that back", [pan(40), pan(-20)]),
+        ("pan left 30, then twice as much to the right", [pan(-30), pan(60)]),
+        ("pan left 30 and then half as far up", [pan(-30), tilt(15)]),
+        ("left 20, then 30 the other way", [pan(-20), pan(30)]),
+        ("ten left, then the same again right", [pan(-10), pan(10)]),
+    ],
+)
+def test_amounts_refer_to_the_turn_before(instruction: str, expected: list[Any]) -> None:
+    assert calls(instruction) == expected
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "look at 3 o'clock",
+        "the camera panned left",
+        "you should have panned left 20",
+        "pan left 20 but do not move",
+        "left 20 and at the same time right 20",
+        "pan left by two screens",
+        "three times as far to the right",
+        "turn left at the lights",
+    ],
+)
+def test_doubtful_moves_are_asked_about(instruction: str) -> None:
+    assert calls(instruction) is None
