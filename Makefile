@@ -1,4 +1,4 @@
-# Two commands are all that a newcomer needs: make demo, make test.
+# Newcomers need only two commands: make demo and make test.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ TORCH := torch==2.13.0
 SITE := $(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
 DEMO := Go to the highway preset, then pan right in 15 degree steps until you see at least six cones
 
-# Every program that the tests start would compile its imports again.
+# If this variable were set, every program that the tests start would compile its imports again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo console test test-full coverage check docs format bench requirements clean
@@ -22,18 +22,18 @@ demo: $(BASE)
 console: $(DEV)
 	@$(BIN)/scope console
 
-# Each worker runs whole files, so that the fixtures of a file are made once. Four workers on two cores, because many tests wait.
-# Tests of browsers, servers and live streams compete for the processor: a test that fails runs up to twice more, and the summary
-# lists it.
+# Each worker runs whole files, so that the fixtures of a file are created once. Four workers suit two cores, because many tests wait.
+# Tests of browsers, servers and live streams compete for the processor, so a failing test is rerun up to twice. The summary lists
+# the reruns.
 RERUNS := --reruns 2 --reruns-delay 1 -raR
 test: $(DEV)
 	$(BIN)/pytest -q -n 4 --dist loadfile $(RERUNS) -m "not full" tests
 
-# In the order of the folders, because by default files of one test come last, and the longest tests are in such files.
+# Files run in the order of the folders. By default, files with a single test run last, and these contain the longest tests.
 test-full: test $(FULL)
 	$(BIN)/pytest -q -n 2 --dist loadfile --no-loadscope-reorder $(RERUNS) -m full tests
 
-# Both tiers again with line coverage of everything but the modelling code, which runs inside Blender.
+# Both tiers with line coverage of everything except the modelling code, which runs inside Blender.
 coverage: $(FULL)
 	$(BIN)/pytest -q -n 2 --dist loadfile --cov --cov-report= -m "not full" tests
 	$(BIN)/pytest -q --cov --cov-append --cov-report=term:skip-covered -m full tests
@@ -45,7 +45,7 @@ check: $(DEV)
 	$(BIN)/lint-imports
 	$(SITE)
 
-# Warnings are errors: a broken link, a docstring that does not render, a missing file.
+# Warnings are errors, such as broken links, missing files, and docstrings that do not render.
 docs: $(DEV)
 	@$(SITE)
 	@echo "Open docs/_build/html/index.html in a browser."
@@ -72,13 +72,13 @@ $(DEV): requirements/dev.txt $(BASE)
 	@$(UV) pip install -q --python $(BIN)/python -r requirements/dev.txt
 	@touch $@
 
-# Serving code and torch, for tiny models. pip and not uv, because pip takes a build for processors where one is offered.
+# Model serving and torch, for tests with tiny models. pip installs torch, because it prefers a CPU build if one is available.
 $(FULL): requirements/full.txt $(DEV)
 	@$(UV) pip install -q --python $(BIN)/python -r requirements/full.txt pip
 	@$(BIN)/python -m pip install -q --disable-pip-version-check "$(TORCH)"
 	@touch $@
 
-# Pins without index lines: `make requirements` after a change of dependencies in pyproject.toml.
+# Pin all dependencies, without index lines. Run `make requirements` after changing the dependencies in pyproject.toml.
 requirements: | $(VENV)/pyvenv.cfg
 	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url pyproject.toml -o requirements/base.txt
 	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url --group dev pyproject.toml -o requirements/dev.txt

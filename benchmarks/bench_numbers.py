@@ -31,8 +31,8 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.factory.validation_perception import CachedTruth
-from scope_ptz.factory.worlds import worlds_of
+from scope_ptz.factory.validation_perception import TruthCache
+from scope_ptz.factory.worlds import open_worlds
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.ground_truth.noisy import NoisyPerception
@@ -107,8 +107,8 @@ def main() -> int:
 
 async def _score(tasks: Sequence[Task], perception_name: str) -> Score:
     """Run tasks with a perception backend and return their score."""
-    worlds, score = worlds_of(tasks), Score()
-    perception = _perception(perception_name, worlds)
+    worlds, score = open_worlds(tasks), Score()
+    perception = _make_perception(perception_name, worlds)
     last_scene = ""
     for task in sorted(tasks, key=lambda t: (t.scene, t.world)):
         if last_scene and last_scene != task.scene:  # Keep the images of only one scene in memory.
@@ -126,8 +126,8 @@ async def _score(tasks: Sequence[Task], perception_name: str) -> Score:
     return score
 
 
-def _perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
-    truth = GroundTruthPerception(lambda world: worlds[world], CachedTruth().read)
+def _make_perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
+    truth = GroundTruthPerception(lambda world: worlds[world], TruthCache().read)
     if name == "noisy":
         return NoisyPerception(truth, seed=NOISE_SEED)
     if name == "truth":

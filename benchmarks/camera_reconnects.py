@@ -2,9 +2,9 @@
 
     python benchmarks/camera_reconnects.py [--times 1000] [--scene high-street] [--driver axis|onvif] [--rtsp]
 
-The camera runs in a separate process (``scope camera serve``), so that memory, threads and sockets here are those of the driver
-alone. Each time, the camera is opened, moved continuously, asked for a frame of its live stream, and closed. With ``--rtsp``,
-streams are H.264 over RTSP. The first tenth of the connections is a warm-up and is not counted.
+The camera runs in a separate process (``scope camera serve``), so that the memory, threads and sockets of this process are those of
+the driver alone. Each connection opens the camera, moves it continuously, reads a frame of its live stream, and closes it. With
+``--rtsp``, streams are H.264 over RTSP. The first tenth of the connections is a warm-up and is not counted.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ PASSWORD = "only-for-this-run"  # noqa: S105 - the camera exists only while this
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--times", type=int, default=1000)
-    parser.add_argument("--scene", default="high-street")
-    parser.add_argument("--driver", choices=("axis", "onvif"))
+    parser.add_argument("--times", type=int, default=1000, help="number of connections per driver (default: 1000)")
+    parser.add_argument("--scene", default="high-street", help="scene to serve (default: high-street)")
+    parser.add_argument("--driver", choices=("axis", "onvif"), help="driver to check (default: both)")
     parser.add_argument("--rtsp", action="store_true", help="stream H.264 over RTSP")
     arguments = parser.parse_args()
     drivers = [arguments.driver] if arguments.driver else ["axis", "onvif"]
@@ -63,17 +63,17 @@ async def reconnect(spec: str, times: int) -> bool:
         if k >= warm and (k - warm) % max(1, times // 10) == 0:
             samples.append(resource_usage())
             print(f"{k - warm:5}  {format_usage(samples[-1])}", flush=True)
-        await once(spec)
+        await open_and_close(spec)
     samples.append(resource_usage())
     print(f"{times:5}  {format_usage(samples[-1])}")
     first, last = samples[0], samples[-1]
     cpu_ms = 1000 * (last["cpu_s"] - first["cpu_s"]) / times
     growth = last["memory_mb"] / samples[len(samples) // 2]["memory_mb"]
-    print(f"Processor time of one reconnect: {cpu_ms:.0f} ms; memory of the second half: {growth:.3f} x")
+    print(f"Processor time of one reconnect: {cpu_ms:.0f} ms; memory growth in the second half: {growth:.3f} x")
     return all(last[name] <= first[name] for name in ("threads", "files", "processes"))
 
 
-async def once(spec: str) -> None:
+async def open_and_close(spec: str) -> None:
     """Open a camera, drive it, read a frame and close it."""
     from scope_ptz.factory.cameras import open_camera
 

@@ -54,7 +54,7 @@ def main() -> int:
                 page.wait_for_timeout(SETTLE_S * 1000)
                 results = {"idle": watch(page, console, options.seconds)}
                 ended = threading.Event()
-                agent = threading.Thread(target=work, args=(console.url, options.scene, ended))
+                agent = threading.Thread(target=give_instructions, args=(console.url, options.scene, ended))
                 agent.start()
                 results["while the agent works"] = watch(page, console, options.seconds)
                 stops = stop_often(page)
@@ -73,7 +73,7 @@ def main() -> int:
     return 0
 
 
-def work(url: str, camera: str, ended: threading.Event) -> None:
+def give_instructions(url: str, camera: str, ended: threading.Event) -> None:
     """Give one instruction after another until ``ended`` is set."""
     with httpx2.Client(base_url=url, trust_env=False, timeout=120) as client:
         for instruction in itertools.cycle(INSTRUCTIONS):

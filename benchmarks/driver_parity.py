@@ -39,7 +39,7 @@ from scope_ptz.camera.base import Camera, PresetInfo
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp, DeviceTimeouts
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.onvif.camera import OnvifCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
@@ -81,11 +81,15 @@ def main() -> int:
     parser.add_argument("--true-speed", action="store_true", help="run motors at real speed, and print the latency by stage")
     parser.add_argument("--json", type=Path, help="also write the results to this file")
     arguments = parser.parse_args()
-    everything = load_split(arguments.split)
-    local = tasks_in_one_viewpoint(everything)
-    usable = asyncio.run(tasks_with_calls(local))
+    all_tasks = load_split(arguments.split)
+    local_tasks = tasks_in_one_viewpoint(all_tasks)
+    usable_tasks = asyncio.run(tasks_with_calls(local_tasks))
     count = arguments.tasks or (TRUE_SPEED_TASKS if arguments.true_speed else 120)
-    tasks = [task for task in usable if task.id in arguments.task] if arguments.task else stratified_sample(usable, count, SEED)
+    tasks = (
+        [task for task in usable_tasks if task.id in arguments.task]
+        if arguments.task
+        else stratified_sample(usable_tasks, count, SEED)
+    )
     if not tasks:
         parser.error("none of these tasks uses the camera and stays in one viewpoint")
     time_scale = 1.0 if arguments.true_speed else arguments.time_scale
@@ -93,9 +97,10 @@ def main() -> int:
     if arguments.json is not None:
         arguments.json.write_text(json.dumps([asdict(each) for each in measured], indent=1, default=str))
     print(
-        f"{len(everything)} tasks, of which {len(local)} stay in one viewpoint. In {len(usable)} of these the planner makes calls;"
+        f"{len(all_tasks)} tasks, of which {len(local_tasks)} stay in one viewpoint. "
+        f"The planner makes calls in {len(usable_tasks)} of these"
     )
-    print(f"it ends the others with a question at once. Measured: {len(measured)}.\n")
+    print(f"and ends the others immediately with a question. Measured: {len(measured)}.\n")
     print("\n".join(report(measured)))
     if arguments.true_speed:
         print("\n".join(latency_table(measured)))
@@ -162,7 +167,7 @@ class TaskRuns:
             if (run.outcome, run.answer) != (own.outcome, own.answer):
                 found.append((path, "answer", f"{run.outcome}: {run.answer!r} instead of {own.outcome}: {own.answer!r}"))
             if not same_pose(own.pose, run.pose):
-                found.append((path, "pose", f"{_text(run.pose)} instead of {_text(own.pose)}"))
+                found.append((path, "pose", f"{_format_pose(run.pose)} instead of {_format_pose(own.pose)}"))
         return found
 
 
@@ -195,7 +200,7 @@ async def measure(
                     await _in_process(scenes, viewpoint, task, real=False)
                 measured[-1].runs[IN_PROCESS] = await _in_process(scenes, viewpoint, task, real=time_scale == 1.0)
                 for name, (camera, perception) in paths.items():
-                    # Nothing advances this clock; the motors keep their own time.
+                    # This clock never advances. The motors have their own clock.
                     device.clock = SceneClock(task.time_s)
                     await camera.go_to_preset(task.preset)
                     measured[-1].runs[name] = await _run(camera, perception, task)
@@ -205,7 +210,7 @@ async def measure(
 
 @asynccontextmanager
 async def drivers(
-    device: VirtualDevice, scenes: Callable[[str], Scene], settling: Settling
+    device: VirtualDevice, scenes: Callable[[str], Scene], settling: SettlingCriteria
 ) -> AsyncIterator[dict[str, tuple[Camera, Perception]]]:
     """Serve a camera, and connect each driver to it, with perception that reads the served ground truth."""
     # The first frame of a viewpoint reads its files, which may take longer than a driver waits for a reply.
@@ -226,12 +231,12 @@ async def drivers(
         yield paths
 
 
-def make_settling(time_scale: float) -> Settling:
+def make_settling(time_scale: float) -> SettlingCriteria:
     """Return the settling parameters of the drivers for motors that are faster than real ones."""
     if time_scale == 1.0:
-        return Settling()
-    own = Settling()
-    return Settling(
+        return SettlingCriteria()
+    own = SettlingCriteria()
+    return SettlingCriteria(
         poll_s=max(own.poll_s / time_scale, 0.004),
         start_s=max(own.start_s / time_scale, 0.15),
         picture_interval_s=own.picture_interval_s / time_scale,
@@ -239,7 +244,7 @@ def make_settling(time_scale: float) -> Settling:
 
 
 class FrozenSceneClock(SceneClock):
-    """A clock whose scene time stands still while the motors run in real time."""
+    """A clock with a fixed scene time. The motors run in real time."""
 
     def __init__(self, time_s: float) -> None:
         super().__init__(time_s, realtime=True)
@@ -288,12 +293,12 @@ def without_source(answer: str) -> str:
 
 def same_calls(own: Sequence[tuple[str, dict[str, Any]]], other: Sequence[tuple[str, dict[str, Any]]]) -> bool:
     """Return whether two runs made the same calls in the same order."""
-    return len(own) == len(other) and all(a[0] == b[0] and _same(a[1], b[1]) for a, b in zip(own, other, strict=True))
+    return len(own) == len(other) and all(a[0] == b[0] and _are_equal(a[1], b[1]) for a, b in zip(own, other, strict=True))
 
 
-def _same(one: Any, two: Any) -> bool:
+def _are_equal(one: Any, two: Any) -> bool:
     if isinstance(one, dict) and isinstance(two, dict):
-        return one.keys() == two.keys() and all(_same(one[key], two[key]) for key in one)
+        return one.keys() == two.keys() and all(_are_equal(one[key], two[key]) for key in one)
     if isinstance(one, float | int) and isinstance(two, float | int):
         return abs(one - two) <= ARGUMENT_TOLERANCE
     return bool(one == two)
@@ -309,13 +314,13 @@ def same_pose(own: Pose, other: Pose) -> bool:
 
 
 def _first_difference(own: list[tuple[str, dict[str, Any]]], other: list[tuple[str, dict[str, Any]]]) -> str:
-    k = next((k for k, (a, b) in enumerate(zip(own, other, strict=False)) if a[0] != b[0] or not _same(a[1], b[1])), None)
+    k = next((k for k, (a, b) in enumerate(zip(own, other, strict=False)) if a[0] != b[0] or not _are_equal(a[1], b[1])), None)
     if k is None:
         return f"{len(other)} calls instead of {len(own)}"
     return f"call {k + 1} is {other[k]} instead of {own[k]}"
 
 
-def _text(pose: Pose) -> str:
+def _format_pose(pose: Pose) -> str:
     return f"pan {pose.pan_deg:.3f}, tilt {pose.tilt_deg:.3f}, zoom {pose.zoom:.4f}"
 
 

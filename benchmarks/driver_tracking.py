@@ -2,14 +2,14 @@
 
     python benchmarks/driver_tracking.py [--scene SCENE] [--objects 2] [--seconds 6]
 
-No benchmark task of one viewpoint uses the tool ``track_object``, so this program makes its own: for each viewpoint it selects
-moving objects, aims the camera at each, and gives the instruction "track the ... for 6 seconds". The drivers connect to a virtual
-camera in this process.
+No benchmark task of one viewpoint uses the tool ``track_object``, so this program creates its own tasks: for each viewpoint it
+selects moving objects, aims the camera at each, and gives the instruction "track the ... for 6 seconds". The drivers connect to a
+virtual camera in this process.
 
 A device and a simulated camera do not take the same time for a move, so they would see the objects at different moments and aim
 differently, even with perfect drivers. The scene time is therefore stepped: it advances by the tool's own period between two
-looks, and stands still during moves, pictures and perception. All paths then look at the same moments. The program compares the
-pose of the camera and whether the object was seen at every look, the answer, and the final pose.
+observations, and stops during moves, pictures and perception. All paths therefore observe at the same moments. The program compares
+the pose of the camera and whether the object was seen at every observation, the answer, and the final pose.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ TIMES_S = np.arange(1.0, 50.0, 3.0)
 
 @dataclass(frozen=True)
 class Chase:
-    """An object to follow: the place and time at which the run starts, and the instruction."""
+    """An object to follow, with the place and time at which the run starts and the instruction."""
 
     scene: str
     viewpoint: str
@@ -74,8 +74,8 @@ class Chase:
 
 
 @dataclass(frozen=True)
-class Look:
-    """The camera at one look of the tool."""
+class Observation:
+    """The camera's state at one observation of the tool."""
 
     time_s: float
     pose: Pose
@@ -83,30 +83,35 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Followed:
+class ChaseRun:
     """A chase on one path."""
 
-    looks: tuple[Look, ...]
+    observations: tuple[Observation, ...]
     answer: str
     final: Pose
 
 
 @dataclass
-class Compared:
+class ChaseComparison:
     """A chase on all paths."""
 
     chase: Chase
-    runs: dict[str, Followed] = field(default_factory=dict)
+    runs: dict[str, ChaseRun] = field(default_factory=dict)
 
     def deviations(self) -> list[str]:
         """Return a description of every deviation of a driver from the run in process."""
         own, found = self.runs[IN_PROCESS], []
         for path in DRIVERS:
             run = self.runs[path]
-            if [(look.time_s, look.seen) for look in run.looks] != [(look.time_s, look.seen) for look in own.looks]:
-                found.append(f"{path}: the object is seen at other times: {run.looks} instead of {own.looks}")
-            elif wrong := [k for k, (a, b) in enumerate(zip(own.looks, run.looks, strict=True)) if not same_pose(a.pose, b.pose)]:
-                found.append(f"{path}: look {wrong[0]} is at {run.looks[wrong[0]].pose} instead of {own.looks[wrong[0]].pose}")
+            if [(observation.time_s, observation.seen) for observation in run.observations] != [
+                (observation.time_s, observation.seen) for observation in own.observations
+            ]:
+                found.append(f"{path}: the object is seen at other times: {run.observations} instead of {own.observations}")
+            elif wrong := [
+                k for k, (a, b) in enumerate(zip(own.observations, run.observations, strict=True)) if not same_pose(a.pose, b.pose)
+            ]:
+                poses = run.observations[wrong[0]].pose, own.observations[wrong[0]].pose
+                found.append(f"{path}: observation {wrong[0]} is at {poses[0]} instead of {poses[1]}")
             if run.answer != own.answer:
                 found.append(f"{path}: {run.answer!r} instead of {own.answer!r}")
             if not same_pose(own.final, run.final):
@@ -176,7 +181,7 @@ class SteppedDriver(CameraWrapper):
         self._taken.append((frame.image, frame.time_s))
         return replace(frame, time_s=self.clock.now_s())
 
-    def original(self, frame: Frame) -> Frame:
+    def with_reported_time(self, frame: Frame) -> Frame:
         """Return a frame with the time that the driver reported."""
         return replace(frame, time_s=next(time_s for image, time_s in self._taken if image is frame.image))
 
@@ -188,15 +193,15 @@ class OriginalTimes(TruthSource):
         self._source, self._camera = source, camera
 
     async def origin(self, frame: Frame) -> ServedOrigin:
-        return await self._source.origin(self._camera.original(frame))
+        return await self._source.origin(self._camera.with_reported_time(frame))
 
     async def close(self) -> None:
         """Do nothing: the source belongs to the driver's own perception."""
 
 
-async def compare(scene_names: list[str], objects: int, seconds: int) -> list[Compared]:
+async def compare(scene_names: list[str], objects: int, seconds: int) -> list[ChaseComparison]:
     """Follow objects in all viewpoints of scenes, on all paths."""
-    scenes, compared = Library(), list[Compared]()
+    scenes, compared = Library(), list[ChaseComparison]()
     for scene_name in scene_names:
         for viewpoint in scenes(scene_name).file.viewpoints:
             found = list(chases(scenes, scene_name, viewpoint.name, objects, seconds))
@@ -206,7 +211,7 @@ async def compare(scene_names: list[str], objects: int, seconds: int) -> list[Co
             device = VirtualDevice(scenes(scene_name), viewpoint=viewpoint.name, accounts=[account], time_scale=DEFAULT_TIME_SCALE)
             async with drivers(device, scenes, make_settling(DEFAULT_TIME_SCALE)) as paths:
                 for chase in found:
-                    compared.append(Compared(chase))
+                    compared.append(ChaseComparison(chase))
                     compared[-1].runs[IN_PROCESS] = await _in_process(scenes, chase)
                     for name, (camera, perception) in paths.items():
                         compared[-1].runs[name] = await _with_driver(scenes, chase, device, camera, perception)
@@ -214,14 +219,14 @@ async def compare(scene_names: list[str], objects: int, seconds: int) -> list[Co
     return compared
 
 
-async def _in_process(scenes: Library, chase: Chase) -> Followed:
+async def _in_process(scenes: Library, chase: Chase) -> ChaseRun:
     clock = SceneClock(chase.time_s)
     camera = SteppedSimulation(scenes(chase.scene), viewpoint=chase.viewpoint, clock=clock)
     await camera.move(chase.start)
     return await _follow(camera, GroundTruthPerception(scenes), chase)
 
 
-async def _with_driver(scenes: Library, chase: Chase, device: VirtualDevice, driver: Camera, perception: Perception) -> Followed:
+async def _with_driver(scenes: Library, chase: Chase, device: VirtualDevice, driver: Camera, perception: Perception) -> ChaseRun:
     assert isinstance(perception, ServedTruthPerception)
     device.clock = SceneClock(chase.time_s)
     camera = SteppedDriver(driver, device.clock)
@@ -230,35 +235,37 @@ async def _with_driver(scenes: Library, chase: Chase, device: VirtualDevice, dri
     return await _follow(camera, ServedTruthPerception(source, scenes), chase)
 
 
-async def _follow(camera: Camera, perception: Perception, chase: Chase) -> Followed:
+async def _follow(camera: Camera, perception: Perception, chase: Chase) -> ChaseRun:
     result = await Agent(GrammarPlanner(), camera, perception, NoImages(), snapshots=False).run(chase.instruction)
     outcomes = [outcome for exchange in result.exchanges for outcome in exchange.outcomes]
     for outcome in outcomes:
         if outcome.error is not None:
             print(f"{camera.info.name}, {chase.instruction}, {outcome.call.name}: {outcome.error}", file=sys.stderr)
     path: list[dict[str, Any]] = outcomes[-1].result["path"] if outcomes and outcomes[-1].result is not None else []
-    looks = tuple(
-        Look(point["time_s"], Pose(*(point["pose"][axis] for axis in ("pan_deg", "tilt_deg", "zoom"))), point["seen"])
+    observations = tuple(
+        Observation(point["time_s"], Pose(*(point["pose"][axis] for axis in ("pan_deg", "tilt_deg", "zoom"))), point["seen"])
         for point in path
     )
-    return Followed(looks, without_source(result.ended.text), result.ended.pose.pose())
+    return ChaseRun(observations, without_source(result.ended.text), result.ended.pose.pose())
 
 
 # Report ---------------------------------------------------------------------------------------------------------------------
-def report(compared: list[Compared]) -> list[str]:
+def report(compared: list[ChaseComparison]) -> list[str]:
     """Return the lines of the report."""
-    looks = sum(len(each.runs[IN_PROCESS].looks) for each in compared)
+    observations = sum(len(each.runs[IN_PROCESS].observations) for each in compared)
     turns = [abs(wrap_pan_deg(each.runs[IN_PROCESS].final.pan_deg - each.chase.start.pan_deg)) for each in compared if each.runs]
     lines = [
-        f"{len(compared)} objects, {looks} looks; the camera turns by up to {max(turns, default=0.0):.0f} degrees",
+        f"{len(compared)} objects, {observations} observations; the camera turns by up to {max(turns, default=0.0):.0f} degrees",
         "",
-        "| path | same | largest pan difference at a look (deg) | tilt (deg) | zoom (%) |",
+        "| path | same | largest pan difference at an observation (deg) | tilt (deg) | zoom (%) |",
         "|---|---|---|---|---|",
     ]
     for path in DRIVERS:
         same = sum(not any(text.startswith(path) for text in each.deviations()) for each in compared)
         pairs = [
-            (a.pose, b.pose) for each in compared for a, b in zip(each.runs[IN_PROCESS].looks, each.runs[path].looks, strict=False)
+            (a.pose, b.pose)
+            for each in compared
+            for a, b in zip(each.runs[IN_PROCESS].observations, each.runs[path].observations, strict=False)
         ]
         pan = max(abs(wrap_pan_deg(a.pan_deg - b.pan_deg)) for a, b in pairs)
         tilt, zoom = max(abs(a.tilt_deg - b.tilt_deg) for a, b in pairs), max(abs(b.zoom / a.zoom - 1) for a, b in pairs)

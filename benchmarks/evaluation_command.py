@@ -19,7 +19,7 @@ from startup import Cost, cost, summary
 THIS_CHECKOUT = Path(__file__).resolve().parents[1]
 
 
-def evaluation(checkout: Path, split: str) -> Cost:
+def run_evaluation(checkout: Path, split: str) -> Cost:
     """Run an evaluation with the code of a checkout and return its cost."""
     with tempfile.TemporaryDirectory() as folder:
         options = ["--split", split, "--no-pictures", "--out", folder]
@@ -36,8 +36,8 @@ def main() -> None:
     arguments = parser.parse_args()
     checkouts = [THIS_CHECKOUT] if arguments.against is None else [arguments.against.resolve(), THIS_CHECKOUT]
     for checkout in checkouts:
-        evaluation(checkout, "lite")
-    rounds = [[evaluation(checkout, arguments.split) for checkout in checkouts] for _ in range(arguments.rounds)]
+        run_evaluation(checkout, "lite")
+    rounds = [[run_evaluation(checkout, arguments.split) for checkout in checkouts] for _ in range(arguments.rounds)]
     summaries = [summary(list(costs)) for costs in zip(*rounds, strict=True)]
     for checkout, (cpu_s, wall_s, memory_mb) in zip(checkouts, summaries, strict=True):
         print(f"{cpu_s:7.1f} s processor {wall_s:7.1f} s wall-clock {memory_mb:7.0f} MB   {checkout}")

@@ -22,14 +22,17 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.factory.evaluate import EvaluationOptions, evaluate
-from scope_ptz.factory.evaluation import eval_context, planner_for
+from scope_ptz.factory.evaluation import eval_context, evaluation_planner
 from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
 from scope_ptz.simulator.clock import SceneClock
 
 
 async def run_bare_loop(entries: tuple[Entry, ...], context: EvalContext, folder: Path, *, pictures: bool) -> float:
     """Return the processor seconds for running all tasks one after the other in a bare agent loop."""
-    planner, perception = planner_for(ResolvedPlanner("grammar")), await context.make_perception(ModelRequest("ground-truth"))
+    planner, perception = (
+        evaluation_planner(ResolvedPlanner("grammar")),
+        await context.make_perception(ModelRequest("ground-truth")),
+    )
     start = time.process_time()
     for entry in entries:
         clock, scene = SceneClock(entry.time_s), context.open_scene(entry.world)

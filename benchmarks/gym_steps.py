@@ -1,4 +1,4 @@
-"""Measure steps per second of the Gymnasium environments, beside the bare re-projection of a frame.
+"""Measure steps per second of the Gymnasium environments, compared with a bare re-projection of a frame.
 
     python benchmarks/gym_steps.py [--rounds 60] [--vector]
 

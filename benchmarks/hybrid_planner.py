@@ -1,10 +1,11 @@
-"""Measure the hybrid planner on the test instructions: who plans, how long it takes, and which calls need a confirmation.
+"""Measure the hybrid planner on the test instructions: which part plans, how long it takes, and which calls need a confirmation.
 
     python -m benchmarks.hybrid_planner [--lot NAME] [--planner-url URL [--planner-model NAME] [--limit N]]
 
-Without a server, two scripted models plan what the grammar does not understand. The knowing model makes the expected calls of each
-instruction. The reckless model makes a random move. With ``--planner-url``, the served model plans instead. A move counts as wrong
-if it is carried out without a confirmation although the instruction does not ask for it. Only first steps are planned.
+Without a server, two scripted models plan the instructions that the grammar does not understand. The expert model makes the
+expected calls of each instruction. The random model makes a random move. With ``--planner-url``, the served model plans instead. A
+move counts as wrong if it is carried out without a confirmation although the instruction does not ask for it. Only first steps are
+planned.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ MAX_DEGREES = 170
 
 
 class ScriptedModel(Planner):
-    """A stand-in for a language model, whose calls depend only on the row of the instruction."""
+    """A fake language model. Its calls depend only on the row of the instruction."""
 
     def __init__(self, name: str, calls_for: Callable[[Row], Sequence[ToolCall]]) -> None:
         self.name, self._calls_for = name, calls_for
@@ -46,7 +47,7 @@ class ScriptedModel(Planner):
 
 @dataclass
 class Tally:
-    """What happened to the instructions, and the seconds that the first step took."""
+    """The number of instructions by outcome, and the durations of their first steps in seconds."""
 
     by_grammar: int = 0
     carried_out: int = 0
@@ -69,29 +70,29 @@ def main() -> None:
     chosen = [row for lot in ([options.lot] if options.lot else FILES) for row in rows(lot)]
     if options.limit:
         chosen = chosen[:: max(1, len(chosen) // options.limit)][: options.limit]
-    models: list[Planner] = [ScriptedModel("knowing", _expected), ScriptedModel("reckless", _random_move)]
+    models: list[Planner] = [ScriptedModel("expert", _expected_calls), ScriptedModel("random", _random_call)]
     if options.planner_url:
         models = [ChatPlanner(Endpoint(url=options.planner_url, model=options.planner_model), ChatOptions())]
     for model in models:
-        _print(model.name, len(chosen), anyio.run(_measure, model, chosen))
+        _print_tally(model.name, len(chosen), anyio.run(_measure, model, chosen))
 
 
-def _expected(row: Row) -> Sequence[ToolCall]:
+def _expected_calls(row: Row) -> Sequence[ToolCall]:
     known = [
         call for call in row.calls if call["name"] in TOOLS and not any(isinstance(v, dict) for v in call["arguments"].values())
     ]
     return [ToolCall(id=f"c{i}", name=call["name"], arguments=call["arguments"]) for i, call in enumerate(known)]
 
 
-def _random_move(row: Row) -> Sequence[ToolCall]:
-    choice = random.Random(f"{SEED} {row.instruction}")
-    name = choice.choice(("adjust_ptz", "go_to_preset", "go_home", "zoom_to_object"))
-    degrees = choice.choice((-1, 1)) * choice.randint(1, MAX_DEGREES)
+def _random_call(row: Row) -> Sequence[ToolCall]:
+    rng = random.Random(f"{SEED} {row.instruction}")
+    name = rng.choice(("adjust_ptz", "go_to_preset", "go_home", "zoom_to_object"))
+    degrees = rng.choice((-1, 1)) * rng.randint(1, MAX_DEGREES)
     choices: dict[str, dict[str, Any]] = {
-        "adjust_ptz": {choice.choice(("pan_deg", "tilt_deg")): degrees},
-        "go_to_preset": {"name": choice.choice(row.presets or ("home",))},
+        "adjust_ptz": {rng.choice(("pan_deg", "tilt_deg")): degrees},
+        "go_to_preset": {"name": rng.choice(row.presets or ("home",))},
         "go_home": {},
-        "zoom_to_object": {"description": choice.choice(("van", "person", "red car", "gate"))},
+        "zoom_to_object": {"description": rng.choice(("van", "person", "red car", "gate"))},
     }
     return [ToolCall(id="c0", name=name, arguments=choices[name])]
 
@@ -137,7 +138,7 @@ def _is_wrong_move(call: ToolCall, row: Row) -> bool:
     return not any(call.name == expected["name"] and call.arguments == expected["arguments"] for expected in row.calls)
 
 
-def _print(name: str, total: int, tally: Tally) -> None:
+def _print_tally(name: str, total: int, tally: Tally) -> None:
     print(f"{name}: {total} instructions")
     print(f"  planned without the model    {tally.by_grammar:>5}  {tally.by_grammar / total:.1%}")
     print(f"  model, carried out           {tally.carried_out:>5}")

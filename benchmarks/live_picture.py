@@ -36,7 +36,7 @@ from scope_ptz.simulator.views import picture
 WIDTH, HEIGHT = 1280, 720
 FRAMES_PER_S = 25
 MAX_ACTORS = 4
-"""Number of actors in view that ends the search for a pose."""
+"""The search for a pose ends when this number of actors is in view."""
 TURN_DEG = 0.05
 """Angle in degrees by which the camera turns between two frames."""
 STALL_MS = 40.0

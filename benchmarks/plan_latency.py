@@ -1,4 +1,4 @@
-"""Measure the time of a planning step of the grammar planner over the test instructions and over made-up long ones.
+"""Measure the time of a planning step of the grammar planner over the test instructions and over generated long texts.
 
     python benchmarks/plan_latency.py [--limit N]
 
@@ -48,11 +48,11 @@ def long_texts(instructions: Sequence[tuple[str, tuple[str, ...]]]) -> Iterator[
     """Yield texts of up to ``MAX_CHARS`` characters."""
     for part in REPEATED:
         yield (part * MAX_CHARS)[:MAX_CHARS], PRESETS
-    choose = random.Random(0)
+    rng = random.Random(0)
     for _ in range(LONG_TEXTS):
-        size, text = choose.choice((300, 500, 800, 1200, MAX_CHARS)), ""
+        size, text = rng.choice((300, 500, 800, 1200, MAX_CHARS)), ""
         while len(text) < size:
-            text += choose.choice(instructions)[0] + choose.choice(JOINTS)
+            text += rng.choice(instructions)[0] + rng.choice(JOINTS)
         yield text[:size], PRESETS
 
 

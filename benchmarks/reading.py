@@ -30,7 +30,7 @@ from rapidocr import RapidOCR
 from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.factory.worlds import worlds_of
+from scope_ptz.factory.worlds import open_worlds
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.pack import Scene, find_scenes
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
@@ -91,7 +91,7 @@ def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int
 
 def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
     """Read the views of OCR tasks and print the number of tasks that are answered correctly."""
-    worlds, correct, missed = worlds_of(tasks), 0, []
+    worlds, correct, missed = open_worlds(tasks), 0, []
     for task in tasks:
         scene, parts = worlds[task.world], []
         for evidence in task.evidence:
@@ -157,7 +157,7 @@ def _read_at(text: TextSighting, lines: Sequence[tuple[float, float, str]]) -> s
 def _similarity(expected: str, read: str) -> float:
     """Return the similarity of two texts in [0, 1], ignoring case, spaces and punctuation.
 
-    It is 1 if ``read`` contains the other.
+    The similarity is 1 if ``read`` contains ``expected``.
     """
     a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (expected, read))
     if a and a in b:

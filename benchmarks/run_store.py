@@ -122,7 +122,7 @@ def main() -> None:
             fill(store, options.runs)
             database = store.database
             with database.read_transaction() as connection:
-                some = connection.execute(select(RUNS.c.id).limit(1).offset(options.runs // 2)).scalar_one()
+                run_id = connection.execute(select(RUNS.c.id).limit(1).offset(options.runs // 2)).scalar_one()
             cursor = None
             for _ in range(3):
                 cursor = store.runs(limit=500, after=cursor).next
@@ -144,7 +144,7 @@ def main() -> None:
                 work[f"count: {title}"] = lambda chosen=chosen: count_matching(database, chosen)  # type: ignore[misc]
             work["list: a later page"] = lambda: list_runs(database, RunFilter(), after=cursor)
             work["values for the menus"] = lambda: distinct_values(database)
-            work["one run with its calls"] = lambda: load_run(database, some)
+            work["one run with its calls"] = lambda: load_run(database, run_id)
             size_mb = database.path.stat().st_size / 1e6
             print(f"{options.runs} runs, {size_mb:.0f} MB")
             slowest = 0.0

@@ -1,4 +1,4 @@
-"""Measure scripted policies on active search: success against number of looks.
+"""Measure the success of scripted policies on active search by the number of looks.
 
     python benchmarks/search_baselines.py [--episodes 200] [--scene highway-works ...]
 
@@ -41,13 +41,13 @@ def main() -> int:
         outcomes = [
             outcome
             for number, scene in enumerate(scenes)
-            for outcome in searches(scene, policy(), perception, range(number, arguments.episodes, len(scenes)), arguments.seed)
+            for outcome in run_searches(scene, policy(), perception, range(number, arguments.episodes, len(scenes)), arguments.seed)
         ]
-        print(row(name, perception, outcomes), flush=True)
+        print(table_row(name, perception, outcomes), flush=True)
     return 0
 
 
-def searches(scene: str, policy: SearchPolicy, perception: str, numbers: Sequence[int], seed: int) -> list[SearchOutcome]:
+def run_searches(scene: str, policy: SearchPolicy, perception: str, numbers: Sequence[int], seed: int) -> list[SearchOutcome]:
     """Run searches in a scene. One scene is open at a time."""
     env = SearchEnv(scene, perception=perception, frames=False, max_looks=BUDGETS[-1])
     try:
@@ -56,7 +56,7 @@ def searches(scene: str, policy: SearchPolicy, perception: str, numbers: Sequenc
         env.close()
 
 
-def row(name: str, perception: str, outcomes: Sequence[SearchOutcome]) -> str:
+def table_row(name: str, perception: str, outcomes: Sequence[SearchOutcome]) -> str:
     """Return a row: success within each budget, the interval of the last one, mean looks of successes, and the score."""
     shares = success_within(outcomes, BUDGETS)
     successes = [outcome.looks for outcome in outcomes if outcome.success]

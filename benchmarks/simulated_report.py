@@ -2,7 +2,7 @@
 
     python benchmarks/simulated_report.py OUT [--seed 0] [--pages]
 
-OUT/logs contains the simulated evaluations, and OUT/report the report that ``scope bench report`` makes of them. Success
+OUT/logs contains the simulated evaluations, and OUT/report the report that ``scope bench report`` generates from them. Success
 probabilities by category and latencies are those of the paper's tables. The output states how many of the 95% intervals contain the
 known value.
 """
@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # The generator is in the tests.
 
-from tests.bench.reports.simulated.recovery import recovered
+from tests.bench.reports.simulated.recovery import interval_coverage
 from tests.bench.reports.simulated.runs import full_sweep, store
 
 from scope_ptz.bench.human_runs import read_result
@@ -41,7 +41,7 @@ def main() -> int:
         pages=arguments.pages,
     )
     print("\n".join(terminal_lines(report)))
-    for quantity, (inside, total) in recovered(report).items():
+    for quantity, (inside, total) in interval_coverage(report).items():
         print(f"{quantity}: {inside} of {total} intervals contain the known value")
     print(arguments.out / "report" / "index.html")
     return 0

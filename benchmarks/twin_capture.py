@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.parity import ssim
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.camera.capture.frame_taking import CaptureOptions, settings_of, take_frames
+from scope_ptz.camera.capture.frame_taking import CaptureOptions, capture_settings, take_frames
 from scope_ptz.camera.capture.plan import Ranges
 from scope_ptz.camera.capture.session import CaptureSession
 from scope_ptz.camera.guard.wrapper import CameraWrapper
@@ -104,7 +104,7 @@ async def capture_twin(arguments: argparse.Namespace, scenes: Path, progress: An
             drift_dps = arguments.drift / 60 / arguments.time_scale
             camera = InaccurateCamera(opened.camera, device, arguments.noise, drift_dps, arguments.seed)
             ranges = Ranges(_range(arguments.pan), _range(arguments.tilt))
-            settings = settings_of(camera, CaptureOptions(ranges, close_ups=arguments.close_ups))
+            settings = capture_settings(camera, CaptureOptions(ranges, close_ups=arguments.close_ups))
             session = CaptureSession(scenes / ".twin.capture", settings, "2026-01-01T00:00:00+00:00")
             began_s = time.monotonic()
             await take_frames(camera, session, progress, holder="benchmark")

@@ -81,7 +81,7 @@ def soak(scene: str, duration_s: float) -> dict[str, Any]:
     gone_s = time.monotonic() + END_S
     while (last := camera.sample())["sessions"] and time.monotonic() < gone_s:
         time.sleep(0.1)
-    left = camera.end()
+    leaked = camera.end()
     # The second half of the run is always counted, even if starting takes longer on a slow machine.
     started_s = [stream.arrivals_s[0] + CLIENT_START_S for stream in streams if stream.arrivals_s]
     prefetched_s = [at for at, figures in samples if figures["prefetched"]]
@@ -103,7 +103,7 @@ def soak(scene: str, duration_s: float) -> dict[str, Any]:
         "server": {name: last[name] for name in ("sent", "dropped", "oldest_sent_s")},
         "clients_total": last["vanished"],
         "sessions_open_at_end": last["sessions"],
-        "left_over": left,
+        "left_over": leaked,
     }
 
 

@@ -44,11 +44,11 @@ def main() -> int:
         pose = _random_pose(library(scene), viewpoint, rng, at_border=k % 2 == 0)
         view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
         label = f"{k:02d} {scene}/{viewpoint} pan {pose.pan_deg:.1f} tilt {pose.tilt_deg:.1f} zoom {pose.zoom:.1f}"
-        cells.append(_labelled(picture(library(scene), viewpoint, view, library(scene).file.start_s), label))
+        cells.append(_label_cell(picture(library(scene), viewpoint, view, library(scene).file.start_s), label))
     per_sheet = COLUMNS * ROWS
     for first in range(0, len(cells), per_sheet):
         path = arguments.out / f"sheet-{first // per_sheet:02d}.png"
-        cv2.imwrite(str(path), cv2.cvtColor(_sheet(cells[first : first + per_sheet]), cv2.COLOR_RGB2BGR))
+        cv2.imwrite(str(path), cv2.cvtColor(_make_sheet(cells[first : first + per_sheet]), cv2.COLOR_RGB2BGR))
         print(path)
     return 0
 
@@ -66,14 +66,14 @@ def _random_pose(scene: Scene, viewpoint: str, rng: random.Random, *, at_border:
     return Limits().clamp(Pose(float(pan_deg), float(tilt_deg), zoom))[0]
 
 
-def _labelled(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
+def _label_cell(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
     small = cv2.resize(image, CELL_SIZE_PX, interpolation=cv2.INTER_AREA)
     cv2.putText(small, label, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, (0, 0, 0), 4, cv2.LINE_AA)
     cv2.putText(small, label, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 0), 1, cv2.LINE_AA)
     return np.asarray(small)
 
 
-def _sheet(cells: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+def _make_sheet(cells: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
     blank = np.zeros((CELL_SIZE_PX[1], CELL_SIZE_PX[0], 3), dtype=np.uint8)
     filled = cells + [blank] * (COLUMNS * ROWS - len(cells))
     return np.vstack([np.hstack(filled[row * COLUMNS : (row + 1) * COLUMNS]) for row in range(ROWS)])

@@ -7,7 +7,7 @@ from scope_ptz.contracts import Decision, Finish, State
 
 
 class SaysNo(scope_ptz.Planner):
-    """A baseline that always answers no, without any call."""
+    """A baseline that always answers no, without calling tools."""
 
     name = "says-no"
 

@@ -33,7 +33,7 @@ def ask(client: OpenAI, model: str, scope: scope_ptz.Scope, instruction: str, *,
             print(f"  {call.function.name} {call.function.arguments} -> {output.text}")
             messages.append({"role": "tool", "tool_call_id": call.id, "content": output.text})
             pictures += output.pictures
-        for picture in pictures if accepts_images else ():  # the API accepts images only in messages of the user
+        for picture in pictures if accepts_images else ():  # the API accepts images only in user messages
             image = {"type": "image_url", "image_url": {"url": picture.data_url}}
             messages.append({"role": "user", "content": [{"type": "text", "text": picture.caption}, image]})
     return f"The model gave no answer within {MAX_STEPS} steps."
@@ -45,7 +45,7 @@ def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
-    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
+    parser.add_argument("--text-only", action="store_true", help="send no pictures, for models that accept only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key

@@ -46,7 +46,7 @@ def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
-    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
+    parser.add_argument("--text-only", action="store_true", help="send no pictures, for models that accept only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key

@@ -1,4 +1,4 @@
-"""Take part in a hosted evaluation over HTTP: begin each task, look, answer.
+"""Take part in a hosted evaluation over HTTP: begin each task, call tools, and answer.
 
 Run a host first (see docs/hosting.md), then: python examples/hosted_agent.py http://127.0.0.1:8000 TOKEN_FILE
 """
@@ -13,7 +13,7 @@ import httpx2
 
 
 def answer_to(instruction: str, ask: Any) -> str:
-    """Your agent: operate the camera with ``ask``, and return the answer. This one counts, whatever the instruction says."""
+    """Return the answer to an instruction, using ``ask`` to call tools. This example only counts the objects that it names."""
     call = {"id": "1", "name": "count_objects", "arguments": {"description": instruction.split()[2], "view": "current"}}
     (result,) = ask({"type": "calls", "calls": [call]})["results"]
     return f"I count {result['result']['count']}." if result["error"] is None else "I cannot tell."

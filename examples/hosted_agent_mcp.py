@@ -15,7 +15,7 @@ from mcp.client.streamable_http import streamable_http_client
 
 
 async def main(url: str, token: str) -> None:
-    """Attempt every task once. Connect a language model here; this agent only counts what the instruction names."""
+    """Attempt every task once. Replace the call of ``count_objects`` with your agent."""
     async with (
         httpx2.AsyncClient(headers={"Authorization": f"Bearer {token}"}, timeout=600.0) as http,
         Client(streamable_http_client(url, http_client=http)) as client,
@@ -25,9 +25,9 @@ async def main(url: str, token: str) -> None:
             if not isinstance(task, dict) or "instruction" not in task:
                 break
             print(task["instruction"])
-            what = str(task["instruction"]).split()[2]
-            counted = await client.call_tool("count_objects", {"description": what, "view": "current"})
-            report = counted.structured_content
+            noun = str(task["instruction"]).split()[2]
+            reply = await client.call_tool("count_objects", {"description": noun, "view": "current"})
+            report = reply.structured_content
             number = report["result"]["count"] if isinstance(report, dict) and report["result"] else None
             await client.call_tool("answer", {"text": "I cannot tell." if number is None else f"I count {number}."})
 

@@ -15,7 +15,7 @@ class Orange(scope_ptz.Perception):
     skills = frozenset({"detect"})
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        began = perf_counter()
+        start_s = perf_counter()
         found = []
         if "cone" in description or "orange" in description:
             hsv = cv2.cvtColor(frame.image, cv2.COLOR_RGB2HSV)
@@ -24,7 +24,7 @@ class Orange(scope_ptz.Perception):
             found = [box for box in boxes[1:] if box[4] > 60]  # the first one is the background
         w, h = frame.width, frame.height
         boxes = tuple(Box(x_min=x / w, y_min=y / h, x_max=(x + dx) / w, y_max=(y + dy) / h) for x, y, dx, dy, _ in found)
-        return Detections(source=self.name, boxes=boxes, latency_s=perf_counter() - began)
+        return Detections(source=self.name, boxes=boxes, latency_s=perf_counter() - start_s)
 
     async def point(self, frame: Frame, description: str) -> Points:
         raise scope_ptz.PerceptionError("This backend only detects.")

@@ -5,7 +5,7 @@ from scope_ptz.contracts import CallTools, Decision, Finish, State, ToolCall
 
 
 class Patrol(scope_ptz.Planner):
-    """Visit all presets and count the objects that the instruction names. The history contains all calls, so it keeps no state."""
+    """A planner that counts objects at all presets. It needs no state of its own, because the history contains all calls."""
 
     name = "patrol"
 

@@ -1,9 +1,9 @@
-"""Give the camera tools to an agent of the framework Pydantic AI.
+"""Give the camera tools to a Pydantic AI agent.
 
     pip install 'pydantic-ai-slim[openai]'
     python pydantic_ai_agent.py --url http://localhost:8080/v1 --model qwen3.5-4b "Take a picture. What is on the road?"
 
-Without --url, the framework uses the environment variable OPENAI_BASE_URL, or OpenAI's server.
+Without --url, Pydantic AI uses the environment variable OPENAI_BASE_URL, or OpenAI's server.
 """
 
 import argparse
@@ -45,7 +45,7 @@ async def main() -> None:
     parser.add_argument("--model", required=True, help="the server's name for the model")
     parser.add_argument("--url", help="address of the model server")
     parser.add_argument("--camera", default="highway-works", help="a scene or another camera, as for scope_ptz.open")
-    parser.add_argument("--text-only", action="store_true", help="pass no pictures, for a model that accepts only text")
+    parser.add_argument("--text-only", action="store_true", help="send no pictures, for models that accept only text")
     options = parser.parse_args()
 
     key = os.environ.get("OPENAI_API_KEY", "none")  # local servers need no key

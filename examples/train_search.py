@@ -2,8 +2,8 @@
 
     python examples/train_search.py --minutes 10
 
-The policy computes each move from the detections with eight weights. Before training, it does not know in which direction to turn,
-where to look next, or when to submit. It needs no deep learning library: pip install "scope-ptz[gym]"
+The policy computes each move from the detections with eight weights. Before training, it does not know where to turn, where to
+look next, or when to submit. It needs no deep learning library: pip install "scope-ptz[gym]"
 """
 
 import argparse
@@ -15,8 +15,8 @@ from scope_ptz.gym import SearchEnv, SearchOutcome, search_score
 
 MAX_LOOKS = 12
 WEIGHTS = 8
-ELITE_SHARE, MIN_STD = 0.2, 0.05
-HELD_OUT_SEED = 1_000_000  # searches of the evaluation, which training never sees
+ELITE_FRACTION, MIN_STD = 0.2, 0.05
+HELD_OUT_SEED = 1_000_000  # evaluation uses seeds from here on, training uses smaller seeds
 
 
 class Policy:
@@ -44,18 +44,18 @@ def search(env, weights, seed):
 
     Successes are rare at first, so a search that ends with the target in view also gets a reward, which is greater near the centre.
     """
-    policy, ended = Policy(weights), False
+    policy, done = Policy(weights), False
     observation, info = env.reset(seed=seed)
-    while not ended:
+    while not done:
         observation, _, terminated, truncated, info = env.step(policy.act(observation))
-        ended = terminated or truncated
+        done = terminated or truncated
     found, x, y, *_ = observation["detection"]
     in_view = 0.3 * (1 - max(abs(x - 0.5), abs(y - 0.5))) if found else 0.0
     return SearchOutcome(info["success"], info["looks"]), info["score"] + in_view
 
 
 def evaluate(env, weights, episodes):
-    """Print the success, the looks and the score of held-out searches; return the score."""
+    """Print the success rate, the mean number of looks and the mean score of held-out searches. Return the mean score."""
     outcomes = [search(env, weights, HELD_OUT_SEED + number)[0] for number in range(episodes)]
     success = np.mean([outcome.success for outcome in outcomes])
     score = np.mean([search_score(outcome.success, outcome.looks, MAX_LOOKS) for outcome in outcomes])
@@ -67,10 +67,10 @@ def evaluate(env, weights, episodes):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--minutes", type=float, default=10.0)
-    parser.add_argument("--generations", type=int, default=1000, help="stop after this many, even if time is left")
+    parser.add_argument("--generations", type=int, default=1000, help="stop after this number of generations, even if time is left")
     parser.add_argument("--population", type=int, default=24)
-    parser.add_argument("--episodes", type=int, default=5, help="searches of each policy")
-    parser.add_argument("--held-out", type=int, default=50, help="searches of the evaluation")
+    parser.add_argument("--episodes", type=int, default=5, help="number of searches per policy")
+    parser.add_argument("--held-out", type=int, default=50, help="number of searches in the evaluation")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
 
@@ -84,7 +84,7 @@ def main():
         seeds = rng.integers(HELD_OUT_SEED, size=options.episodes).tolist()  # the same searches for all policies
         runs = [[search(env, weights, seed) for seed in seeds] for weights in policies]
         fitness = np.array([np.mean([value for _, value in run]) for run in runs])
-        elite = policies[np.argsort(fitness)[-max(2, round(ELITE_SHARE * options.population)) :]]
+        elite = policies[np.argsort(fitness)[-max(2, round(ELITE_FRACTION * options.population)) :]]
         mean, std = elite.mean(axis=0), np.maximum(elite.std(axis=0), MIN_STD)
         success = np.mean([outcome.success for run in runs for outcome, _ in run])
         print(

@@ -10,39 +10,39 @@ from pathlib import Path
 import pytest
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
-SMALLEST = {
+SMALL_WORKLOADS = {
     "plan_latency": ["--limit", "20"],
     "startup": ["--rounds", "1"],
 }
 
 
 def run(name: str, *arguments: str, folder: Path) -> str:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments],
         cwd=folder, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    assert result.returncode == 0, result.stderr
+    return result.stdout
 
 
 @pytest.mark.parametrize("name", ["plan_latency", pytest.param("startup", marks=pytest.mark.full)])
 def test_a_benchmark_prints_ratios(name: str, tmp_path: Path) -> None:
-    assert " x " in run(name, *SMALLEST[name], folder=tmp_path)
+    assert " x " in run(name, *SMALL_WORKLOADS[name], folder=tmp_path)
 
 
 # blender_engines runs inside Blender; reprojection starts it.
 @pytest.mark.parametrize(
-    "name", sorted(path.stem for path in BENCHMARKS.glob("*.py") if path.stem not in {*SMALLEST, "blender_engines"})
+    "name", sorted(path.stem for path in BENCHMARKS.glob("*.py") if path.stem not in {*SMALL_WORKLOADS, "blender_engines"})
 )
 def test_a_benchmark_can_be_imported_and_has_help(
     name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """In this process, because almost all that a new one would do is to import the program again."""
+    """The benchmark runs in this process, because a new process would spend most of its time on imports."""
     monkeypatch.setattr("sys.argv", [name, "--help"])
     monkeypatch.syspath_prepend(BENCHMARKS)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as excinfo:
         runpy.run_path(str(BENCHMARKS / f"{name}.py"), run_name="__main__")
-    assert ended.value.code == 0
+    assert excinfo.value.code == 0
     assert "usage:" in capsys.readouterr().out
 
 

@@ -39,8 +39,8 @@ def test_included_files_exist(page: Path) -> None:
 
 def test_every_page_is_in_the_index() -> None:
     index = (DOCS / "index.md").read_text(encoding="utf-8")
-    listed = set(re.findall(r"^[a-z][a-z/-]*$", index, flags=re.MULTILINE))
-    assert {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES} - {"index"} == listed
+    indexed = set(re.findall(r"^[a-z][a-z/-]*$", index, flags=re.MULTILINE))
+    assert {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES} - {"index"} == indexed
 
 
 def test_the_api_page_documents_every_public_name() -> None:

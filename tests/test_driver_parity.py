@@ -1,4 +1,4 @@
-"""The AXIS and ONVIF drivers do benchmark tasks as the simulated camera does in process."""
+"""Benchmark tasks have the same results with the AXIS and ONVIF drivers as with the simulated camera in process."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_ptz.camera.axis.camera import AxisCamera
 from scope_ptz.geometry import Pose
 
 PROGRAM = Path(__file__).parents[1] / "benchmarks" / "driver_parity.py"
-FEW = tuple(f"scope1-highway-works-{name}" for name in ("counting-010", "single-call-001", "location-011"))
+FEW_TASKS = tuple(f"scope1-highway-works-{name}" for name in ("counting-010", "single-call-001", "location-011"))
 """Tasks at one viewpoint: moves, a zoom, a count and a question."""
 
 
@@ -35,8 +35,8 @@ def parity() -> ModuleType:
 @pytest.mark.full
 @pytest.mark.anyio
 async def test_a_few_tasks_are_the_same_on_all_paths(parity: ModuleType) -> None:
-    measured = await parity.measure([task for task in load_split("core") if task.id in FEW])
-    assert {each.task for each in measured} == set(FEW)
+    measured = await parity.measure([task for task in load_split("core") if task.id in FEW_TASKS])
+    assert {each.task for each in measured} == set(FEW_TASKS)
     for each in measured:
         assert each.deviations() == []
         assert [run.perception for run in each.runs.values()] == ["ground-truth", *2 * ["simulation-only-truth"]]
@@ -47,13 +47,13 @@ async def test_a_few_tasks_are_the_same_on_all_paths(parity: ModuleType) -> None
 @pytest.mark.full
 @pytest.mark.parametrize(("split", "count"), [("core", 20), ("unseen", 6)])
 def test_a_sample_is_the_same_on_all_paths(split: str, count: int, tmp_path: Path) -> None:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-W", "error", str(PROGRAM), "--split", split, "--tasks", str(count)],
         cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False,
     )  # fmt: skip
-    assert done.returncode == 0, done.stdout
-    assert f"| axis | {count}/{count} (100.0%) | {count}/{count} (100.0%) | {count}/{count} (100.0%) |" in done.stdout
-    assert f"| onvif | {count}/{count} (100.0%) | {count}/{count} (100.0%) | {count}/{count} (100.0%) |" in done.stdout
+    assert result.returncode == 0, result.stdout
+    assert f"| axis | {count}/{count} (100.0%) | {count}/{count} (100.0%) | {count}/{count} (100.0%) |" in result.stdout
+    assert f"| onvif | {count}/{count} (100.0%) | {count}/{count} (100.0%) | {count}/{count} (100.0%) |" in result.stdout
 
 
 @pytest.mark.full
@@ -77,9 +77,9 @@ async def test_a_wrong_field_of_view_in_a_driver_is_a_deviation(parity: ModuleTy
 async def test_hundreds_of_core_tasks_stay_in_one_viewpoint_and_most_use_the_camera(parity: ModuleType) -> None:
     local = parity.tasks_in_one_viewpoint(load_split("core"))
     assert len(local) > 300
-    some = local[::12]
-    used = await parity.tasks_with_calls(some)
-    assert len(some) / 2 < len(used) < len(some)
+    sample = local[::12]
+    used = await parity.tasks_with_calls(sample)
+    assert len(sample) / 2 < len(used) < len(sample)
 
 
 @pytest.mark.parametrize(
@@ -99,9 +99,9 @@ async def test_hundreds_of_core_tasks_stay_in_one_viewpoint_and_most_use_the_cam
         ({"outcome": "camera_error"}, ["answer"]),
     ],
 )  # fmt: skip
-def test_every_deviation_is_named(parity: ModuleType, change: dict[str, Any], kinds: list[str]) -> None:
-    own = parity.PathRun([("adjust_ptz", {"pan_deg": 10.0})], "answered", "Four.", Pose(10, -5, 2), Timings(), "ground-truth")
-    measured = parity.TaskRuns("task", {"in process": own, "axis": own, "onvif": replace(own, **change)})
+def test_every_deviation_is_reported(parity: ModuleType, change: dict[str, Any], kinds: list[str]) -> None:
+    reference = parity.PathRun([("adjust_ptz", {"pan_deg": 10.0})], "answered", "Four.", Pose(10, -5, 2), Timings(), "ground-truth")
+    measured = parity.TaskRuns("task", {"in process": reference, "axis": reference, "onvif": replace(reference, **change)})
     found = measured.deviations()
     assert [(path, kind) for path, kind, _ in found] == [("onvif", kind) for kind in kinds]
     lines = "\n".join(parity.report([measured]))
@@ -109,7 +109,7 @@ def test_every_deviation_is_named(parity: ModuleType, change: dict[str, Any], ki
     assert all(f"- task, onvif, {kind}: " in lines for kind in kinds)
 
 
-def test_the_note_on_the_source_is_left_out_and_nothing_else(parity: ModuleType) -> None:
+def test_only_the_note_on_the_source_is_removed(parity: ModuleType) -> None:
     assert parity.without_source("I see 4. (Source: the simulator's ground truth.)") == "I see 4."
     assert parity.without_source("I panned (10 degrees).") == "I panned (10 degrees)."
 
@@ -126,26 +126,26 @@ def tracking(parity: ModuleType) -> ModuleType:
 
 @pytest.mark.full
 @pytest.mark.anyio
-async def test_moving_objects_are_followed_alike_on_all_paths(tracking: ModuleType) -> None:
+async def test_tracking_has_the_same_result_on_all_paths(tracking: ModuleType) -> None:
     compared = await tracking.compare(["highway-works"], objects=1, seconds=2)
     assert len(compared) == 3
     for each in compared:
         assert each.deviations() == []
-        looks = each.runs["in process"].looks
-        assert len(looks) >= 4 and looks[0].seen and sum(look.seen for look in looks) >= 3
-        assert looks[0].pose != looks[-1].pose
+        observations = each.runs["in process"].observations
+        assert len(observations) >= 4 and observations[0].seen and sum(observation.seen for observation in observations) >= 3
+        assert observations[0].pose != observations[-1].pose
 
 
-def test_every_deviation_in_tracking_is_named(tracking: ModuleType) -> None:
-    looks = (tracking.Look(0.0, Pose(10, -5, 2), True), tracking.Look(0.5, Pose(12, -5, 2), True))
-    own = tracking.Followed(looks, "Followed.", Pose(12, -5, 2))
+def test_every_deviation_in_tracking_is_reported(tracking: ModuleType) -> None:
+    observations = (tracking.Observation(0.0, Pose(10, -5, 2), True), tracking.Observation(0.5, Pose(12, -5, 2), True))
+    reference = tracking.ChaseRun(observations, "Followed.", Pose(12, -5, 2))
     chase = tracking.Chase("yard", "mast", Pose(10, -5, 2), 1.0, "track the van for 1 seconds")
-    compared = tracking.Compared(chase, {"in process": own, "axis": own, "onvif": own})
+    compared = tracking.ChaseComparison(chase, {"in process": reference, "axis": reference, "onvif": reference})
     assert compared.deviations() == []
     assert "No deviations." in tracking.report([compared])
-    late = replace(own, looks=(looks[0], replace(looks[1], seen=False)))
-    aside = replace(own, looks=(looks[0], replace(looks[1], pose=Pose(12.4, -5, 2))))
-    elsewhere, silent = replace(own, final=Pose(12, -4, 2)), replace(own, answer="Nothing.")
-    for wrong, words in ((late, "other times"), (aside, "look 1"), (elsewhere, "ends at"), (silent, "'Nothing.'")):
-        (found,) = tracking.Compared(chase, {"in process": own, "axis": own, "onvif": wrong}).deviations()
-        assert found.startswith("onvif: ") and words in found
+    late = replace(reference, observations=(observations[0], replace(observations[1], seen=False)))
+    aside = replace(reference, observations=(observations[0], replace(observations[1], pose=Pose(12.4, -5, 2))))
+    elsewhere, silent = replace(reference, final=Pose(12, -4, 2)), replace(reference, answer="Nothing.")
+    for wrong, text in ((late, "other times"), (aside, "observation 1"), (elsewhere, "ends at"), (silent, "'Nothing.'")):
+        (found,) = tracking.ChaseComparison(chase, {"in process": reference, "axis": reference, "onvif": wrong}).deviations()
+        assert found.startswith("onvif: ") and text in found

@@ -14,7 +14,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from tests.support.programs import started
+from tests.support.programs import start_program
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -53,31 +53,33 @@ def scope_commands(block: str) -> list[str]:
     ],
 )
 def test_commands_run(command: str, tmp_path: Path) -> None:
-    done = run(command, tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.strip()
+    result = run(command, tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.strip()
 
 
 @pytest.mark.full
 def test_benchmark_commands_run_one_after_the_other(tmp_path: Path) -> None:
     [block] = [block for block in COMMANDS if "scope bench" in block]
-    done = run("\n".join(scope_commands(block)), tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "rule-based" in done.stdout
+    result = run("\n".join(scope_commands(block)), tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "rule-based" in result.stdout
     assert (tmp_path / "report" / "index.html").is_file()
 
 
 @pytest.mark.full
-def test_transcript_shows_what_the_command_prints(tmp_path: Path) -> None:
+def test_the_transcript_matches_the_output(tmp_path: Path) -> None:
     [transcript] = TRANSCRIPTS
-    command, printed = transcript.removeprefix("$ ").split("\n", 1)
-    done = run(command, tmp_path)
-    assert done.returncode == 0, done.stderr
-    for shown in re.findall(r"^ +\d+  \w+ +\S+|\b\d+ of '\w+' in the \w+ view|pan -?\d+, tilt -?\d+", printed, flags=re.MULTILINE):
-        assert plain(shown) in plain(done.stdout)
-    answer = re.search(r"Answer:.*ground truth\.\)", printed, flags=re.DOTALL)
+    command, transcript_output = transcript.removeprefix("$ ").split("\n", 1)
+    result = run(command, tmp_path)
+    assert result.returncode == 0, result.stderr
+    for excerpt in re.findall(
+        r"^ +\d+  \w+ +\S+|\b\d+ of '\w+' in the \w+ view|pan -?\d+, tilt -?\d+", transcript_output, flags=re.MULTILINE
+    ):
+        assert plain(excerpt) in plain(result.stdout)
+    answer = re.search(r"Answer:.*ground truth\.\)", transcript_output, flags=re.DOTALL)
     assert answer is not None
-    assert plain(answer[0]) in plain(done.stdout)
+    assert plain(answer[0]) in plain(result.stdout)
     [folder] = (tmp_path / "runs").iterdir()
     assert (folder / "trace.jsonl").is_file()
     assert (folder / "filmstrip.png").is_file()
@@ -86,11 +88,11 @@ def test_transcript_shows_what_the_command_prints(tmp_path: Path) -> None:
 def test_python_example_runs(tmp_path: Path) -> None:
     [program] = PYTHON
     (tmp_path / "example.py").write_text(program, encoding="utf-8")
-    done = run(shlex.join([sys.executable, "example.py"]), tmp_path)
-    assert done.returncode == 0, done.stderr
-    stated = re.search(r"# (I can see \d+ cones)", program)
-    assert stated is not None
-    assert done.stdout.startswith(stated[1])
+    result = run(shlex.join([sys.executable, "example.py"]), tmp_path)
+    assert result.returncode == 0, result.stderr
+    expected_start = re.search(r"# (I can see \d+ cones)", program)
+    assert expected_start is not None
+    assert result.stdout.startswith(expected_start[1])
     assert (tmp_path / "filmstrip.png").is_file()
 
 
@@ -98,8 +100,8 @@ def test_python_example_runs(tmp_path: Path) -> None:
 def test_make_targets_exist(command: str) -> None:
     make = shutil.which("make")
     assert make is not None
-    done = subprocess.run([make, "--dry-run", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run([make, "--dry-run", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
 
 
 def test_the_demo_is_the_transcript() -> None:
@@ -126,14 +128,14 @@ def test_network_camera_commands_run(tmp_path: Path) -> None:
     assert len(commands) == 2
     serve = [sys.executable, "-m", "scope_ptz.cli", "camera", "serve", "--scene", "highway-works", "--port", "0", "--json"]
     serve += ["--rtsp-port", "0", "--user", "operator:operator", "--no-prefetch"]
-    with started(serve, stdout=subprocess.PIPE) as server:
+    with start_program(serve, stdout=subprocess.PIPE) as server:
         assert server.stdout is not None
-        served = json.loads(server.stdout.readline())
-        address = served["cameras"][0]["url"].removeprefix("http://")
-        password = served["passwords"]["operator"]
+        description = json.loads(server.stdout.readline())
+        address = description["cameras"][0]["url"].removeprefix("http://")
+        password = description["passwords"]["operator"]
         picture = f"http://{address}/axis-cgi/jpg/image.cgi"  # the first one takes long, because the scene is read
         httpx2.get(picture, auth=httpx2.DigestAuth("operator", password), timeout=300).raise_for_status()
         for command in commands:
             script = f"export SCOPE_CAMERA_PASSWORD={password}\n{command}".replace("10.0.0.7", address)
-            done = run(script, tmp_path)
-            assert done.returncode == 0, done.stderr
+            result = run(script, tmp_path)
+            assert result.returncode == 0, result.stderr

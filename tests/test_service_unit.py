@@ -1,4 +1,4 @@
-"""The systemd unit in the documentation: systemd accepts it, and its command and settings are SCOPE's."""
+"""The systemd unit in the documentation: systemd accepts it, and its command, options and settings exist."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TEXT = UNIT.read_text(encoding="utf-8")
 
 @pytest.fixture
 def service() -> dict[str, str]:
-    """The options of the service. The values of one that occurs several times are joined by newlines."""
+    """Return the options of the service. The values of a repeated option are joined by newlines."""
     found: dict[str, str] = {}
     section = TEXT.partition("[Service]\n")[2].partition("\n[")[0]
     for line in section.splitlines():
@@ -28,16 +28,16 @@ def service() -> dict[str, str]:
     return found
 
 
-def test_it_starts_the_console_with_options_that_exist(service: dict[str, str]) -> None:
+def test_the_unit_starts_the_console_with_existing_options(service: dict[str, str]) -> None:
     program, command, *options = shlex.split(service["ExecStart"])
     assert Path(program).name == "scope"
     assert command == "console"
-    done = subprocess.run([sys.executable, "-m", "scope_ptz.cli", command, "--help"], capture_output=True, text=True, check=True)
+    result = subprocess.run([sys.executable, "-m", "scope_ptz.cli", command, "--help"], capture_output=True, text=True, check=True)
     for option in options:
-        assert not option.startswith("--") or option in done.stdout
+        assert not option.startswith("--") or option in result.stdout
 
 
-def test_its_settings_are_known_and_no_secret_is_in_it(service: dict[str, str]) -> None:
+def test_settings_are_known_and_contain_no_secret(service: dict[str, str]) -> None:
     variables = dict(line.split("=", 1) for line in service["Environment"].splitlines())
     known = {f"SCOPE_{name.upper()}" for name in ScopeSettings.model_fields}
     assert set(variables) - known == {"HOME"}
@@ -47,27 +47,27 @@ def test_its_settings_are_known_and_no_secret_is_in_it(service: dict[str, str]) 
     assert service["EnvironmentFile"].startswith("-/etc/")
 
 
-def test_it_ends_as_ctrl_c_ends_the_console(service: dict[str, str]) -> None:
+def test_the_unit_stops_the_console_like_ctrl_c(service: dict[str, str]) -> None:
     assert service["KillSignal"] == "SIGINT"
     assert service["SuccessExitStatus"] == "130"
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
-def test_systemd_accepts_it(tmp_path: Path, service: dict[str, str]) -> None:
+def test_systemd_accepts_the_unit(tmp_path: Path, service: dict[str, str]) -> None:
     # The program and the user of a real installation do not exist here.
     program = shutil.which("true")
     text = TEXT.replace(shlex.split(service["ExecStart"])[0], str(program)).replace("=scope\n", "=daemon\n", 2)
     unit = tmp_path / UNIT.name
     unit.write_text(text)
-    done = subprocess.run(
+    result = subprocess.run(
         ["systemd-analyze", "verify", "--man=no", str(unit)],  # noqa: S607
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    problems = [line for line in done.stderr.splitlines() if UNIT.name in line]
-    assert (done.returncode, problems) == (0, []), done.stderr
+    problems = [line for line in result.stderr.splitlines() if UNIT.name in line]
+    assert (result.returncode, problems) == (0, []), result.stderr
     unit.write_text(text.replace("KillSignal=SIGINT", "KillSignal=SIGNOTHING"))
     wrong = subprocess.run(
         ["systemd-analyze", "verify", "--man=no", str(unit)],  # noqa: S607
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    assert "SIGNOTHING" in wrong.stderr, "this systemd does not check what it reads"
+    assert "SIGNOTHING" in wrong.stderr, "this version of systemd does not validate values"

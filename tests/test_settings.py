@@ -11,7 +11,7 @@ from scope_ptz.settings import ScopeSettings, load_settings
 
 
 @pytest.fixture(autouse=True)
-def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+def clear_variables(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ScopeSettings.model_fields:
         monkeypatch.delenv(f"SCOPE_{name.upper()}", raising=False)
 
@@ -40,6 +40,6 @@ def test_a_wrong_value_names_its_variable(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 class Numbered(ScopeSettings):
-    """Settings with a field that can be wrong; every text is right for the real ones."""
+    """Settings with an integer field, because any text is valid for the real fields."""
 
     attempts: int = 1

@@ -1,4 +1,4 @@
-"""Clients that give instructions, that stop cameras, and that try to move cameras of others."""
+"""Clients that give instructions, stop cameras, and try to move cameras that others control."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Observations:
     problems: list[str] = field(default_factory=list)
 
 
-async def converse(seen: Observations, url: str, camera: str, ended: asyncio.Event) -> None:
+async def converse(observations: Observations, url: str, camera: str, ended: asyncio.Event) -> None:
     """Give one instruction after another, and follow each run to its end."""
     async with httpx2.AsyncClient(base_url=url, headers={"Scope-Client": f"talk-{camera}"}, trust_env=False, timeout=120) as client:
         conversation = (await client.post("/conversations", json={"camera": camera})).json()["id"]
@@ -54,11 +54,11 @@ async def converse(seen: Observations, url: str, camera: str, ended: asyncio.Eve
             if reply.status_code == 409 and reply.json()["error"]["code"] == "stopped":
                 continue
             if reply.status_code != 202:
-                seen.problems.append(f"{camera}: {instruction}: {reply.status_code} {reply.text[:200]}")
+                observations.problems.append(f"{camera}: {instruction}: {reply.status_code} {reply.text[:200]}")
                 await asyncio.sleep(1.0)
                 continue
             run = reply.json()["id"]
-            seen.runs[run] = await follow(client, run)
+            observations.runs[run] = await follow(client, run)
             await asyncio.sleep(0.5)
 
 
@@ -75,20 +75,20 @@ async def follow(client: httpx2.AsyncClient, run: str) -> tuple[int, str]:
     return calls, outcome
 
 
-async def stop_often(seen: Observations, url: str, cameras: tuple[str, ...], ended: asyncio.Event) -> None:
+async def stop_often(observations: Observations, url: str, cameras: tuple[str, ...], ended: asyncio.Event) -> None:
     """Stop one camera after another, regardless of who controls it."""
     async with httpx2.AsyncClient(base_url=url, headers={"Scope-Client": "stopper"}, trust_env=False, timeout=30) as client:
         for camera in itertools.cycle(cameras):
             sent_s, began_s = time.time(), time.perf_counter()
             reply = await client.post(f"/cameras/{camera}/stop")
-            seen.stops.append((sent_s, time.perf_counter() - began_s))
+            observations.stops.append((sent_s, time.perf_counter() - began_s))
             if reply.status_code != 204:
-                seen.problems.append(f"stop: {reply.status_code} {reply.text[:200]}")
+                observations.problems.append(f"stop: {reply.status_code} {reply.text[:200]}")
             if await wait_for_end(ended, STOP_EVERY_S):
                 return
 
 
-async def intrude(seen: Observations, url: str, cameras: tuple[str, ...], ended: asyncio.Event) -> None:
+async def intrude(observations: Observations, url: str, cameras: tuple[str, ...], ended: asyncio.Event) -> None:
     """Try to move cameras that a conversation controls."""
     async with httpx2.AsyncClient(base_url=url, headers={"Scope-Client": "intruder"}, trust_env=False, timeout=30) as client:
         for camera in itertools.cycle(cameras):
@@ -97,7 +97,7 @@ async def intrude(seen: Observations, url: str, cameras: tuple[str, ...], ended:
             if (await client.get(f"/cameras/{camera}/control")).json()["holder"] is None:
                 continue  # its conversation has not begun
             status = (await client.post(f"/cameras/{camera}/move", json={"pan_deg": 90.0})).status_code
-            seen.intruders[status] = seen.intruders.get(status, 0) + 1
+            observations.intruders[status] = observations.intruders.get(status, 0) + 1
 
 
 async def wait_for_end(ended: asyncio.Event, seconds: float) -> bool:

@@ -1,4 +1,4 @@
-"""A run of the load benchmark: the server, all clients at the same time, and the results."""
+"""A run of the load benchmark, with the server and all clients at the same time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ VIEWERS = (("socket", 0), ("socket", 1), ("socket", 2), ("socket", 0), ("mjpeg",
 
 SAMPLE_S = 2.0  # time between two samples of the server's resources
 START_S = 15.0
-"""Maximum time in seconds at the start that is not counted. In this time, the server reads scenes and Chromium starts."""
+"""Seconds at the start of the run that are not counted, because the server reads scenes and Chromium starts."""
 
 CLOSE_S = 20.0  # maximum time until connections of disconnected clients are closed
 
@@ -46,7 +46,7 @@ class Load:
         self._viewers = [Viewer(f"{kind} {k + 1}: {cameras[number]}") for k, (kind, number) in enumerate(VIEWERS)]
         self._browser = Viewer(f"Chromium: {cameras[0]}")
         self._clicks = Clicks()
-        self._seen = Observations()
+        self._observations = Observations()
         self._samples: list[tuple[float, dict[str, float]]] = []
 
     def run(self, seconds: float) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Load:
             self._run_clients(console, start_s + seconds)
             end_s, delays_s = time.time(), delays.end()
             left_over = {"sockets": leaked_sockets(console, before["sockets"])}
-            stored = self._stored(console)
+            stored = self._compare_with_store(console)
         finally:
             code = console.end()
         counted_s = start_s + min(START_S, seconds / 3)
@@ -78,18 +78,18 @@ class Load:
             loop.call_soon_threadsafe(ended.set)
             clients.join(120)
         if clients.is_alive():
-            self._seen.problems.append("Some clients did not end within 120 s.")
+            self._observations.problems.append("Some clients did not end within 120 s.")
 
     async def _clients(self, console: Console, ended: asyncio.Event) -> None:
-        url, cameras, seen = console.url, self._cameras, self._seen
-        work = [converse(seen, url, camera, ended) for camera in cameras]
-        work += [stop_often(seen, url, cameras, ended), intrude(seen, url, cameras, ended)]
+        url, cameras, observations = console.url, self._cameras, self._observations
+        work = [converse(observations, url, camera, ended) for camera in cameras]
+        work += [stop_often(observations, url, cameras, ended), intrude(observations, url, cameras, ended)]
         for viewer, (kind, number) in zip(self._viewers, VIEWERS, strict=True):
             watch = watch_socket if kind == "socket" else watch_mjpeg
             work.append(self._run_viewer(viewer, watch(viewer, f"{url}/cameras/{cameras[number]}", ended)))
         for failure in await asyncio.gather(*work, return_exceptions=True):
             if isinstance(failure, BaseException):
-                seen.problems.append(f"{type(failure).__name__}: {failure}")
+                observations.problems.append(f"{type(failure).__name__}: {failure}")
 
     async def _run_viewer(self, viewer: Viewer, work: Any) -> None:
         try:
@@ -110,30 +110,30 @@ class Load:
             self._clicks.stop(page)
             self._clicks.read(page, self._browser)
 
-    def _stored(self, console: Console) -> dict[str, Any]:
+    def _compare_with_store(self, console: Console) -> dict[str, Any]:
         """Compare the stored runs with the observations of the clients, and record differences as problems."""
         outcomes: dict[str, int] = {}
         with httpx2.Client(base_url=console.url, trust_env=False, timeout=60) as client:
-            for run, (calls, outcome) in self._seen.runs.items():
+            for run, (calls, outcome) in self._observations.runs.items():
                 while (reply := client.get(f"/runs/{run}/details")).status_code == 429:  # hundreds of runs exceed the rate limit
                     time.sleep(max(0.5, float(reply.headers.get("Retry-After", 1.0))))
                 stored = reply.raise_for_status().json()
                 if (stored["run"]["outcome"], len(stored["steps"])) != (outcome, calls):
-                    self._seen.problems.append(f"{run}: {outcome}, {calls} calls seen; stored: {stored['run']}")
+                    self._observations.problems.append(f"{run}: {outcome}, {calls} calls seen; stored: {stored['run']}")
                 outcomes[outcome] = outcomes.get(outcome, 0) + 1
-        return {"runs": outcomes, "problems": self._seen.problems, "intruders": self._seen.intruders}
+        return {"runs": outcomes, "problems": self._observations.problems, "intruders": self._observations.intruders}
 
     def _figures(self, counted_s: float, end_s: float) -> dict[str, Any]:
         viewers = [*self._viewers, *([self._browser] if self._with_browser else [])]
         counted = [(at, figures) for at, figures in self._samples if at >= counted_s] or self._samples[-1:]
         memory = [figures["anonymous_mb"] for _, figures in counted]  # other memory is mapped files, which the kernel can drop
         third = max(1, len(memory) // 3)
-        at_start = [took_s for sent_s, took_s in self._seen.stops if sent_s < counted_s]
+        at_start = [took_s for sent_s, took_s in self._observations.stops if sent_s < counted_s]
         (first_s, first), (last_s, last) = counted[0], counted[-1]
         return {
             "counted_seconds": end_s - counted_s,
             "viewers": {each.name: each.results(counted_s, end_s) for each in viewers},
-            "stop_s": quantiles([took_s for sent_s, took_s in self._seen.stops if sent_s >= counted_s]),
+            "stop_s": quantiles([took_s for sent_s, took_s in self._observations.stops if sent_s >= counted_s]),
             "stop_at_start_s": quantiles(at_start) if at_start else None,
             "button": self._clicks.results() if self._with_browser else None,
             "memory_mb": {
@@ -156,7 +156,7 @@ def progress(elapsed_s: float, figures: dict[str, float]) -> str:
 
 
 def leaked_sockets(console: Console, before: float) -> float:
-    """Return how many sockets beyond ``before`` the server still has open when it has closed them, or after ``CLOSE_S``."""
+    """Return the number of sockets beyond ``before`` that the server has not closed within ``CLOSE_S``."""
     deadline_s = time.monotonic() + CLOSE_S
     while (leaked := console.sample()["sockets"] - before) > 0 and time.monotonic() < deadline_s:
         time.sleep(0.2)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from console_clients.console_process import Console
     from console_clients.viewers import Viewer
 
-ANSWER_S = 5.0
+PAGE_TIMEOUT_S = 5.0
 """Maximum time in seconds for a click on the page, or for reading its records. If it takes longer, it counts as a failure."""
 
 WATCH_PAGE = """
@@ -78,10 +78,10 @@ def read_page(page: Page) -> dict[str, list[list[float]]]:
     """Return the records of ``WATCH_PAGE`` since the last call.
 
     Raises:
-        playwright.sync_api.TimeoutError: The page did not answer within ``ANSWER_S``.
+        playwright.sync_api.TimeoutError: The page did not answer within ``PAGE_TIMEOUT_S``.
     """
     # Unlike evaluate(), wait_for_function() has a time limit.
-    records: dict[str, list[list[float]]] = page.wait_for_function(TAKE_RECORDS, timeout=1000 * ANSWER_S).json_value()
+    records: dict[str, list[list[float]]] = page.wait_for_function(TAKE_RECORDS, timeout=1000 * PAGE_TIMEOUT_S).json_value()
     return records
 
 
@@ -100,12 +100,12 @@ class Clicks:
     failures: list[str] = field(default_factory=list)
 
     def stop(self, page: Page) -> None:
-        """Click the stop button. If it cannot be clicked within ``ANSWER_S``, record the reason."""
+        """Click the stop button. If it cannot be clicked within ``PAGE_TIMEOUT_S``, record the reason."""
         from playwright.sync_api import TimeoutError as PlaywrightTimeoutError
 
         began_s = time.perf_counter()
         try:
-            page.locator(".stop").click(timeout=1000 * ANSWER_S)
+            page.locator(".stop").click(timeout=1000 * PAGE_TIMEOUT_S)
             self.taken_s.append(time.perf_counter() - began_s)
         except PlaywrightTimeoutError as error:
             self.failures.append(reason(str(error)))
@@ -117,7 +117,7 @@ class Clicks:
         try:
             records = read_page(page)
         except PlaywrightTimeoutError:
-            self.failures.append(f"The page's scripts did not run for {ANSWER_S:g} s.")
+            self.failures.append(f"The page's scripts did not run for {PAGE_TIMEOUT_S:g} s.")
             return
         self.replies += records["stops"]
         viewer.arrivals_s += [at for at, _, _ in records["drawn"]]

@@ -27,9 +27,9 @@ def run_camera(scene: str) -> int:
     end_time_s = time.monotonic() + END_S
     while (after := counts())["threads"] > before["threads"] and time.monotonic() < end_time_s:
         time.sleep(0.05)
-    left = {name: after[name] - before[name] for name in ("threads", "sockets")}
+    leaked = {name: after[name] - before[name] for name in ("threads", "sockets")}
     names = sorted(thread.name for thread in threading.enumerate())
-    print(json.dumps({"left_over": left, "threads": names}), flush=True)
+    print(json.dumps({"left_over": leaked, "threads": names}), flush=True)
     return 0
 
 
@@ -92,14 +92,14 @@ class Camera:
         assert self._process.stdin is not None
         self._process.stdin.close()
         line = self._line()
-        left: dict[str, int] = line["left_over"]
-        if left["threads"]:
+        leaked: dict[str, int] = line["left_over"]
+        if leaked["threads"]:
             print(f"Leaked threads: {line['threads']}", file=sys.stderr)
         assert self._process.stdout is not None
         self._process.stdout.close()
         if self._process.wait(timeout=60):
             raise SystemExit(f"The camera process exited with code {self._process.returncode}.")
-        return left
+        return leaked
 
     def _line(self) -> dict[str, Any]:
         assert self._process.stdout is not None

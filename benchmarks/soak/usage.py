@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import ClassVar
 
-# Our names of memory sizes, and those in /proc/self/status.
+# Memory sizes by the name in the results, with the name in /proc/self/status.
 STATUS = {"memory_mb": "VmRSS", "anonymous_mb": "RssAnon", "files_mb": "RssFile"}
 
 

@@ -1,4 +1,4 @@
-"""The bodies of moving actors, which are built on first use and placed on their paths at a given time."""
+"""Build the bodies of moving actors on first use, and place them on their paths at a given time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from scope_studio.kit.core.stage import INSTANCE_PROP, ActorPath, Built, Stage
 
 GAIT_PHASES = 8
-"""Number of bodies that are built for a walking actor, one for each phase of its gait."""
+"""Maximum number of bodies that are built for a walking actor. Each shows one phase of its gait."""
 
 
 class ActorBodies:
@@ -33,7 +33,7 @@ class ActorBodies:
             for obj in built.objects:
                 obj[INSTANCE_PROP] = actor.id
                 obj.pass_index = actor.number
-            show(built, False)
+            set_visible(built, False)
             self._bodies[key] = built
         return self._bodies[key]
 
@@ -46,24 +46,24 @@ class ActorBodies:
         t = time_s % actor.period_s
         if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
             return None
-        position, bearing_deg, walked_m = along(actor, t)
+        position, bearing_deg, walked_m = position_at(actor, t)
         if phase is None:
             phase = (walked_m / actor.stride_m) % 1.0 if actor.stride_m else 0.0
         built = self.body(actor, phase)
         self._stage.put(built, position, bearing_deg)
-        show(built, True)
+        set_visible(built, True)
         return built
 
     @contextmanager
     def show_at(self, time_s: float) -> Iterator[None]:
-        """While the context is active, show every actor that is in the scene at the given time."""
+        """Show every actor that is in the scene at a time, while the context is active."""
         shown = [built for actor in self._stage.actors if (built := self.place(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
             yield
         finally:
             for built in shown:
-                show(built, False)
+                set_visible(built, False)
 
     def size_m(self, actor: ActorPath) -> tuple[float, float, float]:
         """Return the width, length and height of the actor's body in metres."""
@@ -75,24 +75,24 @@ class ActorBodies:
         return float(2 * reach[0]), float(2 * reach[1]), float(corners[:, 2].max())
 
 
-def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
+def position_at(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
     """Return the actor's position (m), bearing (degrees) and distance walked (m) at a time on its path."""
-    walked = 0.0
+    walked_m = 0.0
     last = len(actor.waypoints) - 2
     for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
-        length = math.dist(a[1:], b[1:])
+        length_m = math.dist(a[1:], b[1:])
         if t <= b[0] or k == last:
             fraction = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
             x, y, z = (a[i] + (b[i] - a[i]) * fraction for i in (1, 2, 3))
-            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * fraction
-        walked += length
+            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked_m + length_m * fraction
+        walked_m += length_m
     raise ValueError(f"the path of {actor.id} must have at least two waypoints")
 
 
-def show(built: Built, on: bool) -> None:
+def set_visible(built: Built, visible: bool) -> None:
     """Show or hide the objects of ``built`` in renders.
 
     The viewport's visibility flag stays on, because Cycles does not export objects that are hidden in the viewport.
     """
     for obj in built.objects:
-        obj.hide_render = not on
+        obj.hide_render = not visible

@@ -1,4 +1,4 @@
-"""Open a user's .blend file without running scripts that it contains, and read its cameras."""
+"""Open a user's .blend file without running its scripts, and read its cameras."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
 
     Returns:
         A description of the file and its cameras as plain data, and the cameras as viewpoints. A camera's title is its name in the
-        file, and its name is the same in kebab case.
+        file, and its name is the title in kebab case.
 
     Raises:
         ValueError: The scene of the file has no camera.
@@ -54,14 +54,14 @@ def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
 
 
 def set_time(time_s: float) -> None:
-    """Set the file's animation to a time in seconds after its first frame."""
+    """Set the animation to a time in seconds after the first frame."""
     scene = bpy.context.scene
     frame = scene.frame_start + time_s * scene.render.fps / scene.render.fps_base
     scene.frame_set(math.floor(frame), subframe=frame - math.floor(frame))
 
 
 def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
-    """Describe a camera of the file."""
+    """Return the description of a camera as plain data."""
     matrix = camera.matrix_world
     axes = matrix.to_3x3().normalized()
     bearing, tilt = _pan_tilt(axes @ Vector((0.0, 0.0, -1.0)))

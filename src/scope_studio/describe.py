@@ -1,4 +1,4 @@
-"""Describe a scene as plain data. ``scene.json`` is written from this description."""
+"""Describe a scene as plain data, which is written to ``scene.json``."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
 
 
 def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Describe an instance with its bounding box in world coordinates."""
+    """Return the description of an instance, with its bounding box in world coordinates."""
     points = np.concatenate([_world_points(o, depsgraph, cache) for o in instance.built.objects])
     if len(points) == 0:
         raise ValueError(
@@ -100,7 +100,7 @@ def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: 
 
 
 def _texts(instance: Instance) -> list[dict[str, Any]]:
-    """Describe the texts of an instance in world coordinates."""
+    """Return the descriptions of the texts on an instance, in world coordinates."""
     matrix = instance.built.root.matrix_world
     scale = matrix.to_scale()[0]
     turn = matrix.to_quaternion()

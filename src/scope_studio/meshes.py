@@ -1,4 +1,4 @@
-"""Export the triangles of all annotated instances, from which their whole silhouettes are computed, including hidden parts."""
+"""Export the triangles of all annotated instances, to compute complete silhouettes that include hidden parts."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def write(stage: Stage, out: Path) -> None:
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     arrays: dict[str, np.ndarray] = {}
-    known: dict[str, int] = {}
-    uses: list[tuple[int, int]] = []
+    mesh_numbers: dict[str, int] = {}
+    placements: list[tuple[int, int]] = []
     matrices: list[np.ndarray] = []
     for instance in stage.instances:
         for obj in instance.built.objects:
@@ -28,13 +28,13 @@ def write(stage: Stage, out: Path) -> None:
                 continue
             key = obj.data.name_full if not obj.modifiers else f"object {obj.name_full}"
             evaluated = obj.evaluated_get(depsgraph)
-            if key not in known:
-                known[key] = len(known)
+            if key not in mesh_numbers:
+                mesh_numbers[key] = len(mesh_numbers)
                 vertices, triangles = _triangles(evaluated)
-                arrays[f"vertices-{known[key]}"], arrays[f"triangles-{known[key]}"] = vertices, triangles
-            uses.append((instance.number, known[key]))
+                arrays[f"vertices-{mesh_numbers[key]}"], arrays[f"triangles-{mesh_numbers[key]}"] = vertices, triangles
+            placements.append((instance.number, mesh_numbers[key]))
             matrices.append(np.array(evaluated.matrix_world))
-    np.savez(out, uses=np.array(uses, dtype=np.int32).reshape(-1, 2), matrices=np.array(matrices).reshape(-1, 4, 4), **arrays)
+    np.savez(out, uses=np.array(placements, dtype=np.int32).reshape(-1, 2), matrices=np.array(matrices).reshape(-1, 4, 4), **arrays)
 
 
 def _triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Operations of the worker. Each takes and returns plain JSON values; images are written to files."""
+"""Operations of the worker. They take and return JSON values, and write images to files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,11 @@ class Studio:
 
     @property
     def stage(self) -> Stage:
-        """The stage of the loaded scene. Raises RuntimeError if no scene is loaded."""
+        """The stage of the loaded scene.
+
+        Raises:
+            RuntimeError: No scene is loaded.
+        """
         if self._stage is None:
             raise RuntimeError("no scene is loaded; request load_scene first")
         return self._stage
@@ -108,7 +112,7 @@ class Studio:
         )
 
     def _show_actors(self, time_s: float | None) -> AbstractContextManager[None]:
-        """While the context is active, show the moving actors at a scene time. Without a time, no actor is built."""
+        """Show the moving actors at a scene time while the context is active. If the time is None, build no actor."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
         return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.show_at(time_s)

@@ -1,4 +1,4 @@
-"""Render views from the optical centre of a viewpoint with Cycles: denoised images, and exact instance numbers with distances."""
+"""Render views from a viewpoint with Cycles: denoised images, instance numbers and distances."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np
 
 
 def _ray_lengths(projection: dict[str, float]) -> np.ndarray:
-    """Return, for each pixel, the distance along its ray per metre along the optical axis, as an array (H, W)."""
+    """Return an array (H, W) with the distance along each pixel's ray per metre along the optical axis."""
     width, height = int(projection["width"]), int(projection["height"])
     focal = width / 2 / math.tan(math.radians(projection["hfov_deg"]) / 2)
     x = (np.arange(width) + 0.5 - width / 2) / focal
@@ -98,10 +98,10 @@ def use_gpu() -> str | None:
         except TypeError:  # this build of Blender has no such interface
             continue
         cycles.refresh_devices()
-        cards = [device for device in cycles.devices if device.type == interface]
-        if cards:
+        gpus = [device for device in cycles.devices if device.type == interface]
+        if gpus:
             for device in cycles.devices:
-                device.use = device in cards
+                device.use = device in gpus
             bpy.context.scene.cycles.device = "GPU"
             return str(interface)
     return None
@@ -145,7 +145,7 @@ def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, s
 
 
 def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
-    """Return the object that is used as the camera, and create it on first use."""
+    """Return the camera object, which is created on first use."""
     name = "scope camera"
     existing = bpy.data.objects.get(name)
     if existing is None:
@@ -163,7 +163,11 @@ def _passes(on: bool) -> None:
 
 
 def _render(scene: bpy.types.Scene, out: Path) -> None:
-    """Render a still image to ``out``. Raises RuntimeError if Blender writes no file."""
+    """Render a still image to ``out``.
+
+    Raises:
+        RuntimeError: Blender wrote no file.
+    """
     scene.render.use_file_extension = False
     scene.render.filepath = str(out)
     bpy.ops.render.render(write_still=True)

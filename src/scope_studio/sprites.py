@@ -1,4 +1,4 @@
-"""Render sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
+"""Render the sprites of a moving actor. A sprite shows only its body and the shadow that it casts on flat ground."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from scope_studio import render
-from scope_studio.actor_bodies import ActorBodies, show
+from scope_studio.actor_bodies import ActorBodies, set_visible
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 GROUND_M = 60.0
@@ -31,7 +31,7 @@ def render_frames(
     """Render one sprite for each frame.
 
     A frame is a dict with ``time_s``, ``phase``, ``position_m`` and ``projection``. Frame k is written as ``k.png`` (RGBA) and
-    ``k.npz`` (distances). Frames that exist already are skipped.
+    ``k.npz`` (distances). Existing frames are skipped.
     """
     actor = next(a for a in stage.actors if a.id == actor_id)
     with _shadow_plane() as ground:
@@ -52,13 +52,13 @@ def render_frames(
                 with partial.open("wb") as file:
                     np.savez(file, depth=np.where(ids == actor.number, depth, 0).astype(np.float32))
                 partial.replace(picture.with_suffix(".npz"))
-                show(built, False)
+                set_visible(built, False)
             progress(k + 1, len(frames))
 
 
 @contextmanager
 def _shadow_plane() -> Iterator[bpy.types.Object]:
-    """While the context is active, hide every visible object. Yield a plane that receives shadows."""
+    """Hide every visible object while the context is active, and yield a plane that receives shadows."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:
         obj.hide_render = True

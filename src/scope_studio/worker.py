@@ -1,7 +1,7 @@
-"""Worker process inside Blender: reads requests as JSON lines from stdin, executes them, and writes replies as JSON lines.
+"""The worker process inside Blender, which reads requests from stdin and writes replies. Both are JSON lines.
 
 Run this file by its path, either with a Python that has ``bpy`` or as ``blender --background --python worker.py``. Every reply
-starts with ``MARK``, so that the main program can distinguish it from output of Blender. Blender's output goes to stderr.
+starts with ``MARK``, so that the main program can distinguish replies from output of Blender, which goes to stderr.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def register_packages() -> None:
     """Make ``scope_studio`` and ``scope_ptz`` importable without adding their parent folder to ``sys.path``.
 
     The parent folder is not added because it may contain packages that conflict with Blender's packages, such as another version of
-    NumPy. The packages' ``__init__`` modules are not executed: that of ``scope_ptz`` imports packages that Blender's Python does
-    not have, and only the ``geometry`` package is needed here.
+    NumPy. The packages' ``__init__`` modules are not executed, because that of ``scope_ptz`` imports packages that Blender's Python
+    does not have. The worker needs only ``scope_ptz.geometry``.
     """
     for name in ("scope_studio", "scope_ptz"):
         home = Path(__file__).resolve().parents[1] / name
@@ -57,7 +57,7 @@ class Channel:
             self._number = request["id"]
             try:
                 result = operations[request["op"]](**request["params"])
-            except Exception as error:  # every failure in Blender is reported to the caller
+            except Exception as error:  # report every failure in Blender to the caller
                 traceback.print_exc()
                 self.send({"id": self._number, "error": f"{type(error).__name__}: {error}"})
             else:

@@ -1,4 +1,4 @@
-"""A deliberate fake of the Blender side: the add-on's own connection, with a scene that is computed instead of drawn."""
+"""A deliberate fake of the Blender side: the add-on's own connection, with a scene that is computed instead of rendered."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class FakeBlender:
         self.requests: list[Request] = []
         self.version = 1
         self.broken = ""
-        """The reason why pictures fail; empty if they do not."""
+        """The error message of every picture; empty if pictures do not fail."""
         self.link = CameraLink(parse_address(url, token), CAMERA, client, self.describe())
         self._stopping = threading.Event()
         self._main = threading.Thread(target=self._work, daemon=True)

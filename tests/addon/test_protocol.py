@@ -69,7 +69,7 @@ def test_pictures_are_valid_png_files() -> None:
     decoded = cv2.imdecode(np.frombuffer(png_of_rgba(pixels.tobytes(), 7, 5), np.uint8), cv2.IMREAD_UNCHANGED)
     assert decoded is not None
     assert np.array_equal(decoded[::-1, :, ::-1], pixels[..., :3]), "the GPU stores the bottom row first"
-    with pytest.raises(ValueError, match="four channels"):
+    with pytest.raises(ValueError, match="RGBA pixels need"):
         png_of_rgba(b"abc", 7, 5)
 
 
@@ -80,7 +80,7 @@ def test_views_have_the_axes_of_the_cameras(bearing_deg: float, tilt_deg: float)
     assert bearing_tilt_deg(ahead, up) == pytest.approx((bearing_deg, tilt_deg))
 
 
-def test_a_glide_turns_the_shorter_way_and_ends_exactly() -> None:
+def test_a_smooth_move_turns_the_shorter_way_and_ends_exactly() -> None:
     start, end = (View("gate", (0.0, 0.0, 0.0), bearing, tilt, 60.0) for bearing, tilt in ((350.0, 0.0), (10.0, 8.0)))
     assert start.interpolate(end, 0.5).bearing_deg % 360 == pytest.approx(0.0)
     assert start.interpolate(end, 0.5).tilt_deg == pytest.approx(4.0)
@@ -112,22 +112,22 @@ def test_wrong_sizes_are_refused(wrong: dict[str, Any]) -> None:
         parse_size(wrong)
 
 
-def follow(asking: InstructionRun) -> list[RunEvent]:
-    """Return the news of a run until it ends."""
+def follow(instruction: InstructionRun) -> list[RunEvent]:
+    """Return the events of a run until it ends."""
     events: list[RunEvent] = []
     while not events or not isinstance(events[-1], (End, Problem)):
-        events.append(asking.events.get(timeout=60))
-    asking.join(60)
+        events.append(instruction.events.get(timeout=60))
+    instruction.join(60)
     return events
 
 
 def test_a_run_is_followed_with_its_marked_pictures(served: Served, tmp_path: Path) -> None:
     served.call(served.site.station(CAMERA).control.clear)
-    asking = InstructionRun(
+    instruction = InstructionRun(
         parse_address(served.root), "blender-test", CAMERA, "pan right 5 degrees and count the balls", "", tmp_path
     )
-    asking.start()
-    events = follow(asking)
+    instruction.start()
+    events = follow(instruction)
     steps, end = [each for each in events if isinstance(each, Step)], events[-1]
     assert [step.call.partition("(")[0] for step in steps] == ["adjust_ptz", "count_objects"]
     assert steps[0].call == "adjust_ptz(pan_deg=5)"
@@ -143,18 +143,18 @@ def test_a_run_is_followed_with_its_marked_pictures(served: Served, tmp_path: Pa
 
 def test_a_run_can_be_cancelled(served: Served, tmp_path: Path) -> None:
     served.call(served.site.station(CAMERA).control.clear)
-    asking = InstructionRun(parse_address(served.root), "blender-test", CAMERA, "track the ball for 300 seconds", "", tmp_path)
-    asking.start()
-    asking.cancel()
-    end = follow(asking)[-1]
+    instruction = InstructionRun(parse_address(served.root), "blender-test", CAMERA, "track the ball for 300 seconds", "", tmp_path)
+    instruction.start()
+    instruction.cancel()
+    end = follow(instruction)[-1]
     assert isinstance(end, End)
     assert end.outcome == "Cancelled"
 
 
-def test_a_refused_instruction_is_a_problem_in_words(served: Served, tmp_path: Path) -> None:
-    asking = InstructionRun(parse_address(served.root), "blender-test", "nowhere", "go home", "", tmp_path)
-    asking.start()
-    (problem,) = follow(asking)
+def test_a_refused_instruction_gives_a_message(served: Served, tmp_path: Path) -> None:
+    instruction = InstructionRun(parse_address(served.root), "blender-test", "nowhere", "go home", "", tmp_path)
+    instruction.start()
+    (problem,) = follow(instruction)
     assert isinstance(problem, Problem)
     assert "no camera 'nowhere'" in problem.text
 
@@ -230,13 +230,13 @@ def test_other_servers_are_recognised(content: bytes, problem: str) -> None:
         client.close()
 
 
-def test_no_server_is_a_problem_in_words() -> None:
+def test_a_missing_server_gives_a_message() -> None:
     with nobody_listens() as url:
         fake = FakeBlender(url)
         fake.link.start()
         fake.link.join(60)
     assert fake.link.ended
-    assert "No server answers" in fake.link.problem
+    assert "No server is running" in fake.link.problem
     fake.link.stop()
 
 
@@ -251,7 +251,7 @@ def test_a_silent_server_does_not_block_the_main_thread() -> None:
 
 
 def test_a_missing_program_is_explained(tmp_path: Path) -> None:
-    with pytest.raises(AddOnError, match="no program 'no-such-scope'"):
+    with pytest.raises(AddOnError, match="The program 'no-such-scope' was not found"):
         ServerProcess("no-such-scope", [], tmp_path)
 
 

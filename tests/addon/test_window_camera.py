@@ -92,7 +92,7 @@ def test_a_question_is_answered_with_the_scenes_own_views(served: Served, blende
     assert looks[1]["hfov_deg"] < 16.0
 
 
-def test_an_unchanged_scene_is_not_drawn_again(served: Served, blender: FakeBlender) -> None:
+def test_an_unchanged_scene_is_not_rendered_again(served: Served, blender: FakeBlender) -> None:
     with served.client() as client:
         first = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
         again = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
@@ -105,7 +105,7 @@ def test_an_unchanged_scene_is_not_drawn_again(served: Served, blender: FakeBlen
     assert [r.arguments["version"] for r in blender.requests if r.operation == "frame"] == ["", "1", "1", "2"]
 
 
-def test_failures_are_told_in_words(served: Served, blender: FakeBlender) -> None:
+def test_failures_give_messages(served: Served, blender: FakeBlender) -> None:
     blender.broken = "There is no 3D viewport.\x1b[31m" + 600 * "x"
     with served.client() as client:
         reply = client.get(f"/cameras/{CAMERA}/frame")
@@ -131,7 +131,7 @@ def test_a_camera_without_blender_says_what_to_do(served: Served) -> None:
         assert "scene_time" not in card["abilities"]
 
 
-def test_the_camera_goes_on_when_blender_connects_again(served: Served) -> None:
+def test_the_camera_works_again_after_blender_reconnects(served: Served) -> None:
     with served.client() as client:
         for width in (160, 320):
             fake = FakeBlender(served.root)
@@ -299,7 +299,7 @@ def test_poses_follow_the_conventions_of_blend_files() -> None:
 async def test_the_camera_exists_only_on_a_server() -> None:
     with pytest.raises(InputError, match="scope serve --camera blender-window"):
         await open_camera(CAMERA)
-    with pytest.raises(InputError, match="neither an address"):
+    with pytest.raises(InputError, match="does not accept an address"):
         await open_camera(f"{CAMERA}:somewhere")
     assert site_cameras([CAMERA], load_settings()) == {CAMERA: f"{CAMERA}:"}
     assert CAMERA not in site_cameras([], load_settings())

@@ -22,10 +22,10 @@ from scope_ptz.tools.context import ImageStore
 Step = Decision | BaseException | Callable[[State], Decision]
 
 
-def calls(*wanted: tuple[str, dict[str, Any]], tokens: int = 0) -> CallTools:
-    """A decision to make tool calls."""
-    made = tuple(ToolCall(id=f"c{i}", name=name, arguments=arguments) for i, (name, arguments) in enumerate(wanted))
-    return CallTools(calls=made, usage=Usage(input_tokens=tokens))
+def calls(*requests: tuple[str, dict[str, Any]], tokens: int = 0) -> CallTools:
+    """Return a decision to make tool calls."""
+    tool_calls = tuple(ToolCall(id=f"c{i}", name=name, arguments=arguments) for i, (name, arguments) in enumerate(requests))
+    return CallTools(calls=tool_calls, usage=Usage(input_tokens=tokens))
 
 
 def answer(text: str = "Done.") -> Finish:
@@ -33,7 +33,7 @@ def answer(text: str = "Done.") -> Finish:
 
 
 class ScriptedPlanner(Planner):
-    """Says the steps of its script in turn, by the length of the history; the last one again and again."""
+    """Returns the steps of its script in order, and then repeats the last one. The index is the length of the history."""
 
     name = "scripted"
 
@@ -50,9 +50,9 @@ class ScriptedPlanner(Planner):
 
 
 class ScriptedPerception(Perception):
-    """Finds as many boxes as its script says, look after look; an exception in the script is raised."""
+    """Returns as many boxes or points as the next count of its script; the last count repeats. Raises scripted exceptions."""
 
-    name = "scripted-eyes"
+    name = "scripted-perception"
 
     def __init__(self, *counts: int | BaseException) -> None:
         self._counts = list(counts) or [0]
@@ -70,8 +70,8 @@ class ScriptedPerception(Perception):
         return Answer(source=self.name, text=str(self._next()))
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        places = [0.1 + 0.8 * i / 10 for i in range(self._next())]
-        boxes = tuple(Box(x_min=x, x_max=x + 0.05, y_min=0.4, y_max=0.5, label=description) for x in places)
+        left_edges = [0.1 + 0.8 * i / 10 for i in range(self._next())]
+        boxes = tuple(Box(x_min=x, x_max=x + 0.05, y_min=0.4, y_max=0.5, label=description) for x in left_edges)
         return Detections(source=self.name, boxes=boxes)
 
     async def point(self, frame: Frame, description: str) -> Points:
@@ -79,7 +79,7 @@ class ScriptedPerception(Perception):
 
 
 class ScriptedCamera(Camera):
-    """A camera without a scene: grey pictures with the pose written into their pixels. ``failures``: method name to error."""
+    """A camera without a scene. Its grey pictures encode the pan angle. ``failures`` maps method names to errors."""
 
     def __init__(self, presets: Sequence[str] = ("gate", "highway"), failures: dict[str, BaseException] | None = None) -> None:
         self.clock = SceneClock()
@@ -135,7 +135,7 @@ def make_agent(
     images: ImageStore | None = None,
     budgets: Budgets | None = None,
 ) -> Agent:
-    """An agent of stand-ins."""
+    """Create an agent from scripted parts."""
     planner, perception = ScriptedPlanner(*script), ScriptedPerception(*counts)
     labels = RunLabels(perception_note="scripted, for tests", seed=7)
     return Agent(planner, camera or ScriptedCamera(), perception, images or NoImages(), budgets=budgets, labels=labels)

@@ -1,4 +1,4 @@
-"""Filmstrips: the text of the panels, and drawing of runs of any length and content."""
+"""Filmstrips: the text of the panels, and the drawing of runs of any length and content."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from scope_ptz.agent.contact_sheet import contact_sheet
-from scope_ptz.agent.drawing import printable, shorten, width_of, wrap
+from scope_ptz.agent.drawing import shorten, to_printable, width_of, wrap
 from scope_ptz.agent.filmstrip import WIDTH, draw_filmstrip, write_filmstrip
 from scope_ptz.agent.panels import panels_of
 from scope_ptz.agent.records import Budgets
@@ -59,16 +59,16 @@ def test_other_steps_have_their_own_panels(tmp_path: Path) -> None:
         calls(("adjust_ptz", {"pan_deg": 999.0})),
         answer(),
     )
-    found = captions(trace)
-    assert found[0] == (1, "pan right 15°, tilt down 2.5°, what is that?", "3")
-    assert found[1] == (2, "sweep, count cars", "3 cars")
-    assert found[2][1] == "zoom to van"
-    assert found[3][1:] == ("go to nowhere", "There is no preset 'nowhere'. Known: gate, highway.")
-    assert found[4][1:] == ("pan right 999°", "at the pan limit")
+    texts = captions(trace)
+    assert texts[0] == (1, "pan right 15°, tilt down 2.5°, what is that?", "3")
+    assert texts[1] == (2, "sweep, count cars", "3 cars")
+    assert texts[2][1] == "zoom to van"
+    assert texts[3][1:] == ("go to nowhere", "There is no preset 'nowhere'. Known: gate, highway.")
+    assert texts[4][1:] == ("pan right 999°", "at the pan limit")
     panels = panels_of(trace)
     assert [p.is_panorama for p in panels] == [False, True, False, False, False]
     assert [p.failed for p in panels] == [False, False, False, True, False]
-    assert panels[3].file == panels[2].file  # Nothing happened, so the view before it still stands.
+    assert panels[3].file == panels[2].file  # Nothing happened, so the earlier view is still current.
 
 
 def test_a_run_without_steps_shows_the_camera_view(tmp_path: Path) -> None:
@@ -98,8 +98,8 @@ def test_counted_objects_are_marked(tmp_path: Path) -> None:
 
 
 def test_untrusted_text_cannot_break_the_picture(tmp_path: Path) -> None:
-    wild = "\x1b[31m看 " + "very" * 200 + " long\n\n" + "words " * 300
-    trace = record(tmp_path, calls(("query_answer", {"question": "x" * 400})), answer(wild))
+    untrusted = "\x1b[31m看 " + "very" * 200 + " long\n\n" + "words " * 300
+    trace = record(tmp_path, calls(("query_answer", {"question": "x" * 400})), answer(untrusted))
     assert draw_filmstrip(trace) is not None
 
 
@@ -121,7 +121,7 @@ def test_a_missing_picture_is_reported(tmp_path: Path) -> None:
 
 
 def test_drawable_text() -> None:
-    assert printable("caf\u00e9 \u2013 15° \u00d7 2\n\tend \u770b") == "cafe - 15° x 2 end ?"
+    assert to_printable("caf\u00e9 \u2013 15° \u00d7 2\n\tend \u770b") == "cafe - 15° x 2 end ?"
     assert width_of(shorten("a long line of words", 20, 100), 20) <= 100
     assert shorten("short", 20, 100) == "short"
     lines = wrap("one two three four five six seven eight nine ten", 20, 120, 2)

@@ -29,14 +29,14 @@ def run(*script: Any, **options: Any) -> tuple[RunResult, list[Any]]:
 
 
 def test_results_are_appended_until_the_planner_answers() -> None:
-    done, records = run(calls(MOVE), calls(COUNT), answer("Four."), counts=[4])
-    assert (done.ended.outcome, done.ended.text, done.ended.steps) == ("answered", "Four.", 3)
-    assert [e.outcomes[0].call.name for e in done.exchanges] == ["adjust_ptz", "count_objects"]
-    counted = done.exchanges[1].outcomes[0].result
-    assert counted is not None
-    assert counted["count"] == 4
+    result, records = run(calls(MOVE), calls(COUNT), answer("Four."), counts=[4])
+    assert (result.ended.outcome, result.ended.text, result.ended.steps) == ("answered", "Four.", 3)
+    assert [e.outcomes[0].call.name for e in result.exchanges] == ["adjust_ptz", "count_objects"]
+    count_result = result.exchanges[1].outcomes[0].result
+    assert count_result is not None
+    assert count_result["count"] == 4
     assert [r.event for r in records] == ["start", "decision", "call", "decision", "call", "decision", "end"]
-    assert done.ended.pose.pan_deg == 15.0
+    assert result.ended.pose.pan_deg == 15.0
 
 
 def test_the_planner_sees_instruction_history_conversation_and_tools() -> None:
@@ -55,14 +55,14 @@ def test_the_planner_sees_instruction_history_conversation_and_tools() -> None:
 
 @pytest.mark.parametrize("kind", ["answered", "clarification", "refused"])
 def test_a_planner_can_finish_in_three_ways(kind: Any) -> None:
-    done, _ = run(Finish(kind=kind, text="words"))
-    assert (done.ended.outcome, done.ended.text) == (kind, "words")
+    result, _ = run(Finish(kind=kind, text="words"))
+    assert (result.ended.outcome, result.ended.text) == (kind, "words")
 
 
 def test_step_limit() -> None:
     camera = ScriptedCamera()
-    done, _ = run(calls(MOVE), camera=camera, budgets=Budgets(max_steps=3))
-    assert (done.ended.outcome, done.ended.steps, len(done.exchanges)) == ("step_limit", 3, 3)
+    result, _ = run(calls(MOVE), camera=camera, budgets=Budgets(max_steps=3))
+    assert (result.ended.outcome, result.ended.steps, len(result.exchanges)) == ("step_limit", 3, 3)
     assert camera.log[-1] == "stop"
 
 
@@ -73,21 +73,21 @@ def test_time_budget_also_ends_a_planner_that_hangs() -> None:
 
     agent = make_agent(answer(), budgets=Budgets(time_s=0.05))
     agent.planner = HangingPlanner()
-    done = anyio.run(agent.run, "wait")
-    assert done.ended.outcome == "budget"
-    assert "time" in done.ended.text
+    result = anyio.run(agent.run, "wait")
+    assert result.ended.outcome == "budget"
+    assert "time" in result.ended.text
 
 
 def test_token_budget_is_checked_before_the_calls_are_made() -> None:
-    done, _ = run(calls(MOVE, tokens=60), calls(MOVE, tokens=60), budgets=Budgets(tokens=100))
-    assert (done.ended.outcome, len(done.exchanges), done.ended.usage.input_tokens) == ("budget", 1, 120)
+    result, _ = run(calls(MOVE, tokens=60), calls(MOVE, tokens=60), budgets=Budgets(tokens=100))
+    assert (result.ended.outcome, len(result.exchanges), result.ended.usage.input_tokens) == ("budget", 1, 120)
 
 
 def test_an_answer_that_spends_the_last_tokens_still_counts() -> None:
-    done, _ = run(
+    result, _ = run(
         calls(MOVE, tokens=90), Finish(kind="answered", text="x", usage=calls(MOVE, tokens=50).usage), budgets=Budgets(tokens=100)
     )
-    assert done.ended.outcome == "answered"
+    assert result.ended.outcome == "answered"
 
 
 @pytest.mark.parametrize(
@@ -102,50 +102,50 @@ def test_an_answer_that_spends_the_last_tokens_still_counts() -> None:
     ],
 )
 def test_bad_calls_go_back_to_the_planner_and_are_counted(bad: tuple[str, dict[str, Any]]) -> None:
-    done, records = run(calls(bad), answer())
-    assert (done.ended.outcome, done.ended.bad_calls) == ("answered", 1)
-    outcome = done.exchanges[0].outcomes[0]
+    result, records = run(calls(bad), answer())
+    assert (result.ended.outcome, result.ended.bad_calls) == ("answered", 1)
+    outcome = result.exchanges[0].outcomes[0]
     assert outcome.error
     assert outcome.result is None
     assert [r.fault for r in records if isinstance(r, Called)] == ["bad_call"]
 
 
 def test_calls_after_a_failed_call_are_not_made() -> None:
-    done, _ = run(calls(("go_to_preset", {"name": "nowhere"}), MOVE), answer())
-    first, second = done.exchanges[0].outcomes
+    result, _ = run(calls(("go_to_preset", {"name": "nowhere"}), MOVE), answer())
+    first, second = result.exchanges[0].outcomes
     assert first.error is not None
     assert second.error == "Not done, because the call before it failed."
-    assert done.ended.pose.pose() == Pose()
-    assert done.ended.bad_calls == 1
+    assert result.ended.pose.pose() == Pose()
+    assert result.ended.bad_calls == 1
 
 
 def test_a_failed_perception_call_is_an_error_and_not_a_count() -> None:
-    done, _ = run(calls(COUNT), answer(), counts=[PerceptionError("the model timed out")])
-    outcome = done.exchanges[0].outcomes[0]
+    result, _ = run(calls(COUNT), answer(), counts=[PerceptionError("the model timed out")])
+    outcome = result.exchanges[0].outcomes[0]
     assert (outcome.result, outcome.error) == (None, "the model timed out")
-    assert (done.ended.outcome, done.ended.perception_failures, done.ended.bad_calls) == ("answered", 1, 0)
+    assert (result.ended.outcome, result.ended.perception_failures, result.ended.bad_calls) == ("answered", 1, 0)
 
 
 @pytest.mark.parametrize("failure", [CameraError("no route to the camera"), RuntimeError("a bug")])
 def test_a_camera_that_fails_ends_the_run(failure: Exception) -> None:
-    done, records = run(calls(MOVE), answer(), camera=ScriptedCamera(failures={"move": failure}))
-    assert done.ended.outcome == "camera_error"
-    assert str(failure) in done.ended.text
-    assert len(done.exchanges) == 1
+    result, records = run(calls(MOVE), answer(), camera=ScriptedCamera(failures={"move": failure}))
+    assert result.ended.outcome == "camera_error"
+    assert str(failure) in result.ended.text
+    assert len(result.exchanges) == 1
     assert [r.fault for r in records if isinstance(r, Called)] == ["camera"]
-    assert bool(done.ended.detail) == isinstance(failure, RuntimeError)
+    assert bool(result.ended.detail) == isinstance(failure, RuntimeError)
 
 
 @pytest.mark.parametrize("failure", [PlannerError("no decision"), ZeroDivisionError("a bug")])
 def test_a_planner_that_fails_ends_the_run(failure: Exception) -> None:
-    done, _ = run(failure)
-    assert done.ended.outcome == "planner_error"
-    assert str(failure) in done.ended.text
+    result, _ = run(failure)
+    assert result.ended.outcome == "planner_error"
+    assert str(failure) in result.ended.text
 
 
 def test_an_invalid_decision_is_a_planner_error() -> None:
-    done, _ = run(lambda _: "42")
-    assert done.ended.outcome == "planner_error"
+    result, _ = run(lambda _: "42")
+    assert result.ended.outcome == "planner_error"
 
 
 def test_damaged_packs_are_recorded_and_raised() -> None:
@@ -175,7 +175,7 @@ def test_cancelling_stops_the_camera_and_completes_the_trace() -> None:
                 if isinstance(record, Called):
                     scope.cancel()
 
-            await make_agent(calls(MOVE), camera=camera).run("go on for ever", listener=listener)
+            await make_agent(calls(MOVE), camera=camera).run("keep panning", listener=listener)
             raise AssertionError("a cancelled run must not return")
 
     anyio.run(work)
@@ -191,14 +191,14 @@ def test_invalid_instructions_are_rejected(instruction: str) -> None:
 
 
 def test_times_of_the_stages_add_up() -> None:
-    done, records = run(calls(MOVE), calls(COUNT), answer(), counts=[2])
-    timings = done.ended.timings
+    result, records = run(calls(MOVE), calls(COUNT), answer(), counts=[2])
+    timings = result.ended.timings
     parts = timings.planner_s + timings.perception_s + timings.camera_s + timings.render_s
     assert 0 < parts <= timings.total_s
-    looked = next(r for r in records if isinstance(r, Called) and r.outcome.call.name == "count_objects")
-    assert looked.timings.render_s > 0
-    assert looked.timings.total_s >= looked.timings.perception_s > 0
-    assert [(r.kind, r.asked) for r in looked.replies] == [("detect", "cones")]
+    count_call = next(r for r in records if isinstance(r, Called) and r.outcome.call.name == "count_objects")
+    assert count_call.timings.render_s > 0
+    assert count_call.timings.total_s >= count_call.timings.perception_s > 0
+    assert [(r.kind, r.asked) for r in count_call.replies] == [("detect", "cones")]
     header = records[0]
     assert isinstance(header, Started)
     assert header.labels.seed == 7
@@ -208,7 +208,7 @@ def test_runs_share_no_state() -> None:
     agent = make_agent(calls(MOVE), answer())
     first, second = anyio.run(agent.run, "one"), anyio.run(agent.run, "two")
     assert len(first.exchanges) == len(second.exchanges) == 1
-    assert second.ended.pose.pan_deg == 30.0  # The camera is where the first run left it; the loop remembers nothing.
+    assert second.ended.pose.pan_deg == 30.0  # The camera keeps its pose between runs; the loop keeps no state.
 
 
 def test_an_interrupted_call_is_recorded() -> None:
@@ -217,8 +217,8 @@ def test_an_interrupted_call_is_recorded() -> None:
             await anyio.sleep(30)
             return await super().move(pose)
 
-    done, records = run(calls(MOVE), camera=Slow(), budgets=Budgets(time_s=0.05))
-    assert done.ended.outcome == "budget"
+    result, records = run(calls(MOVE), camera=Slow(), budgets=Budgets(time_s=0.05))
+    assert result.ended.outcome == "budget"
     (call,) = [r for r in records if isinstance(r, Called)]
     assert (call.fault, call.outcome.error) == ("cancelled", "Broken off.")
 

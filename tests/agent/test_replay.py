@@ -39,7 +39,7 @@ def record(
     return read_trace(folder.path)
 
 
-def again(trace: Trace, camera: Camera | None = None) -> Replay:
+def replay_of(trace: Trace, camera: Camera | None = None) -> Replay:
     return anyio.run(replay, trace, camera or ScriptedCamera())
 
 
@@ -57,27 +57,27 @@ def again(trace: Trace, camera: Camera | None = None) -> Replay:
 )
 def test_a_replay_gives_the_same_results(tmp_path: Path, script: tuple[Step, ...]) -> None:
     trace = record(tmp_path, *script, counts=(3, 5))
-    found = again(trace)
-    assert found.matches, found
-    assert len(found.comparisons) == len(trace.calls)
+    replayed_run = replay_of(trace)
+    assert replayed_run.matches, replayed_run
+    assert len(replayed_run.comparisons) == len(trace.calls)
 
 
 def test_perception_failures_are_replayed(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(COUNT), calls(COUNT), answer("x"), counts=(PerceptionError("timeout"), 2))
     assert trace.calls[0].outcome.error == "timeout"
-    assert again(trace).matches
+    assert replay_of(trace).matches
 
 
 def test_a_step_limit_is_replayed(tmp_path: Path) -> None:
-    assert again(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).matches
+    assert replay_of(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).matches
 
 
 def test_an_interrupted_run_is_replayed_up_to_its_end(tmp_path: Path) -> None:
-    whole = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
-    cut = replace(whole, calls=whole.calls[:1], ended=None)
-    found = again(cut)
-    assert found.matches
-    assert len(found.comparisons) == 1
+    trace = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
+    cut = replace(trace, calls=trace.calls[:1], ended=None)
+    replayed_run = replay_of(cut)
+    assert replayed_run.matches
+    assert len(replayed_run.comparisons) == 1
 
 
 def test_a_run_whose_camera_failed_is_replayed_up_to_its_end(tmp_path: Path) -> None:
@@ -89,27 +89,27 @@ def test_a_run_whose_camera_failed_is_replayed_up_to_its_end(tmp_path: Path) -> 
     trace = record(tmp_path, calls(MOVE), fail, camera=camera)
     assert trace.ended is not None
     assert trace.ended.outcome == "camera_error"
-    found = again(trace)
-    assert found.matches
-    assert len(found.comparisons) == 1
+    replayed_run = replay_of(trace)
+    assert replayed_run.matches
+    assert len(replayed_run.comparisons) == 1
 
 
 def test_a_different_scene_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(("go_to_preset", {"name": "gate"})), calls(MOVE), answer("x"))
-    found = again(trace, ScriptedCamera(presets=("yard", "gate")))
-    assert not found.matches
-    assert "pose was" in found.comparisons[0].difference
+    replayed_run = replay_of(trace, ScriptedCamera(presets=("yard", "gate")))
+    assert not replayed_run.matches
+    assert "pose was" in replayed_run.comparisons[0].difference
 
 
 def test_a_different_start_pose_is_detected(tmp_path: Path) -> None:
     trace = record(tmp_path, calls(MOVE), answer("x"))
     camera = ScriptedCamera()
     anyio.run(camera.move, Pose(1.0, 0.0, 1.0))
-    assert not again(trace, camera).matches
+    assert not replay_of(trace, camera).matches
 
 
 def test_runs_of_real_cameras_cannot_be_replayed(tmp_path: Path) -> None:
     trace = record(tmp_path, answer("x"))
     real = replace(trace, started=trace.started.model_copy(update={"simulated": False}))
     with pytest.raises(TraceError, match="real camera"):
-        again(real)
+        replay_of(real)

@@ -1,4 +1,4 @@
-"""A timed camera: everything reaches the camera inside, and its time is measured."""
+"""A timed camera passes calls to the wrapped camera and measures their duration."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.simulator.pack import Scene
 
 
 class CameraWithLens(CameraWrapper):
-    """A camera that records what its lens was told."""
+    """A camera that records the commands to its lens."""
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(SimulatedCamera(scene))
@@ -27,7 +27,7 @@ class CameraWithLens(CameraWrapper):
 
 
 @pytest.mark.anyio
-async def test_the_lens_of_the_camera_inside_is_reached(analytic_scene: Scene) -> None:
+async def test_lens_commands_reach_the_wrapped_camera(analytic_scene: Scene) -> None:
     camera, watch = CameraWithLens(analytic_scene), Stopwatch()
     timed = TimedCamera(camera, watch)
     assert await timed.lens() == LensState(focus=0.5)

@@ -30,32 +30,32 @@ PAUSE_S = 0.15
 
 
 class SlowPerception(ScriptedPerception):
-    """Slow perception that records concurrent calls and their frames. Counts are the number of letters of the description."""
+    """Slow perception that records concurrent calls and their frames. Each count is the length of the description."""
 
     def __init__(self) -> None:
         super().__init__(1)
-        self.at_once = self.most_at_once = 0
+        self.active = self.max_active = 0
         self.frames: list[Frame] = []
 
-    async def _look(self, frame: Frame, asked: str) -> int:
+    async def _count(self, frame: Frame, text: str) -> int:
         self.frames.append(frame)
-        self.at_once += 1
-        self.most_at_once = max(self.most_at_once, self.at_once)
+        self.active += 1
+        self.max_active = max(self.max_active, self.active)
         try:
-            # The first asked is the last to be answered.
-            await anyio.sleep(PAUSE_S * (1.5 if asked == "cones" else 1.0))
+            # The first request is answered last.
+            await anyio.sleep(PAUSE_S * (1.5 if text == "cones" else 1.0))
         finally:
-            self.at_once -= 1
-        if asked == "nothing":
+            self.active -= 1
+        if text == "nothing":
             raise PerceptionError("the server is gone", kind="refused", attempts=(Attempt(kind=FailureKind.REFUSED),) * 2)
-        return len(asked)
+        return len(text)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        seen = await ScriptedPerception(await self._look(frame, description)).detect(frame, description)
-        return seen.model_copy(update={"attempts": (Attempt(kind=FailureKind.RATE_LIMITED), Attempt())})
+        detections = await ScriptedPerception(await self._count(frame, description)).detect(frame, description)
+        return detections.model_copy(update={"attempts": (Attempt(kind=FailureKind.RATE_LIMITED), Attempt())})
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        return Answer(source=self.name, text=str(await self._look(frame, question)))
+        return Answer(source=self.name, text=str(await self._count(frame, question)))
 
 
 def run(*script: Any, perception: Any = None, **options: Any) -> tuple[RunResult, list[Any]]:
@@ -65,67 +65,67 @@ def run(*script: Any, perception: Any = None, **options: Any) -> tuple[RunResult
     return anyio.run(lambda: agent.run("do it", listener=records.append)), records
 
 
-def named(*wanted: tuple[str, dict[str, Any]]) -> list[list[int]]:
-    return list(batches(calls(*wanted).calls))
+def batches_of(*requests: tuple[str, dict[str, Any]]) -> list[list[int]]:
+    return list(batches(calls(*requests).calls))
 
 
 def test_only_adjacent_calls_on_the_current_view_run_concurrently() -> None:
-    assert named(CONES, CARS, COLOUR) == [[0, 1, 2]]
-    assert named(CONES, MOVE, CARS, COLOUR) == [[0], [1], [2, 3]]
-    assert named(CONES, SWEEP, CARS) == [[0], [1], [2]]
-    assert named(CONES, WRONG, ("nonsense", {}), CARS) == [[0], [1], [2], [3]]
-    assert named(*[CONES] * (MAX_CONCURRENT_CALLS + 2)) == [
+    assert batches_of(CONES, CARS, COLOUR) == [[0, 1, 2]]
+    assert batches_of(CONES, MOVE, CARS, COLOUR) == [[0], [1], [2, 3]]
+    assert batches_of(CONES, SWEEP, CARS) == [[0], [1], [2]]
+    assert batches_of(CONES, WRONG, ("nonsense", {}), CARS) == [[0], [1], [2], [3]]
+    assert batches_of(*[CONES] * (MAX_CONCURRENT_CALLS + 2)) == [
         list(range(MAX_CONCURRENT_CALLS)),
         [MAX_CONCURRENT_CALLS, MAX_CONCURRENT_CALLS + 1],
     ]
-    broken = ToolCall(id="a", name="count_objects", arguments={"description": "cones"}, problem="cut off")
-    assert list(batches([broken, *calls(CARS).calls])) == [[0], [1]]
+    malformed_call = ToolCall(id="a", name="count_objects", arguments={"description": "cones"}, problem="cut off")
+    assert list(batches([malformed_call, *calls(CARS).calls])) == [[0], [1]]
 
 
 def test_concurrent_calls_share_a_frame_and_return_in_order() -> None:
     perception, camera = SlowPerception(), ScriptedCamera()
-    done, records = run(calls(CONES, CARS, COLOUR), answer(), perception=perception, camera=camera)
-    assert perception.most_at_once == 3
+    result, records = run(calls(CONES, CARS, COLOUR), answer(), perception=perception, camera=camera)
+    assert perception.max_active == 3
     assert len({id(frame) for frame in perception.frames}) == 1
-    made = [r for r in records if isinstance(r, Called)]
-    assert [r.outcome.call.name for r in made] == ["count_objects", "count_objects", "query_answer"]
-    assert [r.index for r in made] == [0, 1, 2]
-    assert [[reply.asked for reply in r.replies] for r in made] == [["cones"], ["cars"], ["which colour?"]]
-    results = [o.result for o in done.exchanges[0].outcomes]
+    called = [r for r in records if isinstance(r, Called)]
+    assert [r.outcome.call.name for r in called] == ["count_objects", "count_objects", "query_answer"]
+    assert [r.index for r in called] == [0, 1, 2]
+    assert [[reply.asked for reply in r.replies] for r in called] == [["cones"], ["cars"], ["which colour?"]]
+    results = [o.result for o in result.exchanges[0].outcomes]
     assert [r and r.get("count") for r in results] == [5, 4, None]
-    # What overlapped is counted once in the run's time.
-    timings = done.ended.timings
+    # Overlapping time is counted once in the run's timings.
+    timings = result.ended.timings
     assert timings.perception_s < 2 * PAUSE_S
     assert timings.planner_s + timings.perception_s + timings.camera_s + timings.render_s <= timings.total_s
-    assert all(r.timings.perception_s >= PAUSE_S * 0.9 for r in made)
+    assert all(r.timings.perception_s >= PAUSE_S * 0.9 for r in called)
 
 
 def test_a_failed_call_skips_later_calls_but_not_concurrent_ones() -> None:
     nothing = ("count_objects", {"description": "nothing"})
-    done, records = run(calls(nothing, CARS, MOVE), answer())
-    first, second, third = done.exchanges[0].outcomes
+    result, records = run(calls(nothing, CARS, MOVE), answer())
+    first, second, third = result.exchanges[0].outcomes
     assert (first.error, first.result) == ("the server is gone", None)
     assert second.result is not None
     assert second.result["count"] == 4
     assert third.error == "Not done, because the call before it failed."
     assert [r.fault for r in records if isinstance(r, Called)] == ["perception", None, "skipped"]
-    assert (done.ended.perception_failures, done.ended.pose.pan_deg) == (1, 0.0)
-    assert done.ended.server_events == {"rate-limited": 1, "refused": 2}
+    assert (result.ended.perception_failures, result.ended.pose.pan_deg) == (1, 0.0)
+    assert result.ended.server_events == {"rate-limited": 1, "refused": 2}
 
 
 def test_a_camera_that_fails_ends_the_run_once() -> None:
     camera = ScriptedCamera()
     agent = make_agent(lambda _: camera.failures.update(frame=CameraError("no picture")) or calls(CONES, CARS), camera=camera)
-    done = anyio.run(agent.run, "look")
-    assert (done.ended.outcome, done.ended.text) == ("camera_error", "no picture")
+    result = anyio.run(agent.run, "look")
+    assert (result.ended.outcome, result.ended.text) == ("camera_error", "no picture")
 
 
 def test_interrupted_perception_calls_are_recorded() -> None:
-    done, records = run(calls(CONES, CARS), budgets=Budgets(time_s=PAUSE_S * 1.2))
-    assert done.ended.outcome == "budget"
-    made = [r for r in records if isinstance(r, Called)]
-    assert [(r.index, r.fault) for r in made] == [(0, "cancelled"), (1, None)]
-    assert [o.call.arguments["description"] for o in done.exchanges[0].outcomes] == ["cars"]
+    result, records = run(calls(CONES, CARS), budgets=Budgets(time_s=PAUSE_S * 1.2))
+    assert result.ended.outcome == "budget"
+    called = [r for r in records if isinstance(r, Called)]
+    assert [(r.index, r.fault) for r in called] == [(0, "cancelled"), (1, None)]
+    assert [o.call.arguments["description"] for o in result.exchanges[0].outcomes] == ["cars"]
 
 
 def test_runs_with_concurrent_perception_calls_can_be_replayed(tmp_path: Path) -> None:
@@ -139,18 +139,18 @@ def test_runs_with_concurrent_perception_calls_can_be_replayed(tmp_path: Path) -
             await agent.run("look", listener=trace)
 
     anyio.run(record)
-    again = anyio.run(replay, read_trace(folder.path), ScriptedCamera())
-    assert again.matches, [c.difference for c in again.comparisons] + [again.outcome_difference]
-    assert len(again.comparisons) == 6
+    replayed_run = anyio.run(replay, read_trace(folder.path), ScriptedCamera())
+    assert replayed_run.matches, [c.difference for c in replayed_run.comparisons] + [replayed_run.outcome_difference]
+    assert len(replayed_run.comparisons) == 6
 
 
 def test_failed_requests_of_a_planner_are_counted_and_its_error_has_a_kind() -> None:
     attempts = (Attempt(kind=FailureKind.SERVER_ERROR), Attempt(kind=FailureKind.CONTEXT_OVERFLOW))
-    done, _ = run(PlannerError("too long", kind="context-overflow", attempts=attempts))
-    assert (done.ended.outcome, done.ended.kind) == ("planner_error", "context-overflow")
-    assert done.ended.server_events == {"context-overflow": 1, "server-error": 1}
-    done, _ = run(PlannerError("empty", kind="empty", attempts=(Attempt(),)))
-    assert done.ended.server_events == {"empty": 1}
+    result, _ = run(PlannerError("too long", kind="context-overflow", attempts=attempts))
+    assert (result.ended.outcome, result.ended.kind) == ("planner_error", "context-overflow")
+    assert result.ended.server_events == {"context-overflow": 1, "server-error": 1}
+    result, _ = run(PlannerError("empty", kind="empty", attempts=(Attempt(),)))
+    assert result.ended.server_events == {"empty": 1}
 
 
 @pytest.mark.parametrize("sees", [True, False])
@@ -160,9 +160,9 @@ def test_planners_with_vision_get_the_newest_view_and_the_pictures(sees: bool) -
     assert isinstance(planner, ScriptedPlanner)
     planner.sees = sees
     records: list[Any] = []
-    done = anyio.run(lambda: agent.run("look", listener=records.append))
+    result = anyio.run(lambda: agent.run("look", listener=records.append))
     views = [state.view for state in planner.states]
-    pictures = [outcome.picture for outcome in done.exchanges[0].outcomes]
+    pictures = [outcome.picture for outcome in result.exchanges[0].outcomes]
     if not sees:
         assert (views, pictures) == ([None] * 3, [None, None])
         return
@@ -183,5 +183,5 @@ def test_a_camera_that_fails_to_provide_a_view_for_the_planner_ends_the_run() ->
         lambda _: camera.failures.update(frame=CameraError("no picture")) or calls(("get_presets", {})), camera=camera
     )
     agent.planner.sees = True
-    done = anyio.run(agent.run, "look")
-    assert (done.ended.outcome, done.ended.text) == ("camera_error", "no picture")
+    result = anyio.run(agent.run, "look")
+    assert (result.ended.outcome, result.ended.text) == ("camera_error", "no picture")

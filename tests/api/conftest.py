@@ -1,4 +1,4 @@
-"""Scenes are opened once for all examples of a module, and the evaluation engine's own warnings are no failures."""
+"""Fixtures of the API tests: scenes are opened once per module, and warnings of the evaluation engine are ignored."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.factory import scenes
-from tests.support.fixtures import one_search_for_packages
+from tests.support.fixtures import package_search_cache
 
-__all__ = ["one_search_for_packages"]
+__all__ = ["package_search_cache"]
 
 HERE = Path(__file__).parent
 WITH_EVALUATIONS = ("test_evaluations.py", "test_examples.py", "test_public_names.py")
 ENGINE_WARNINGS = ("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning", "ignore::DeprecationWarning")
-"""Inspect AI leaves streams to the garbage collector, and uses what its dependencies deprecate."""
+"""Ignored, because Inspect AI leaves open streams to the garbage collector and uses deprecated functions."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -28,7 +28,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="module")
-def opened_once() -> Iterator[None]:
+def scenes_cache() -> Iterator[None]:
     """Open each scene once in the tests of a module, because decoding its pictures takes most of an example's time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scenes, "open_scene", lru_cache(scenes.open_scene))

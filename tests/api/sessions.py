@@ -15,7 +15,7 @@ from tests.agent.scripted import ScriptedPerception, ScriptedPlanner, answer, ca
 
 
 class WaitingPlanner(Planner):
-    """Never decides. ``asked`` is set when it is asked for a decision."""
+    """A planner that never decides. ``asked`` is set when a decision is requested."""
 
     name = "waiting"
 
@@ -32,17 +32,17 @@ class WaitingPlanner(Planner):
         self.closed = True
 
 
-def counting() -> ScriptedPlanner:
+def counting_planner() -> ScriptedPlanner:
     """Return a planner that counts once and answers."""
     return ScriptedPlanner(calls(("count_objects", {"description": "things"})), answer("There are 3."))
 
 
-def options(scene: Scene, planner: Planner | None = None, **more: Any) -> dict[str, Any]:
-    """Return arguments for ``scope_ptz.open``: a camera in a small scene, a scripted planner and scripted perception."""
-    given = {"camera": SimulatedCamera(scene), "planner": planner or counting(), "perception": ScriptedPerception(3)}
-    return given | more
+def session_arguments(scene: Scene, planner: Planner | None = None, **extra: Any) -> dict[str, Any]:
+    """Return the arguments for ``scope_ptz.open``: a camera in a small scene, a scripted planner and scripted perception."""
+    defaults = {"camera": SimulatedCamera(scene), "planner": planner or counting_planner(), "perception": ScriptedPerception(3)}
+    return defaults | extra
 
 
-def opened(scene: Scene, planner: Planner | None = None, **more: Any) -> scope_ptz.Scope:
-    """Open a session with these parts."""
-    return scope_ptz.open(**options(scene, planner, **more))
+def open_session(scene: Scene, planner: Planner | None = None, **extra: Any) -> scope_ptz.Scope:
+    """Open a session with the arguments of ``session_arguments``."""
+    return scope_ptz.open(**session_arguments(scene, planner, **extra))

@@ -83,8 +83,8 @@ def test_objects_of_the_caller_are_evaluated_and_stay_open(tasks: tuple[scope_pt
 def test_a_planner_object_scores_like_the_named_planner(
     results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...], tmp_path: Path
 ) -> None:
-    own = scope_ptz.evaluate(GrammarPlanner(), tasks=tasks, out=tmp_path, pictures=False)
-    assert own.scores == results.scores
+    from_object = scope_ptz.evaluate(GrammarPlanner(), tasks=tasks, out=tmp_path, pictures=False)
+    assert from_object.scores == results.scores
 
 
 def test_wrong_names_are_errors(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ ARGUMENTS = {
 FUNCTION_CALLING = ("function_calling_chat.py", "function_calling_responses.py", "pydantic_ai_agent.py")
 """Programs that need a model server: see ``test_function_calling_examples.py``."""
 HOSTED = ("hosted_agent.py", "hosted_agent_mcp.py")
-"""Programs that connect to a host of an evaluation: see ``tests/full/test_hosting_recipe.py``."""
+"""Programs that connect to a hosted evaluation: see ``tests/full/test_hosting_recipe.py``."""
 
 SLOW = {"ask.py", "evaluate.py", "batch_over_views.py", "own_planner.py", "train_search.py"}  # 1 to 10 s each
 
@@ -36,7 +36,7 @@ def test_every_example_is_run() -> None:
     assert {path.name for path in EXAMPLES.glob("*.py")} == {*EXPECTED, *FUNCTION_CALLING, *HOSTED}
 
 
-@pytest.mark.usefixtures("opened_once")
+@pytest.mark.usefixtures("scenes_cache")
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.full] if name in SLOW else []) for name in EXPECTED])
 def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
@@ -45,7 +45,7 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
     assert EXPECTED[name] in capsys.readouterr().out
 
 
-@pytest.mark.usefixtures("opened_once")
+@pytest.mark.usefixtures("scenes_cache")
 def test_the_program_on_the_page_about_function_calling(capsys: pytest.CaptureFixture[str]) -> None:
     page = (EXAMPLES.parent / "docs" / "how-to" / "function-calling.md").read_text(encoding="utf-8")
     (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
@@ -58,8 +58,8 @@ def test_the_program_on_the_page_about_function_calling(capsys: pytest.CaptureFi
 def test_the_notebook(tmp_path: Path) -> None:
     notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)  # type: ignore[no-untyped-call]
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    assert not any(cell.outputs for cell in cells), "outputs are not stored: the documentation runs the notebook"
+    assert not any(cell.outputs for cell in cells), "outputs must not be stored: the documentation runs the notebook"
     NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
-    shown = [output.data for cell in cells for output in cell.outputs if output.output_type == "execute_result"]
-    pictures = [data["text/html"] for data in shown if "data:image/jpeg" in data.get("text/html", "")]
+    outputs = [output.data for cell in cells for output in cell.outputs if output.output_type == "execute_result"]
+    pictures = [data["text/html"] for data in outputs if "data:image/jpeg" in data.get("text/html", "")]
     assert len(pictures) == 3  # the scene, the run, and the frame

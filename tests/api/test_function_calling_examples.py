@@ -41,7 +41,7 @@ def texts_of_results(request: Request) -> list[str]:
 
 
 def scripted_model(request: Request) -> Say:
-    """A deliberate stand-in for a model: it calls two tools together, then one with wrong arguments, and reports the count."""
+    """Reply as a scripted model: call two tools at once, then one with wrong arguments, then report the count."""
     results = [json.loads(text) for text in texts_of_results(request)]
     if not results:
         return Say(text="", tool_calls=(("count_objects", {"description": "balls"}), ("take_image", {})))
@@ -61,7 +61,7 @@ def pictures_in(data: Any) -> Iterator[Image.Image]:
 
 
 def check_request(data: dict[str, Any]) -> None:
-    """Check the body of a request against the types of the API. Pydantic reads parts of it lazily: they are checked separately."""
+    """Check the body of a request against the types of the API. Pydantic validates parts lazily; these are checked separately."""
     chat = "messages" in data
     adapter = CHAT if chat else RESPONSES
     adapter.dump_json(adapter.validate_python(data))
@@ -105,9 +105,9 @@ def test_a_program_lets_a_model_operate_the_camera(
     name: str, run: Callable[..., list[Request]], capsys: pytest.CaptureFixture[str]
 ) -> None:
     first, second, third = run(name)
-    printed = capsys.readouterr().out
-    assert f"There are {BALLS} balls. Then: Wrong arguments for adjust_ptz: pan_deg: Input should be a valid number" in printed
-    assert "sk-secret" not in printed
+    output = capsys.readouterr().out
+    assert f"There are {BALLS} balls. Then: Wrong arguments for adjust_ptz: pan_deg: Input should be a valid number" in output
+    assert "sk-secret" not in output
 
     for request in (first, second, third):
         assert request.headers["authorization"] == "Bearer sk-secret"
@@ -120,7 +120,7 @@ def test_a_program_lets_a_model_operate_the_camera(
     assert picture.size == (320, 180)
     assert len(list(pictures_in(third.data))) == 1
     count = json.loads(texts_of_results(second)[0])
-    assert count["message"].startswith("<camera_text>"), "the model can tell what the camera saw from instructions"
+    assert count["message"].startswith("<camera_text>"), "the text must separate what the camera saw from instructions"
 
 
 @pytest.mark.parametrize("name", FUNCTION_CALLING)

@@ -11,7 +11,7 @@ from PIL import Image
 import scope_ptz
 from scope_ptz.simulator.pack import Scene
 from tests.agent.scripted import ScriptedPlanner, answer, calls
-from tests.api.sessions import opened
+from tests.api.sessions import open_session
 
 
 def pictures_in(html: str) -> list[Image.Image]:
@@ -20,7 +20,7 @@ def pictures_in(html: str) -> list[Image.Image]:
 
 
 def test_a_run_shows_answer_filmstrip_and_calls(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         html = scope.ask("count the things")._repr_html_()
     assert all(text in html for text in ("count the things", "There are 3.", "count_objects", "description=things"))
     (filmstrip,) = pictures_in(html)
@@ -30,16 +30,16 @@ def test_a_run_shows_answer_filmstrip_and_calls(analytic_scene: Scene) -> None:
 def test_text_from_models_is_escaped(analytic_scene: Scene) -> None:
     evil = "<script>alert(1)</script>"
     planner = ScriptedPlanner(calls(("query_answer", {"question": evil}), (evil, {})), answer(evil))
-    with opened(analytic_scene, planner) as scope:
+    with open_session(analytic_scene, planner) as scope:
         html = scope.ask(evil)._repr_html_()
     assert "<script" not in html
 
 
 def test_a_frame_shows_its_pose(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         scope.move_to(pan_deg=12)
         frame = scope.frame()
-    assert repr(frame).startswith("<Frame ") and len(repr(frame)) < 120, "the pixels are not printed"
+    assert repr(frame).startswith("<Frame ") and len(repr(frame)) < 120, "the pixels must not be printed"
     html = frame._repr_html_()
     assert "pan +12.0°" in html
     (picture,) = pictures_in(html)

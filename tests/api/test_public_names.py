@@ -17,7 +17,7 @@ import scope_ptz
 import scope_ptz.contracts
 
 PINNED = Path(__file__).with_name("public_names.json")
-"""Names and signatures of the public interface. After an intended change: python -m tests.api.test_public_names."""
+"""The pinned names and signatures. Regenerate after an intended change with ``python -m tests.api.test_public_names``."""
 
 CLASSES = [name for name in scope_ptz.__all__ if inspect.isclass(getattr(scope_ptz, name))]
 FUNCTIONS = [name for name in scope_ptz.__all__ if inspect.isfunction(getattr(scope_ptz, name))]
@@ -62,8 +62,8 @@ def test_a_module_and_its_public_names_agree() -> None:
 
 def test_importing_the_package_loads_nothing_heavy() -> None:
     program = "import sys, scope_ptz; print(*sorted({'numpy', 'cv2', 'pydantic', 'anyio', 'PIL', 'typer'} & sys.modules.keys()))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == ""
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -74,7 +74,7 @@ def test_functions_document_arguments_results_and_an_example(name: str) -> None:
     assert "Returns:" in text
     assert "Example:" in text
     assert "Raises:" in text or not parameters
-    if name != "open_async":  # whose arguments are those of open
+    if name != "open_async":  # it has the arguments of open
         assert all(re.search(rf"^    {parameter}: ", text, re.MULTILINE) for parameter in parameters)
 
 
@@ -92,7 +92,7 @@ def test_classes_have_a_description(name: str) -> None:
     assert (inspect.getdoc(getattr(scope_ptz, name)) or "").split("\n")[0].strip().endswith(".")
 
 
-@pytest.mark.usefixtures("opened_once")
+@pytest.mark.usefixtures("scenes_cache")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.full] if name == "evaluate" else []) for name in (*FUNCTIONS, *OURS)]
 )
@@ -102,11 +102,11 @@ def test_examples_in_docstrings_run(name: str, tmp_path: Path, monkeypatch: pyte
     members = vars(value).items() if inspect.isclass(value) else ()
     documented = [(name, value), *((f"{name}.{member}", m) for member, m in members if inspect.isfunction(m))]
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
-    shown: list[str] = []
+    messages: list[str] = []
     for title, thing in documented:
         examples = parser.get_doctest(inspect.getdoc(thing) or "", {}, title, None, None)
-        runner.run(examples, out=shown.append)
-    assert not runner.summarize(verbose=False).failed, "".join(shown)
+        runner.run(examples, out=messages.append)
+    assert not runner.summarize(verbose=False).failed, "".join(messages)
 
 
 if __name__ == "__main__":

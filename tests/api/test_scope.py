@@ -23,11 +23,11 @@ from scope_ptz.errors import ConfigError, InputError, PerceptionError, ScopeErro
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.tools.registry import TOOLS
 from tests.agent.scripted import ScriptedPerception, ScriptedPlanner, answer, calls
-from tests.api.sessions import WaitingPlanner, counting, opened, options
+from tests.api.sessions import WaitingPlanner, counting_planner, open_session, session_arguments
 
 
-def test_a_run_is_typed(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+def test_a_run_has_typed_attributes(analytic_scene: Scene) -> None:
+    with open_session(analytic_scene) as scope:
         run = scope.ask("count the things")
     assert (run.outcome, run.answer, run.ok, str(run)) == ("answered", "There are 3.", True, "There are 3.")
     (call,) = run.calls
@@ -40,7 +40,7 @@ def test_a_run_is_typed(analytic_scene: Scene) -> None:
 
 def test_a_failed_call_has_a_reason(analytic_scene: Scene) -> None:
     planner = ScriptedPlanner(calls(("fly", {})), answer("I cannot fly."))
-    with opened(analytic_scene, planner) as scope:
+    with open_session(analytic_scene, planner) as scope:
         (call,) = scope.ask("fly").calls
     assert not call.ok
     assert call.result is None
@@ -50,8 +50,8 @@ def test_a_failed_call_has_a_reason(analytic_scene: Scene) -> None:
 
 
 def test_the_planner_gets_earlier_runs_until_they_are_cleared(analytic_scene: Scene) -> None:
-    planner = counting()
-    with opened(analytic_scene, planner) as scope:
+    planner = counting_planner()
+    with open_session(analytic_scene, planner) as scope:
         scope.ask("first")
         scope.ask("second")
         assert [turn.instruction for turn in planner.states[-1].conversation] == ["first"]
@@ -62,7 +62,7 @@ def test_the_planner_gets_earlier_runs_until_they_are_cleared(analytic_scene: Sc
 
 
 def test_a_stream_yields_events_and_ends_with_the_run(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         events = list(scope.stream("count"))
         assert [event.kind for event in events] == ["started", "decided", "called", "decided", "ended"]
         assert events[-1].run is scope.runs[-1]
@@ -71,7 +71,7 @@ def test_a_stream_yields_events_and_ends_with_the_run(analytic_scene: Scene) -> 
 
 
 def test_leaving_a_stream_early_cancels_the_run(analytic_scene: Scene) -> None:
-    with opened(analytic_scene, WaitingPlanner()) as scope:
+    with open_session(analytic_scene, WaitingPlanner()) as scope:
         for event in scope.stream("count"):
             assert event.kind == "started"
             break
@@ -80,16 +80,16 @@ def test_leaving_a_stream_early_cancels_the_run(analytic_scene: Scene) -> None:
 
 
 def test_errors_of_a_stream_reach_the_caller(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope, pytest.raises(InputError, match="empty"):
+    with open_session(analytic_scene) as scope, pytest.raises(InputError, match="empty"):
         list(scope.stream("  "))
 
 
 def test_frames_can_be_taken_during_a_run_but_a_second_run_is_refused(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         for event in scope.stream("count"):
             if event.kind == "started":
                 assert scope.frame().image.ndim == 3
-        with opened(analytic_scene, WaitingPlanner()) as other:
+        with open_session(analytic_scene, WaitingPlanner()) as other:
             for _ in other.stream("count"):
                 for attempt in (lambda: other.ask("another"), lambda: other.move(pan_deg=1), lambda: list(other.stream("more"))):
                     with pytest.raises(InputError, match="in progress"):
@@ -109,7 +109,7 @@ def cancel_when(event: threading.Event, scope: Scope) -> None:
 
 def test_cancel_from_another_thread_ends_the_run(analytic_scene: Scene) -> None:
     planner = WaitingPlanner()
-    with opened(analytic_scene, planner) as scope:
+    with open_session(analytic_scene, planner) as scope:
         cancel_when(planner.asked, scope)
         run = scope.ask("wait")
     assert run.outcome == "cancelled"
@@ -117,7 +117,7 @@ def test_cancel_from_another_thread_ends_the_run(analytic_scene: Scene) -> None:
 
 
 def test_cancel_without_a_run_changes_nothing(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         scope.cancel()
         assert scope.ask("count").ok
 
@@ -131,18 +131,18 @@ def test_ctrl_c_cancels_the_run_and_leaves_a_complete_trace(analytic_scene: Scen
         planner.asked.wait()
         signal.pthread_kill(main, signal.SIGINT)
 
-    with opened(analytic_scene, planner, runs_dir=tmp_path) as scope:
+    with open_session(analytic_scene, planner, runs_dir=tmp_path) as scope:
         threading.Thread(target=interrupt).start()
         with pytest.raises(KeyboardInterrupt):
             scope.ask("wait")
         assert scope.runs[-1].outcome == "cancelled"
-        scope.move(pan_deg=5)  # the session goes on
+        scope.move(pan_deg=5)  # the session is still usable
     (folder,) = tmp_path.iterdir()
     assert scope_ptz.Run.load(folder).outcome == "cancelled"
 
 
 def test_using_a_closed_session_is_an_error(analytic_scene: Scene) -> None:
-    scope = opened(analytic_scene)
+    scope = open_session(analytic_scene)
     scope.close()
     scope.close()
     attempts: tuple[Callable[[], Any], ...] = (
@@ -160,7 +160,7 @@ def test_using_a_closed_session_is_an_error(analytic_scene: Scene) -> None:
 
 
 def test_closing_cancels_a_run_in_progress(analytic_scene: Scene) -> None:
-    scope = opened(analytic_scene, WaitingPlanner())
+    scope = open_session(analytic_scene, WaitingPlanner())
     stream = scope.stream("wait")
     assert next(stream).kind == "started"
     scope.close()
@@ -169,13 +169,13 @@ def test_closing_cancels_a_run_in_progress(analytic_scene: Scene) -> None:
 
 def test_objects_of_the_caller_stay_open(analytic_scene: Scene) -> None:
     planner = WaitingPlanner()
-    opened(analytic_scene, planner).close()
+    open_session(analytic_scene, planner).close()
     assert not planner.closed
 
 
 def test_a_session_works_where_an_event_loop_is_running(analytic_scene: Scene) -> None:
     async def notebook_cell() -> str:
-        with opened(analytic_scene) as scope:
+        with open_session(analytic_scene) as scope:
             return scope.ask("count").answer
 
     assert asyncio.run(notebook_cell()) == "There are 3."
@@ -190,36 +190,36 @@ def test_a_program_that_never_closes_its_session_ends(analytic_folder: Path) -> 
         "scope = scope_ptz.open(SimulatedCamera(Scene(Path(sys.argv[1]))))\n"
         "print(scope.frame().width)\n"
     )
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", program, str(analytic_folder)], capture_output=True, text=True, timeout=60, check=False
     )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert int(done.stdout) > 0
+    assert (result.returncode, result.stderr) == (0, "")
+    assert int(result.stdout) > 0
 
 
-def test_runs_are_kept_in_a_folder_when_one_is_named(analytic_scene: Scene, tmp_path: Path) -> None:
-    with opened(analytic_scene, runs_dir=tmp_path) as scope:
+def test_runs_are_stored_in_the_runs_dir(analytic_scene: Scene, tmp_path: Path) -> None:
+    with open_session(analytic_scene, runs_dir=tmp_path) as scope:
         run = scope.ask("count the things")
         with pytest.raises(InputError):
             scope.ask("x" * 5000)
         assert scope.picture(scope.take_image().file).size == (scope.frame().width, scope.frame().height)
     assert run.folder is not None
     assert (run.folder / "trace.jsonl").is_file()
-    read = scope_ptz.Run.load(run.folder)
-    assert (read.answer, read.calls, read.pictures) == (run.answer, run.calls, run.pictures)
-    assert read.filmstrip.tobytes() == run.filmstrip.tobytes()
-    assert len(list(tmp_path.iterdir())) == 2  # the run, and the picture; nothing of the instruction that was too long
+    loaded = scope_ptz.Run.load(run.folder)
+    assert (loaded.answer, loaded.calls, loaded.pictures) == (run.answer, run.calls, run.pictures)
+    assert loaded.filmstrip.tobytes() == run.filmstrip.tobytes()
+    assert len(list(tmp_path.iterdir())) == 2  # the run and the picture, but nothing for the rejected instruction
 
 
 def test_a_run_in_memory_and_one_in_a_folder_have_the_same_pictures(analytic_scene: Scene, tmp_path: Path) -> None:
-    with opened(analytic_scene) as kept, opened(analytic_scene, runs_dir=tmp_path) as written:
-        first, second = kept.ask("count"), written.ask("count")
+    with open_session(analytic_scene) as in_memory, open_session(analytic_scene, runs_dir=tmp_path) as on_disk:
+        first, second = in_memory.ask("count"), on_disk.ask("count")
     assert first.pictures == second.pictures
     assert [first.picture(name).tobytes() for name in first.pictures] == [second.picture(n).tobytes() for n in second.pictures]
 
 
 def test_a_missing_picture_is_an_error(analytic_scene: Scene) -> None:
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         run = scope.ask("count")
         for name in ("pictures/009.png", "../../etc/passwd"):
             with pytest.raises(TraceError):
@@ -229,7 +229,7 @@ def test_a_missing_picture_is_an_error(analytic_scene: Scene) -> None:
 
 
 def test_a_trace_without_an_end_is_an_error(analytic_scene: Scene, tmp_path: Path) -> None:
-    with opened(analytic_scene, runs_dir=tmp_path) as scope:
+    with open_session(analytic_scene, runs_dir=tmp_path) as scope:
         folder = scope.ask("count").folder
     assert folder is not None
     trace = folder / "trace.jsonl"
@@ -239,7 +239,7 @@ def test_a_trace_without_an_end_is_an_error(analytic_scene: Scene, tmp_path: Pat
 
 
 def test_tools_are_methods(analytic_scene: Scene) -> None:
-    with opened(analytic_scene, perception=ScriptedPerception(3)) as scope:
+    with open_session(analytic_scene, perception=ScriptedPerception(3)) as scope:
         start = scope.pose()
         assert scope.move(pan_deg=10).pose.pan_deg == pytest.approx(start.pan_deg + 10)
         assert scope.move_to(pan_deg=-5).pan_deg == -5
@@ -271,9 +271,9 @@ def test_every_tool_has_a_method_with_its_arguments(name: str) -> None:
         assert all(parameters[key].default == field.default for key, field in fields.items() if key not in required)
 
 
-def test_a_tool_without_a_declared_method_can_be_called_as_one(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tool_without_a_declared_method_can_be_called_as_a_method(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(TOOLS._tools, "look_home", TOOLS["go_home"])
-    with opened(analytic_scene) as scope:
+    with open_session(analytic_scene) as scope:
         assert "look_home" in dir(scope)
         assert scope.look_home().message
 
@@ -285,14 +285,14 @@ def test_the_async_session_has_the_same_names() -> None:
     assert public(Scope) == public(AsyncScope) - {"run_with_events"}
     for name in public(Scope):
         if callable(getattr(Scope, name)):
-            ours = inspect.signature(getattr(Scope, name)).parameters
-            assert list(ours) == list(inspect.signature(getattr(AsyncScope, name)).parameters), name
+            parameters = inspect.signature(getattr(Scope, name)).parameters
+            assert list(parameters) == list(inspect.signature(getattr(AsyncScope, name)).parameters), name
     assert inspect.signature(scope_ptz.open).parameters == inspect.signature(scope_ptz.open_async).parameters
 
 
 def test_the_async_session(analytic_scene: Scene) -> None:
     async def work() -> None:
-        async with scope_ptz.open_async(**options(analytic_scene)) as scope:
+        async with scope_ptz.open_async(**session_arguments(analytic_scene)) as scope:
             assert (await scope.ask("count")).ok
             assert [event.kind async for event in scope.stream("count")][-1] == "ended"
             assert (await scope.move(pan_deg=3)).pose == (await scope.adjust_ptz()).pose
@@ -301,7 +301,7 @@ def test_the_async_session(analytic_scene: Scene) -> None:
             await scope.ask("count")
         with pytest.raises(InputError, match="closed"):
             await scope
-        later = await scope_ptz.open_async(**options(analytic_scene))
+        later = await scope_ptz.open_async(**session_arguments(analytic_scene))
         await later.close()
         await later.close()
 
@@ -310,12 +310,12 @@ def test_the_async_session(analytic_scene: Scene) -> None:
 
 def test_an_async_session_must_be_opened(analytic_scene: Scene) -> None:
     with pytest.raises(InputError, match="async with"):
-        asyncio.run(scope_ptz.open_async(**options(analytic_scene)).ask("count"))
+        asyncio.run(scope_ptz.open_async(**session_arguments(analytic_scene)).ask("count"))
 
 
 def test_leaving_an_async_stream_early_cancels_the_run(analytic_scene: Scene) -> None:
     async def work() -> None:
-        async with scope_ptz.open_async(**options(analytic_scene, WaitingPlanner())) as scope:
+        async with scope_ptz.open_async(**session_arguments(analytic_scene, WaitingPlanner())) as scope:
             stream = scope.stream("wait")
             async for _ in stream:
                 break
@@ -328,9 +328,9 @@ def test_leaving_an_async_stream_early_cancels_the_run(analytic_scene: Scene) ->
 def test_cancelling_a_task_cancels_its_run(analytic_scene: Scene) -> None:
     async def work() -> None:
         planner = WaitingPlanner()
-        async with scope_ptz.open_async(**options(analytic_scene, planner)) as scope:
+        async with scope_ptz.open_async(**session_arguments(analytic_scene, planner)) as scope:
             task = asyncio.create_task(scope.ask("wait"))
-            while not planner.asked.is_set():  # noqa: ASYNC110 - the event is one of threads
+            while not planner.asked.is_set():  # noqa: ASYNC110 - a threading.Event cannot be awaited
                 await asyncio.sleep(0.001)
             task.cancel()
             with pytest.raises(asyncio.CancelledError):
@@ -349,13 +349,13 @@ def test_a_cancelled_tool_call_is_an_error(analytic_scene: Scene) -> None:
             await asyncio.sleep(3600)
 
     perception = WaitingPerception()
-    with opened(analytic_scene, perception=perception) as scope:
+    with open_session(analytic_scene, perception=perception) as scope:
         cancel_when(perception.asked, scope)
         with pytest.raises(ScopeError, match="cancelled"):
             scope.query_answer("what?")
 
 
-def test_a_camera_without_truth_has_no_perception_unless_one_is_named(analytic_scene: Scene) -> None:
+def test_a_camera_without_ground_truth_has_no_default_perception(analytic_scene: Scene) -> None:
     from scope_ptz.camera.base import CameraInfo
 
     class Real(SimulatedCamera):
@@ -395,7 +395,7 @@ def test_wrong_options_are_reported(wrong: dict[str, Any], message: str) -> None
 
 def test_scene_options_do_not_apply_to_a_camera_object(analytic_scene: Scene) -> None:
     with pytest.raises(InputError, match="viewpoint"):
-        opened(analytic_scene, viewpoint="mast")
+        open_session(analytic_scene, viewpoint="mast")
 
 
 def test_an_unknown_model_server_is_a_clear_error() -> None:

@@ -1,6 +1,6 @@
 """Answers that try to pass without an answer, and honest answers that must still pass.
 
-All were written, with their labels, before the rules that they test.
+All answers were written and labelled before the rules under test.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ EXPECTATIONS = {
 }
 ADVERSARIAL = [json.loads(line) for line in (DATA / "answers_adversarial.jsonl").read_text("utf-8").splitlines()]
 HONEST = [json.loads(line) for line in (DATA / "answers_honest.jsonl").read_text("utf-8").splitlines()]
-MAX_WRONG_PASSES = 0.005
+MAX_WRONG_PASSES = 0.005  # as a fraction of the adversarial answers
 
 
 def passes(case: dict[str, str]) -> bool:
@@ -34,7 +34,7 @@ def passes(case: dict[str, str]) -> bool:
     return agrees(expected, parse_answer(expected, case["answer"])) is True
 
 
-def test_there_are_many_adversarial_answers_of_every_kind_and_form() -> None:
+def test_there_are_many_adversarial_answers_of_every_type_and_form() -> None:
     kinds = Counter(EXPECTATIONS[case["expected"]].kind for case in ADVERSARIAL)
     forms = Counter(case["form"] for case in ADVERSARIAL)
     assert len(ADVERSARIAL) >= 200 and len(HONEST) >= 100
@@ -58,7 +58,7 @@ def test_almost_no_adversarial_answer_passes() -> None:
     assert len(wrong) <= MAX_WRONG_PASSES * len(ADVERSARIAL), wrong
 
 
-def test_every_honest_answer_is_read_as_labelled() -> None:
+def test_every_honest_answer_is_parsed_as_labelled() -> None:
     assert [case["answer"] for case in HONEST if passes(case) != (case["verdict"] == "right")] == []
 
 
@@ -97,8 +97,8 @@ VALUES: dict[str, tuple[AnyExpected, str]] = {
 
 @settings(deadline=None)
 @given(st.sampled_from(sorted(VALUES)), st.lists(st.sampled_from(REFUSALS), min_size=1, max_size=3), st.integers(0, 3))
-def test_no_value_beside_a_refusal_passes(name: str, refusals: list[str], place: int) -> None:
-    """In whichever order the sentences come."""
+def test_no_value_next_to_a_refusal_passes(name: str, refusals: list[str], place: int) -> None:
+    """The order of the sentences does not matter."""
     expected, value = VALUES[name]
     assert agrees(expected, parse_answer(expected, value)) is True
     sentences = [*refusals]

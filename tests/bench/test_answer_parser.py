@@ -91,14 +91,14 @@ def test_there_are_many_answers_of_every_type() -> None:
 
 def test_held_out_answers() -> None:
     """Answers that are not parsed exactly are unscored: no wrong answer passes, and no right one fails."""
-    taken = [(c["verdict"], verdict(EXPECTATIONS[c["expected"]], c["answer"]), c["answer"]) for c in HELD_OUT]
-    assert [row for row in taken if row[1] == "right" != row[0]] == []
-    assert [row for row in taken if row[0] == "right" != row[1]] == []
-    assert sum(one == two for one, two, _ in taken) / len(taken) > 0.98
+    verdicts = [(c["verdict"], verdict(EXPECTATIONS[c["expected"]], c["answer"]), c["answer"]) for c in HELD_OUT]
+    assert [row for row in verdicts if row[1] == "right" != row[0]] == []
+    assert [row for row in verdicts if row[0] == "right" != row[1]] == []
+    assert sum(one == two for one, two, _ in verdicts) / len(verdicts) > 0.98
 
 
 @pytest.mark.parametrize("name", ANSWERED)
-def test_right_and_wrong_answers_of_validation(name: str) -> None:
+def test_generated_right_and_wrong_answers(name: str) -> None:
     expected = EXPECTATIONS[name]
     wordings = correct_answers(expected)
     assert len(set(wordings)) >= 5
@@ -256,7 +256,7 @@ JOINTS = (
 @pytest.mark.parametrize("step", [11, pytest.param(1, marks=pytest.mark.full)])
 @pytest.mark.parametrize("denial", DENIALS)
 def test_no_text_is_correct_for_both_an_absence_and_a_presence(denial: str, step: int) -> None:
-    """Every pair of texts in the full tier; every 11th in the fast one, which still has each claim and each joint."""
+    """The full tier tests every pair of texts, and the fast tier every 11th, which still includes each claim and joint."""
     texts = [f"{one}{joint}{two}." for claim, joint in product(CLAIMS, JOINTS) for one, two in ((denial, claim), (claim, denial))]
     for text in texts[::step]:
         if verdict(NO_KITE, text) == "right":
@@ -279,6 +279,6 @@ def test_odd_combinations_are_unscored(text: str) -> None:
 
 
 def test_denials_and_claims_are_parsed_on_their_own() -> None:
-    """The parts of the texts above are parsed on their own, so the tests above do not pass because of unreadable texts."""
+    """Each part can be parsed alone, so the tests above do not pass because of unreadable texts."""
     assert sum(verdict(NO_KITE, denial) == "right" for denial in DENIALS) >= 14
     assert sum(any(verdict(twin, claim) == "right" for twin in TWINS) for claim in CLAIMS) >= 26

@@ -1,4 +1,4 @@
-"""Pairs that count whole, and accuracy corrected for chance."""
+"""Consistent pairs, and accuracy corrected for chance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.statistics.chance import chance_corrected, whole_pairs
+from scope_ptz.bench.statistics.chance import chance_corrected, pair_consistent
 from scope_ptz.bench.statistics.clustered import Scores
 
 
@@ -24,26 +24,26 @@ def scores(values: dict[str, list[float]]) -> Scores:
 
 def test_a_task_of_a_pair_counts_only_with_its_twin() -> None:
     units, twins = ["absent", "present", "alone", "half"], ["present", "absent", None, "elsewhere"]
-    assert whole_pairs([True, True, True, True], units, twins) == [True, True, True, True]
-    assert whole_pairs([True, False, True, True], units, twins) == [False, False, True, True]
-    assert whole_pairs([False, True, False, False], units, twins) == [False, False, False, False]
+    assert pair_consistent([True, True, True, True], units, twins) == [True, True, True, True]
+    assert pair_consistent([True, False, True, True], units, twins) == [False, False, True, True]
+    assert pair_consistent([False, True, False, False], units, twins) == [False, False, False, False]
 
 
 @given(st.lists(st.booleans(), min_size=6, max_size=6))
-def test_whole_pairs_never_gain(correct: list[bool]) -> None:
+def test_requiring_both_tasks_of_a_pair_never_adds_correct_tasks(correct: list[bool]) -> None:
     units, twins = list("abcdef"), ["b", "a", "d", "c", None, None]
-    whole = whole_pairs(correct, units, twins)
+    whole = pair_consistent(correct, units, twins)
     assert all(not one or two for one, two in zip(whole, correct, strict=True))
     assert whole[0] == whole[1] and whole[2] == whole[3] and whole[4:] == correct[4:]
 
 
 def test_chance_correction_by_hand() -> None:
     """(0.75 - 0.5) / 0.5 = 0.5 in one category and 0.25 in the other, whose chance level is 0."""
-    found = chance_corrected(scores({"a": [1, 1, 1, 0], "b": [1, 0, 0, 0]}), {"a": 0.5, "b": 0.0})
-    assert found is not None
-    assert found.corrected.value == pytest.approx(0.375)
-    assert found.consistent.value == pytest.approx(0.5)
-    assert found.chance == pytest.approx(0.25)
+    accuracy = chance_corrected(scores({"a": [1, 1, 1, 0], "b": [1, 0, 0, 0]}), {"a": 0.5, "b": 0.0})
+    assert accuracy is not None
+    assert accuracy.corrected.value == pytest.approx(0.375)
+    assert accuracy.consistent.value == pytest.approx(0.5)
+    assert accuracy.chance == pytest.approx(0.25)
 
 
 @given(st.floats(0, 0.9), st.floats(0, 0.9))
@@ -57,24 +57,24 @@ def test_everything_correct_is_one_and_nothing_correct_is_not_above_chance(one: 
 
 
 def test_without_chance_the_value_and_its_interval_are_the_macro_average() -> None:
-    found = chance_corrected(scores({"a": [1, 0, 1, 1], "b": [1, 0, 0, 1, 1]}), {"a": 0.0, "b": 0.0})
-    assert found is not None
-    assert (found.corrected.value, found.corrected.low, found.corrected.high) == pytest.approx(
-        (found.consistent.value, found.consistent.low, found.consistent.high)
+    accuracy = chance_corrected(scores({"a": [1, 0, 1, 1], "b": [1, 0, 0, 1, 1]}), {"a": 0.0, "b": 0.0})
+    assert accuracy is not None
+    assert (accuracy.corrected.value, accuracy.corrected.low, accuracy.corrected.high) == pytest.approx(
+        (accuracy.consistent.value, accuracy.consistent.low, accuracy.consistent.high)
     )
-    assert found.corrected.se == pytest.approx(found.consistent.se)
+    assert accuracy.corrected.se == pytest.approx(accuracy.consistent.se)
 
 
 def test_a_higher_chance_level_widens_the_interval() -> None:
     values = scores({"a": [1, 0, 1, 1], "b": [1, 0, 0, 1, 1]})
-    plain, lifted = chance_corrected(values, {"a": 0.0, "b": 0.0}), chance_corrected(values, {"a": 0.5, "b": 0.5})
-    assert plain is not None and lifted is not None
-    assert plain.corrected.se is not None and lifted.corrected.se is not None
-    assert lifted.corrected.se == pytest.approx(2 * plain.corrected.se)
+    plain, with_chance = chance_corrected(values, {"a": 0.0, "b": 0.0}), chance_corrected(values, {"a": 0.5, "b": 0.5})
+    assert plain is not None and with_chance is not None
+    assert plain.corrected.se is not None and with_chance.corrected.se is not None
+    assert with_chance.corrected.se == pytest.approx(2 * plain.corrected.se)
 
 
 def test_categories_without_a_known_chance_level_are_left_out() -> None:
     values = scores({"a": [1, 0], "b": [1, 1]})
     assert chance_corrected(values, {}) is None
-    found = chance_corrected(values, {"a": 0.0})
-    assert found is not None and found.corrected.value == pytest.approx(0.5)
+    accuracy = chance_corrected(values, {"a": 0.0})
+    assert accuracy is not None and accuracy.corrected.value == pytest.approx(0.5)

@@ -17,33 +17,46 @@ from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Forbidden, Framing, RequiredCall, Task
 from scope_ptz.errors import ScopeError
 from scope_ptz.geometry import Pose, pan_tilt_deg
-from tests.bench.making import AT_HIGHWAY, EYES, GO_HIGHWAY, START, Step, counted, final, play, samples, task, told, view
+from tests.bench.sample_runs import (
+    AT_HIGHWAY,
+    FRAME,
+    GO_HIGHWAY,
+    START,
+    Step,
+    count_step,
+    final,
+    play,
+    query_step,
+    samples,
+    task,
+    view,
+)
 
 SAMPLES = samples()
 COUNT_TASK, COUNT_RUN = SAMPLES[0]
 SWEEP_TASK, _ = SAMPLES[1]
 
 
-def outcome_of(name: str, of: Task, episode: Episode) -> bool | None:
-    return next(check.passed for check in run_checks(of, episode) if check.name == name)
+def outcome_of(name: str, checked_task: Task, episode: Episode) -> bool | None:
+    return next(check.passed for check in run_checks(checked_task, episode) if check.name == name)
 
 
-def action(behaviour: Behaviour, **further: Any) -> Task:
-    return task(900, "single_call", ActionOnly(), [], behaviour=behaviour, **further)
+def action(behaviour: Behaviour, **extra: Any) -> Task:
+    return task(900, "single_call", ActionOnly(), [], behaviour=behaviour, **extra)
 
 
-@pytest.mark.parametrize(("of", "episode"), SAMPLES, ids=[t.id for t, _ in SAMPLES])
-def test_every_sample_passes_and_an_empty_run_fails(of: Task, episode: Episode) -> None:
-    assert score_episode(of, episode).headline == "correct"
+@pytest.mark.parametrize(("checked_task", "episode"), SAMPLES, ids=[t.id for t, _ in SAMPLES])
+def test_every_sample_passes_and_an_empty_run_fails(checked_task: Task, episode: Episode) -> None:
+    assert score_episode(checked_task, episode).headline == "correct"
     idle = play([], episode.answer)
-    assert score_episode(of, idle).headline == "incorrect"
-    assert score_episode(of, play([], "I did nothing.")).headline != "correct"
+    assert score_episode(checked_task, idle).headline == "incorrect"
+    assert score_episode(checked_task, play([], "I did nothing.")).headline != "correct"
 
 
 @pytest.mark.parametrize("text", ["none", "0", "yes", "no", "5", "red"])
-@pytest.mark.parametrize("of", [t for t, _ in SAMPLES], ids=[t.id for t, _ in SAMPLES])
-def test_no_answer_passes_without_an_observation(of: Task, text: str) -> None:
-    assert score_episode(of, play([], text)).headline != "correct"
+@pytest.mark.parametrize("checked_task", [t for t, _ in SAMPLES], ids=[t.id for t, _ in SAMPLES])
+def test_no_answer_passes_without_an_observation(checked_task: Task, text: str) -> None:
+    assert score_episode(checked_task, play([], text)).headline != "correct"
 
 
 @pytest.mark.parametrize(
@@ -66,13 +79,13 @@ def test_a_missing_answer_is_incorrect() -> None:
 @pytest.mark.parametrize(
     ("steps", "passed"),
     [
-        ([GO_HIGHWAY, counted(5)], True),
-        ([counted(5), GO_HIGHWAY], False),
-        ([GO_HIGHWAY, told("5", "How many cones are there?")], True),
-        ([GO_HIGHWAY, counted(5, "clouds")], False),
+        ([GO_HIGHWAY, count_step(5)], True),
+        ([count_step(5), GO_HIGHWAY], False),
+        ([GO_HIGHWAY, query_step("5", "How many cones are there?")], True),
+        ([GO_HIGHWAY, count_step(5, "clouds")], False),
         ([GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "the server is down", "fault": "perception"})], False),
-        ([counted(5, where="full"), GO_HIGHWAY], True),
-        ([GO_HIGHWAY, ("adjust_ptz", {"zoom_factor": 2.0}), counted(5), ("adjust_ptz", {"zoom_factor": 0.5})], False),
+        ([count_step(5, view="full"), GO_HIGHWAY], True),
+        ([GO_HIGHWAY, ("adjust_ptz", {"zoom_factor": 2.0}), count_step(5), ("adjust_ptz", {"zoom_factor": 0.5})], False),
     ],
 )
 def test_the_coverage_check(steps: list[Step], passed: bool) -> None:
@@ -93,10 +106,10 @@ def test_the_coverage_check(steps: list[Step], passed: bool) -> None:
     ],
 )
 def test_the_pose_check(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
-    wanted = action(Behaviour(final=final(AT_HIGHWAY)))
+    expected = action(Behaviour(final=final(AT_HIGHWAY)))
     pose = AT_HIGHWAY.pose
-    ends = CameraPosition(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
-    result = check_pose(wanted, replace(COUNT_RUN, final=ends))
+    end = CameraPosition(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
+    result = check_pose(expected, replace(COUNT_RUN, final=end))
     assert result is not None
     assert result.passed is passed
 
@@ -117,16 +130,16 @@ TAKE: Step = ("take_image", {})
 
 
 @pytest.mark.parametrize(
-    ("wanted", "steps", "ordered", "anyhow"),
+    ("required", "steps", "ordered", "any_order"),
     [
         ([HIGHWAY, PICTURE], [GO_HIGHWAY, TAKE], True, True),
         ([HIGHWAY, PICTURE], [TAKE, GO_HIGHWAY], False, True),
-        ([HIGHWAY, PICTURE], [GO_HIGHWAY, counted(1), TAKE], True, True),
+        ([HIGHWAY, PICTURE], [GO_HIGHWAY, count_step(1), TAKE], True, True),
         ([HIGHWAY, PICTURE], [GO_HIGHWAY], False, False),
         ([HIGHWAY], [("go_to_preset", {"name": "gate"})], False, False),
         ([HIGHWAY], [("go_to_preset", {"name": "highway"}, {"error": "no"})], False, False),
-        ([CONES], [counted(3, "traffic cones")], True, True),
-        ([CONES], [counted(3, "traffic cones", "full")], False, False),
+        ([CONES], [count_step(3, "traffic cones")], True, True),
+        ([CONES], [count_step(3, "traffic cones", "full")], False, False),
         ([CONES], [("count_objects", {"description": "cone"}, {"count": 3})], True, True),
         ([steps_right(2)], [RIGHT, RIGHT], True, True),
         ([steps_right(2)], [RIGHT], False, False),
@@ -135,22 +148,22 @@ TAKE: Step = ("take_image", {})
         ([PICTURE, HIGHWAY, PICTURE], [GO_HIGHWAY, TAKE, TAKE], False, True),
     ],
 )
-def test_required_calls(wanted: list[RequiredCall], steps: list[Step], ordered: bool, anyhow: bool) -> None:
+def test_required_calls(required: list[RequiredCall], steps: list[Step], ordered: bool, any_order: bool) -> None:
     calls = play(steps, "").calls
-    assert (missing_in_order(wanted, calls) is None) is ordered
-    assert (missing_in_any_order(wanted, calls) is None) is anyhow
+    assert (missing_in_order(required, calls) is None) is ordered
+    assert (missing_in_any_order(required, calls) is None) is any_order
 
 
-def test_a_zoom_by_percent_is_a_zoom_by_its_factor_and_calls_are_matched_best_in_any_order() -> None:
+def test_zoom_percent_matches_its_factor_and_calls_are_matched_in_any_order() -> None:
     twice = RequiredCall(tool="adjust_ptz", arguments={"zoom_factor": Argument(equals=2.0, within=0.01)})
     assert missing_in_order([twice], play([("adjust_ptz", {"zoom_percent": 100.0})], "").calls) is None
-    some, cones = RequiredCall(tool="count_objects"), CONES
-    assert missing_in_any_order([some, cones], play([counted(1, "cones"), counted(2, "cars")], "").calls) is None
+    any_count, cones = RequiredCall(tool="count_objects"), CONES
+    assert missing_in_any_order([any_count, cones], play([count_step(1, "cones"), count_step(2, "cars")], "").calls) is None
 
 
 def test_forbidden_calls() -> None:
     still = action(Behaviour(forbidden=Forbidden(tools=("adjust_ptz",), changes=("zoom", "pan"))))
-    assert outcome_of("forbidden", still, play([counted(2)], "")) is True
+    assert outcome_of("forbidden", still, play([count_step(2)], "")) is True
     assert outcome_of("forbidden", still, play([("adjust_ptz", {"pan_deg": 1.0}), ("adjust_ptz", {"pan_deg": -1.0})], "")) is False
     zoomed = play(
         [("zoom_to_object", {"description": "van"}, {"found": True, "pose": {"pan_deg": 10, "tilt_deg": -10, "zoom": 3}})], ""
@@ -165,15 +178,15 @@ def test_the_expected_number_of_pictures_must_exist() -> None:
     assert outcome_of("pictures", two, play([TAKE, TAKE], "")) is True
     assert outcome_of("pictures", two, play([TAKE], "")) is False
     assert outcome_of("pictures", two, play([TAKE, TAKE, TAKE], "")) is False
-    lost = replace(play([TAKE, TAKE], ""), pictures=(SavedPicture("a.png", True), SavedPicture("b.png", False)))
-    assert outcome_of("pictures", two, lost) is False
-    unkept = replace(lost, pictures=(SavedPicture("a.png"), SavedPicture("b.png")))
-    assert outcome_of("pictures", two, unkept) is True
+    missing_picture = replace(play([TAKE, TAKE], ""), pictures=(SavedPicture("a.png", True), SavedPicture("b.png", False)))
+    assert outcome_of("pictures", two, missing_picture) is False
+    unverified = replace(missing_picture, pictures=(SavedPicture("a.png"), SavedPicture("b.png")))
+    assert outcome_of("pictures", two, unverified) is True
 
 
 @given(st.floats(-170, 170), st.floats(-50, 20), st.floats(0.55, 0.95), st.floats(-0.03, 0.03))
-def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: float, tilt: float, fill: float, off: float) -> None:
-    frame = EYES.view(Pose(pan, tilt, 3.0))
+def test_framing_measures_fill_and_offset(pan: float, tilt: float, fill: float, off: float) -> None:
+    frame = FRAME.view(Pose(pan, tilt, 3.0))
     low, high = 0.5 - fill / 2, 0.5 + fill / 2
     corners = frame.directions([[low + off, 0.4], [high + off, 0.4], [high + off, 0.6], [low + off, 0.6]])
     pans, tilts = pan_tilt_deg(corners)
@@ -182,16 +195,16 @@ def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: fl
     measured, offset = framing_of(outline, episode)
     assert measured == pytest.approx(fill, abs=1e-3)
     assert offset == pytest.approx(abs(off), abs=1e-3)
-    wanted = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))
+    framing_task = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))
     if not (abs(fill - 0.6) < 1e-3 or abs(fill - 0.9) < 1e-3 or abs(abs(off) - 0.02) < 1e-3):
-        assert outcome_of("framing", wanted, episode) is (0.6 <= fill <= 0.9 and abs(off) <= 0.02)
-    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("bridge", Pose(pan, tilt, 3.0)))) is False
-    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("mast", Pose(pan + 180, -tilt, 3.0)))) is False
+        assert outcome_of("framing", framing_task, episode) is (0.6 <= fill <= 0.9 and abs(off) <= 0.02)
+    assert outcome_of("framing", framing_task, replace(episode, final=CameraPosition("bridge", Pose(pan, tilt, 3.0)))) is False
+    assert outcome_of("framing", framing_task, replace(episode, final=CameraPosition("mast", Pose(pan + 180, -tilt, 3.0)))) is False
 
 
 def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pose_both_fail() -> None:
     assert score_episode(COUNT_TASK, replace(COUNT_RUN, answer="6")).headline == "incorrect"
-    wrong_pose = play([GO_HIGHWAY, counted(5), ("adjust_ptz", {"pan_deg": 3.0})], "There are 5 cones.")
+    wrong_pose = play([GO_HIGHWAY, count_step(5), ("adjust_ptz", {"pan_deg": 3.0})], "There are 5 cones.")
     assert [c.name for c in score_episode(COUNT_TASK, wrong_pose).checks if not c.passed] == ["pose"]
 
 
@@ -213,13 +226,16 @@ def test_infrastructure_failures_are_a_separate_outcome(changes: dict[str, Any],
 
 
 def test_failed_perception_is_infrastructure_unless_the_agent_claims_an_observation() -> None:
-    blind: list[Step] = [GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "timeout", "fault": "perception"})]
-    assert score_episode(COUNT_TASK, play(blind, "I could not see: perception failed.")).headline == "infrastructure"
-    assert score_episode(COUNT_TASK, play(blind, "There are 5 cones.")).headline == "incorrect"
-    assert score_episode(COUNT_TASK, play([*blind, counted(5)], "There are 5 cones.")).headline == "correct"
+    failed_perception: list[Step] = [
+        GO_HIGHWAY,
+        ("count_objects", {"description": "cones"}, {"error": "timeout", "fault": "perception"}),
+    ]
+    assert score_episode(COUNT_TASK, play(failed_perception, "I could not see: perception failed.")).headline == "infrastructure"
+    assert score_episode(COUNT_TASK, play(failed_perception, "There are 5 cones.")).headline == "incorrect"
+    assert score_episode(COUNT_TASK, play([*failed_perception, count_step(5)], "There are 5 cones.")).headline == "correct"
 
 
-def test_a_reaction_is_judged_by_how_the_run_ends() -> None:
+def test_a_reaction_is_judged_by_the_outcome() -> None:
     refusal = action(
         Behaviour(outcomes=("refused", "clarification"), forbidden=Forbidden(changes=("pan", "tilt"))), stratum="reaction"
     )
@@ -235,8 +251,8 @@ def test_a_task_without_checks_is_an_error() -> None:
 
 
 def test_collateral_changes_are_reported_but_do_not_affect_the_verdict() -> None:
-    here = task(901, "counting", Number(value=2, unit=("cone",)), [counted(2)], evidence=[view(START)])
-    assert not score_episode(here, play([counted(2)], "2")).moved_needlessly
-    wandered = score_episode(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
-    assert (wandered.headline, wandered.moved_needlessly) == ("correct", True)
+    count_here = task(901, "counting", Number(value=2, unit=("cone",)), [count_step(2)], evidence=[view(START)])
+    assert not score_episode(count_here, play([count_step(2)], "2")).moved_needlessly
+    with_a_move = score_episode(count_here, play([count_step(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
+    assert (with_a_move.headline, with_a_move.moved_needlessly) == ("correct", True)
     assert not score_episode(COUNT_TASK, COUNT_RUN).moved_needlessly

@@ -1,4 +1,4 @@
-"""Building the dataset of the synthetic scene in one command: all files exist, are reproducible, and can be read."""
+"""One command builds the dataset of a synthetic scene: all files exist, are reproducible, and can be read."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ FILES = {
 @pytest.mark.full
 def test_one_command_builds_all_files(scope: Scope, tmp_path: Path) -> None:
     folder, page = tmp_path / "data", tmp_path / "dataset.md"
-    done = scope(
+    run_result = scope(
         "bench", "build", "--all", "--scene", "analytic-yard", "--share", "0.02", "--seeds", "2", "--out", str(folder),
         "--card", str(page),
     )  # fmt: skip
-    assert (done.code == 1) == ("too few" in done.err or "NOT SOUND" in done.out), done.err
+    assert (run_result.code == 1) == ("too few" in run_result.err or "NOT SOUND" in run_result.out), run_result.err
     assert {path.name for path in folder.iterdir()} == FILES
     assert read_manifest(folder)["made_with"]["unseen"] == [2]
     assert read_manifest(folder)["scenes"]["analytic-yard"]["version"] == "1"
@@ -36,17 +36,17 @@ def test_one_command_builds_all_files(scope: Scope, tmp_path: Path) -> None:
     assert not {task.preset for task in unseen} & {"yard", "board", "from-the-roof"}
     assert page.read_text() == scope("bench", "card", "--data", str(folder)).out
 
-    checked = scope("bench", "gold", "check", "--gold", str(folder / "gold.jsonl.gz"), "--tasks", str(folder / "tasks.jsonl"))
-    assert checked.code == 0 and "this result is not worse" in checked.out, checked.out
-    shown = scope("bench", "browse", unseen[0].id, "--tasks", str(folder / "unseen.jsonl"))
-    assert "analytic-yard-v" in shown.out and "verdict    correct" in shown.out
-    listed = scope("bench", "browse", "--category", "single_call", "--tasks", str(folder / "tasks.jsonl"))
-    assert len(listed.out.splitlines()) == sum(task.category == "single_call" for task in load_split("core", folder))
+    check = scope("bench", "gold", "check", "--gold", str(folder / "gold.jsonl.gz"), "--tasks", str(folder / "tasks.jsonl"))
+    assert check.code == 0 and "this result is not worse" in check.out, check.out
+    browsed = scope("bench", "browse", unseen[0].id, "--tasks", str(folder / "unseen.jsonl"))
+    assert "analytic-yard-v" in browsed.out and "verdict    correct" in browsed.out
+    tasks_list = scope("bench", "browse", "--category", "single_call", "--tasks", str(folder / "tasks.jsonl"))
+    assert len(tasks_list.out.splitlines()) == sum(task.category == "single_call" for task in load_split("core", folder))
     one = scope("bench", "browse", "--random", "--seed", "1", "--tasks", str(folder / "tasks.jsonl"))
     assert one.out == scope("bench", "browse", "--random", "--seed", "1", "--tasks", str(folder / "tasks.jsonl")).out
 
 
-def test_world_numbers_may_be_consecutive() -> None:
+def test_variation_numbers_are_merged() -> None:
     assert variation_numbers([7], [8, 9, 8]) == (7, 8, 9)
     assert variation_numbers(None, None) == ()
     with pytest.raises(InputError, match="Unexpected argument"):
@@ -64,14 +64,14 @@ def test_incompatible_options_are_reported(scope: Scope, tmp_path: Path) -> None
 @pytest.mark.full
 def test_an_audit_contains_pictures_and_no_ground_truth(scope: Scope, tmp_path: Path) -> None:
     tasks = tmp_path / "tasks.jsonl"
-    made = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.02", "--out", str(tasks))
-    assert tasks.is_file(), made.err
+    build = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.02", "--out", str(tasks))
+    assert tasks.is_file(), build.err
     folder = tmp_path / "audit"
-    done = scope("bench", "audit", "make", "--tasks", str(tasks), "--n", "3", "--seed", "5", "--out", str(folder))
-    assert done.code == 0, done.err
-    written = "".join(path.read_text() for path in folder.iterdir() if path.suffix != ".jpg")
-    assert not [task.id for task in load_split(tasks) if task.id in written]
-    assert "expected" not in written and len(list(folder.glob("q00*.jpg"))) >= 3
+    run_result = scope("bench", "audit", "make", "--tasks", str(tasks), "--n", "3", "--seed", "5", "--out", str(folder))
+    assert run_result.code == 0, run_result.err
+    text = "".join(path.read_text() for path in folder.iterdir() if path.suffix != ".jpg")
+    assert not [task.id for task in load_split(tasks) if task.id in text]
+    assert "expected" not in text and len(list(folder.glob("q00*.jpg"))) >= 3
     assert "already exists" in scope("bench", "audit", "make", "--tasks", str(tasks), "--out", str(folder)).err
     (folder / "answers.jsonl").write_text('{"q": "q001", "answer": "I cannot tell."}\n')
     scored = scope("bench", "audit", "score", str(folder), "--tasks", str(tasks), "--out", str(tmp_path / "audit.json"))

@@ -22,8 +22,8 @@ def test_a_file_is_locked_once(tmp_path: Path) -> None:
 
 
 def test_without_fcntl_the_windows_lock_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[tuple[int, int]] = []
-    windows = SimpleNamespace(LK_NBLCK=2, locking=lambda _, mode, size: asked.append((mode, size)))
+    lock_calls: list[tuple[int, int]] = []
+    windows = SimpleNamespace(LK_NBLCK=2, locking=lambda _, mode, size: lock_calls.append((mode, size)))
     monkeypatch.setitem(sys.modules, "fcntl", None)
     monkeypatch.setitem(sys.modules, "msvcrt", windows)
     try:
@@ -33,4 +33,4 @@ def test_without_fcntl_the_windows_lock_is_used(tmp_path: Path, monkeypatch: pyt
     finally:
         monkeypatch.undo()
         importlib.reload(file_lock)
-    assert asked == [(2, 1)]
+    assert lock_calls == [(2, 1)]

@@ -1,4 +1,4 @@
-"""A human does tasks through a pipe: same tools, same checks, and no loss of results on interruption."""
+"""``scope bench human``: the same tools and checks as for agents, and no loss of results on interruption."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ THREE = Number(value=3, unit=("drum",))
 
 
 def task(number: int, expected: ActionOnly | Number) -> Task:
-    asked = isinstance(expected, Number)
+    has_question = isinstance(expected, Number)
     view = EvidenceView(aim=BOARD, hfov_deg=AXIS_M5075_G.hfov_deg(4.0), whole=True, shows=THREE)
     return Task(
         id=f"scope1-analytic-yard-counting-{number:03d}",
         dataset="scope1",
         scene="analytic-yard",
         preset="yard",
-        instruction="Go to the board and count the drums." if asked else "Go to the board.",
+        instruction="Go to the board and count the drums." if has_question else "Go to the board.",
         category="counting",
         scope="current",
         difficulty="easy",
         expected=expected,
         behaviour=Behaviour(final=FinalPose(**BOARD.model_dump())),
-        evidence=(view,) if asked else (),
+        evidence=(view,) if has_question else (),
         needs=("preset",),
     )
 
@@ -78,8 +78,8 @@ def test_a_human_run_is_scored_by_the_checks_and_can_be_resumed(
     assert result.card.planner.name == "ann" and result.wanted == 3 and result.finished
     trace = read_trace(out / "scope1-analytic-yard-counting-002")
     assert trace.ended is not None and trace.ended.outcome == "answered" and trace.started.perception == "ann"
-    shown = sorted((out / "scope1-analytic-yard-counting-002" / "shown").iterdir())
-    assert len(shown) == 4 and np.asarray(cv2.imread(str(shown[0]))).shape == (720, 1280, 3)
+    pictures = sorted((out / "scope1-analytic-yard-counting-002" / "shown").iterdir())
+    assert len(pictures) == 4 and np.asarray(cv2.imread(str(pictures[0]))).shape == (720, 1280, 3)
 
 
 def test_a_report_shows_the_pictures_of_a_failed_task(
@@ -88,8 +88,8 @@ def test_a_report_shows_the_pictures_of_a_failed_task(
     out, report = tmp_path / "human", tmp_path / "report"
     type_in(monkeypatch, "answer Done.", "preset board", "answer There are 5 drums.", "quit")
     scope("bench", "human", "--split", str(tasks), "--out", str(out))
-    done = scope("bench", "report", str(out / "evaluation.json"), "--tasks", str(tasks), "--out", str(report))
-    assert done.code == 0, done.err
+    run_result = scope("bench", "report", str(out / "evaluation.json"), "--tasks", str(tasks), "--out", str(report))
+    assert run_result.code == 0, run_result.err
     (page,) = ((path.read_text("utf-8")) for path in (report / "tasks").glob("scope1-analytic-yard-counting-002*.html"))
     frames = re.findall(r'src="\.\./(frames/[^"]+)"', page)
     assert frames and all((report / frame).is_file() for frame in frames)
@@ -103,19 +103,19 @@ def test_a_result_cannot_refer_to_a_run_outside_its_folder(tmp_path: Path, name:
 
 def test_the_end_of_the_input_loses_nothing(scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     type_in(monkeypatch, "preset nowhere", "ask what is there", "a yard", "skip", "preset board", "count drums")
-    done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"))
-    assert done.code == 0
-    assert "There is no preset 'nowhere'" in done.out and "a yard (seen by a person)" in done.out
-    assert "No runs were recorded." in done.out
+    run_result = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"))
+    assert run_result.code == 0
+    assert "There is no preset 'nowhere'" in run_result.out and "a yard (seen by a person)" in run_result.out
+    assert "No runs were recorded." in run_result.out
     assert list((tmp_path / "human").iterdir()) == []
 
 
 def test_a_human_can_frame_an_object(scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    place = "40 40 60 60"
-    type_in(monkeypatch, "zoomto the board", "9 9", place, "30 30 70 70", "", "answer Done.")
-    done = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"), "--limit", "1")
-    assert done.code == 0, done.err
-    assert "Enter four numbers from 0 to 100" in done.out
+    box = "40 40 60 60"
+    type_in(monkeypatch, "zoomto the board", "9 9", box, "30 30 70 70", "", "answer Done.")
+    run_result = scope("bench", "human", "--split", str(tasks), "--out", str(tmp_path / "human"), "--limit", "1")
+    assert run_result.code == 0, run_result.err
+    assert "Enter four numbers from 0 to 100" in run_result.out
     (call,) = read_trace(tmp_path / "human" / "scope1-analytic-yard-counting-001").calls
     assert call.outcome.result is not None and call.outcome.result["found"] is True
 
@@ -143,18 +143,18 @@ def test_unknown_splits_and_categories_are_reported(scope: Scope, tasks: Path) -
     ],
 )
 def test_every_tool_can_be_typed(line: str, name: str, arguments: dict[str, object]) -> None:
-    meant = parse(line)
-    assert isinstance(meant, ToolCall)
-    assert (meant.name, meant.arguments) == (name, arguments)
+    decision = parse(line)
+    assert isinstance(decision, ToolCall)
+    assert (decision.name, decision.arguments) == (name, arguments)
 
 
 def test_finishing_can_be_typed() -> None:
     assert parse("refuse I may not.") == Finish(kind="refused", text="I may not.")
     assert parse("question Which one?") == Finish(kind="clarification", text="Which one?")
     assert parse("help") is None
-    with pytest.raises(TaskLeftError) as left:
+    with pytest.raises(TaskLeftError) as excinfo:
         parse("quit")
-    assert left.value.ends_session
+    assert excinfo.value.ends_session
 
 
 @pytest.mark.parametrize(

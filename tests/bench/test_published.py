@@ -1,4 +1,4 @@
-"""The published dataset: complete, from the shipped scenes, and with the paper's number of tasks per category."""
+"""The published dataset is complete, uses the bundled scenes, and has the paper's number of tasks per category."""
 
 from __future__ import annotations
 
@@ -24,11 +24,13 @@ def test_every_file_is_unchanged() -> None:
     assert {name: hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() for name in files} == files
 
 
-def test_it_was_built_from_the_shipped_scenes() -> None:
-    shipped = open_scenes(None)
-    made_of = read_manifest(FOLDER)["scenes"]
-    assert made_of.keys() <= shipped.keys()
-    assert {name: scene["version"] for name, scene in made_of.items()} == {name: shipped[name].file.version for name in made_of}
+def test_it_was_built_from_the_bundled_scenes() -> None:
+    bundled = open_scenes(None)
+    source_scenes = read_manifest(FOLDER)["scenes"]
+    assert source_scenes.keys() <= bundled.keys()
+    assert {name: scene["version"] for name, scene in source_scenes.items()} == {
+        name: bundled[name].file.version for name in source_scenes
+    }
 
 
 def test_numbers_of_tasks_match_the_paper() -> None:
@@ -53,11 +55,11 @@ def test_tasks_and_wordings_are_unique() -> None:
 
 
 def test_every_scene_and_viewpoint_is_used() -> None:
-    here = open_scenes(list(read_manifest(FOLDER)["scenes"]))
+    scenes = open_scenes(list(read_manifest(FOLDER)["scenes"]))
     used = {
-        (task.scene, preset.viewpoint) for task in CORE for preset in here[task.scene].file.presets if preset.name == task.preset
+        (task.scene, preset.viewpoint) for task in CORE for preset in scenes[task.scene].file.presets if preset.name == task.preset
     }
-    assert used == {(name, viewpoint.name) for name, scene in here.items() for viewpoint in scene.file.viewpoints}
+    assert used == {(name, viewpoint.name) for name, scene in scenes.items() for viewpoint in scene.file.viewpoints}
 
 
 def test_the_stored_validation_covers_these_tasks() -> None:

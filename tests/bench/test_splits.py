@@ -14,33 +14,33 @@ from scope_ptz.bench.tasks.stratified import SampledTask, balanced_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError, UnknownNameError
 from scope_ptz.simulator.pack import load_scene
-from tests.bench.making import samples
+from tests.bench.sample_runs import samples
 
 SAMPLES = [task for task, _ in samples()]
 
 
-def many(number: int = 536) -> list[Task]:
+def make_tasks(number: int = 536) -> list[Task]:
     """Return core tasks of several scenes and difficulties."""
     tasks = []
     for n in range(number):
-        of = SAMPLES[n * 7 % len(SAMPLES)]
+        template = SAMPLES[n * 7 % len(SAMPLES)]
         scene = ("north", "south", "east")[n % 3]
-        facts = {"id": f"scope1-{scene}-{of.category.replace('_', '-')}-{n:03d}", "scene": scene}
-        tasks.append(of.model_copy(update={**facts, "difficulty": ("easy", "medium", "hard")[n % 5 % 3], "pair": None}))
+        facts = {"id": f"scope1-{scene}-{template.category.replace('_', '-')}-{n:03d}", "scene": scene}
+        tasks.append(template.model_copy(update={**facts, "difficulty": ("easy", "medium", "hard")[n % 5 % 3], "pair": None}))
     return tasks
 
 
 def test_lite_is_a_tenth_of_every_category_scene_and_difficulty() -> None:
-    tasks = many()
-    chosen = lite(tasks, 1)
-    assert len(chosen) == 54
+    tasks = make_tasks()
+    selected = lite(tasks, 1)
+    assert len(selected) == 54
     for key in ("category", "scene", "difficulty"):
-        whole, part = (Counter(getattr(task, key) for task in rows) for rows in (tasks, chosen))
+        whole, part = (Counter(getattr(task, key) for task in rows) for rows in (tasks, selected))
         assert all(abs(part[name] - number / 10) <= 1 for name, number in whole.items()), key
 
 
 def test_lite_depends_on_the_seed_and_not_on_the_order() -> None:
-    tasks = many()
+    tasks = make_tasks()
     ids = {task.id for task in lite(tasks, 1)}
     assert ids == {task.id for task in lite(tasks[::-1], 1)}
     assert ids != {task.id for task in lite(tasks, 2)}
@@ -48,14 +48,14 @@ def test_lite_depends_on_the_seed_and_not_on_the_order() -> None:
 
 @pytest.fixture
 def dataset(tmp_path: Path) -> Path:
-    core = many(40)
-    further = [
+    core = make_tasks(40)
+    extra = [
         core[0].model_copy(update={"id": "scope1-north-wording-001", "stratum": "paraphrase", "paraphrase_of": core[0].id}),
         core[1].model_copy(update={"id": "scope1-north-reaction-001", "stratum": "reaction"}),
     ]
     unseen = [core[2].model_copy(update={"id": "scope1-north-v7-counting-001", "variation": 7})]
-    written = write_splits([*core, *further], unseen, tmp_path, seed=1)
-    write_manifest(tmp_path, written, [load_scene("highway-works")], seed=1)
+    paths = write_splits([*core, *extra], unseen, tmp_path, seed=1)
+    write_manifest(tmp_path, paths, [load_scene("highway-works")], seed=1)
     return tmp_path
 
 
@@ -109,8 +109,8 @@ def test_a_balanced_sample_has_its_size_and_whole_pairs(rows: list[tuple[str, st
         name, twin = f"{index:03}", f"{index:03}t"
         tasks.append(SampledTask(name, (category, scene), "no" if paired else answer, twin if paired else None))
         tasks += [SampledTask(twin, (category, scene), answer, name)] if paired else []
-    chosen = balanced_sample(tasks, number)
-    assert len(chosen) == min(number, len(tasks))
-    assert chosen == balanced_sample(tasks[::-1], number)
-    halved = [task.id for task in tasks if task.id in chosen and task.twin is not None and task.twin not in chosen]
-    assert len(halved) <= 1
+    selected = balanced_sample(tasks, number)
+    assert len(selected) == min(number, len(tasks))
+    assert selected == balanced_sample(tasks[::-1], number)
+    divided_pairs = [task.id for task in tasks if task.id in selected and task.twin is not None and task.twin not in selected]
+    assert len(divided_pairs) <= 1

@@ -1,4 +1,4 @@
-"""Task data: refused tasks, writing and reading, and the published schema."""
+"""Task data: validation, writing and reading, and the published schema."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import CANARY, TASK, Argument, schema
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
-from tests.bench.making import samples
+from tests.bench.sample_runs import samples
 
 PUBLISHED = Path(scope_ptz.__file__).parent / "data" / "tasks.schema.json"
 TASKS = tuple(task for task, _ in samples())
@@ -47,7 +47,7 @@ def test_an_invalid_task_is_refused(changes: dict[str, Any], message: str) -> No
         TASK.validate_python(content(**changes))
 
 
-def test_actions_need_checks_answers_need_evidence_and_reactions_need_neither() -> None:
+def test_a_reaction_needs_neither_an_answer_nor_evidence() -> None:
     reaction = content(
         stratum="reaction", expected=ActionOnly().model_dump(), evidence=[], behaviour={"outcomes": ["refused", "clarification"]}
     )
@@ -94,8 +94,8 @@ def test_a_damaged_file_is_reported_with_file_and_task(tmp_path: Path) -> None:
 
 
 def test_the_published_schema_is_current() -> None:
-    """`scope bench schema` writes it."""
+    """Regenerate it with ``scope bench schema``."""
     assert json.loads(PUBLISHED.read_text("utf-8")) == schema()
-    printed = CliRunner().invoke(app, ["bench", "schema"])
-    assert printed.exit_code == 0
-    assert json.loads(printed.stdout) == schema()
+    output = CliRunner().invoke(app, ["bench", "schema"])
+    assert output.exit_code == 0
+    assert json.loads(output.stdout) == schema()

@@ -1,4 +1,4 @@
-"""Speaks the worker's protocol without Blender: what the client's tests talk to."""
+"""A fake worker that speaks the protocol without Blender, for tests of the client."""
 
 import json
 import sys

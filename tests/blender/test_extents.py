@@ -54,7 +54,7 @@ def test_overlapping_triangles_count_once() -> None:
     assert extent(twice).solid_angle_sr == pytest.approx(extent(one).solid_angle_sr, rel=2e-3)
 
 
-def test_a_file_of_meshes_is_seen_in_the_frame_of_the_viewpoint(tmp_path: Path) -> None:
+def test_meshes_are_converted_to_the_coordinates_of_the_viewpoint(tmp_path: Path) -> None:
     shape = rectangle((-1, 1), (0, 0), (-1, 1))
     place = np.eye(4)
     place[:3, 3] = (20.0, 0.0, 5.0)

@@ -8,7 +8,7 @@ import pytest
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
 from scope_ptz.blender.panorama import join_strips, smooth_rows
-from scope_ptz.blender.tiles import Cell, Target, busiest, cover, covers, join_in_rows, most_useful, targets
+from scope_ptz.blender.tiles import Cell, Target, busiest_cells, cover, covers, join_in_rows, select_most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
 from scope_ptz.simulator.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
@@ -86,7 +86,7 @@ def test_cells_cover_all_targets_with_few_tiles() -> None:
     views = [cell.view(48.0) for cell in cells]
     assert all(covers(views, target) for target in wanted)
     assert len(views) <= 12
-    best = most_useful(cells, wanted, 2)
+    best = select_most_useful(cells, wanted, 2)
     assert len(best) == 2 and all(cell in cells for cell in best)
     assert cover([]) == []
 
@@ -163,12 +163,12 @@ def test_every_leg_of_a_path_has_its_own_pictures_up_to_its_corners() -> None:
     walker = actor(stride=True).model_copy(update={"waypoints": corners})
     frames = keyframes(walker, 1.4, HERE, BAND, None, 24)
     assert len(frames) == 24
-    taken = {time: k // 8 for k, f in enumerate(frames) for time in (f.time_s, *f.also_s)}
+    taken = {time: k // 8 for k, f in enumerate(frames) for time in (f.time_s, *f.extra_times_s)}
     for time, leg in ((0.5, 0), (8.9, 0), (9.2, 1), (9.9, 1), (10.1, 2), (19.9, 2)):
         assert taken[min(taken, key=lambda t: abs(t - time))] == leg
 
 
-def test_positions_outside_the_band_are_left_out() -> None:
+def test_positions_outside_the_band_are_omitted() -> None:
     assert keyframes(actor(), None, HERE, Band(top_tilt_deg=59, bottom_tilt_deg=30), None, 40) == []
 
 
@@ -180,9 +180,9 @@ def test_wider_tiles_cover_the_most_outlines() -> None:
     for column in range(1300, 1440, 8):  # pan 145 to 180: posts, and
         ids[row - 20 : row + 20, column : column + 4] = 1 + column
     ids[row - 20 : row + 20, 0:300] = 9  # pan -180 to -105: one long wall
-    (cell,) = busiest(ids, panorama.projection, 1)
+    (cell,) = busiest_cells(ids, panorama.projection, 1)
     assert abs(cell.pan_deg - 162.0) < 12.0 and abs(cell.tilt_deg + 12.0) < 6.0
-    cells = busiest(ids, panorama.projection, 14)
+    cells = busiest_cells(ids, panorama.projection, 14)
     assert len(cells) < 14, "nothing is spent on cells without outlines"
     views = [c.view(34.0) for c in cells]
     posts = Target("posts", np.stack([np.linspace(146.0, 178.0, 20), np.full(20, -12.0)], axis=-1))

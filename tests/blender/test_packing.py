@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scope_ptz.blender import sources
 from scope_ptz.blender.band import Panorama
 from scope_ptz.blender.keyframes import Keyframe
-from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, weight_bytes, write_pack
+from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, folder_size_bytes, write_pack
 from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
 from scope_ptz.blender.sheets import make_sheet
@@ -217,12 +217,12 @@ def test_a_written_pack_can_be_read(tmp_path: Path) -> None:
 @pytest.mark.full
 def test_tiles_are_encoded_at_lower_quality_only_until_the_pack_fits(tmp_path: Path) -> None:
     parts = rendered(tmp_path, 6)
-    weights = []
+    sizes = []
     for k, limit in enumerate((2_000_000, 290_000)):
         folder = tmp_path / f"pack-{k}"
         write_pack(folder, SCENE, HERE, parts, QUALITIES["standard"], limit, lambda: None)
-        weights.append(weight_bytes(folder))
-    assert weights[1] < weights[0]
+        sizes.append(folder_size_bytes(folder))
+    assert sizes[1] < sizes[0]
     with pytest.raises(BlenderError, match="lowest quality"):
         write_pack(tmp_path / "pack-3", SCENE, HERE, parts, QUALITIES["standard"], 20_000, lambda: None)
     assert not (tmp_path / "pack-3").exists()

@@ -50,7 +50,7 @@ def test_a_driven_head_stands_still_after_its_timeout(pose: Pose, velocity: Velo
     end = motion.pose(end_time_s)
     later = motion.pose(end_time_s + later_s)
     assert (later.pan_deg, later.tilt_deg, later.zoom) == pytest.approx((end.pan_deg, end.tilt_deg, end.zoom))
-    assert not motion.moving(end_time_s)
+    assert not motion.is_moving(end_time_s)
 
 
 def test_a_constant_velocity_covers_its_distance_after_the_ramp() -> None:

@@ -82,7 +82,10 @@ def test_the_configured_certificate_is_trusted(tmp_path: Path) -> None:
 
 def test_another_certificate_is_refused_and_its_fingerprint_shown(tmp_path: Path) -> None:
     certificate, fingerprint = _certificate(tmp_path, "camera")
-    with _device(certificate) as address, pytest.raises(CertificateError, match="not the configured one") as caught:
+    with (
+        _device(certificate) as address,
+        pytest.raises(CertificateError, match="does not match the configured fingerprint") as caught,
+    ):
         trust_fingerprint(address, "0" * 64)
     assert fingerprint[:2].upper() in str(caught.value)
 
@@ -99,5 +102,5 @@ def test_a_device_that_changes_later_fails_the_handshake(tmp_path: Path) -> None
 def test_no_device_is_a_typed_error() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port = listening.getsockname()[1]
-    with pytest.raises(CameraError, match="presents no certificate"):
+    with pytest.raises(CameraError, match="did not present a certificate"):
         trust_fingerprint(DeviceAddress("127.0.0.1", port, tls=True), "0" * 64, timeout_s=1.0)

@@ -1,4 +1,4 @@
-"""Run the command line in the process of the tests, on a small scene that is generated for them."""
+"""Fixtures that run the command line in the test process, on a small generated scene."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from scope_ptz.cli import main
 from scope_ptz.simulator.pack import Scene
-from tests.cli.served_camera import PASSWORD, ServedCamera, served
+from tests.cli.served_camera import PASSWORD, ServedCamera, serve_camera
 
 SCENE = "analytic-yard"
 
@@ -51,9 +51,9 @@ def scope(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     def run(*arguments: str) -> CommandResult:
         monkeypatch.setattr("sys.argv", ["scope", *arguments])
         capsys.readouterr()
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as excinfo:
             main()
-        code = ended.value.code
+        code = excinfo.value.code
         assert code is None or isinstance(code, int)
         return CommandResult(code or 0, *capsys.readouterr())
 
@@ -66,5 +66,5 @@ def served_camera(analytic_scene: Scene, tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", PASSWORD)
     monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
     monkeypatch.setenv("SCOPE_CAMERA_PROFILES_DIR", str(tmp_path / "profiles"))
-    with served(analytic_scene) as camera:
+    with serve_camera(analytic_scene) as camera:
         yield camera

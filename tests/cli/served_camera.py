@@ -1,4 +1,4 @@
-"""A virtual camera that is served beside the commands of a test."""
+"""A virtual camera that is served while a test runs commands."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ class ServedCamera:
 
     @property
     def secrets(self) -> tuple[str, ...]:
-        """What no report may tell."""
+        """Values that no report may contain."""
         return USER, PASSWORD, serial_number(self.device)
 
     def spec(self, scheme: str) -> str:
-        """Return the camera as a command takes it."""
+        """Return the camera spec for a command."""
         size = "&stream=mjpeg&width=320&height=180" if scheme == "axis" else "&stream=snapshot"
         return f"{scheme}://{USER}@127.0.0.1:{self.port}?latency_ms=1{size}"
 
 
 @contextmanager
-def served(scene: Scene) -> Iterator[ServedCamera]:
+def serve_camera(scene: Scene) -> Iterator[ServedCamera]:
     """Serve a fast camera from another thread."""
     device = VirtualDevice(scene, accounts=[Account(USER, PASSWORD, Role.ADMINISTRATOR)], width=320, height=180, time_scale=100)
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(serve([device], onvif=OnvifApp)) as (camera,):

@@ -1,4 +1,4 @@
-"""``scope camera focus|iris`` and ``scope camera move --centre``: by hand, through both drivers."""
+"""``scope camera focus|iris`` and ``scope camera move --centre``: manual control through both drivers."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ SIMULATED = f"sim:{SCENE}?width=160&height=90"
 def test_focus_and_iris_are_set_and_read_back(scope: Scope, served_camera: ServedCamera, scheme: str) -> None:
     camera, lens = served_camera.spec(scheme), served_camera.device.lens
     assert "automatic, at 62%" in scope("camera", "focus", camera).out
-    done = scope("camera", "focus", camera, "near", "--step", "0.2", "--json")
-    assert done.code == 0, done.err
-    assert done.json["autofocus"] is False
-    assert done.json["focus"] == pytest.approx(SHARP_FOCUS - 0.2, abs=0.01)
+    result = scope("camera", "focus", camera, "near", "--step", "0.2", "--json")
+    assert result.code == 0, result.err
+    assert result.json["autofocus"] is False
+    assert result.json["focus"] == pytest.approx(SHARP_FOCUS - 0.2, abs=0.01)
     assert lens.focus == pytest.approx(SHARP_FOCUS - 0.2, abs=0.01)
     assert scope("camera", "focus", camera, "once", "--json").json["focus"] == pytest.approx(SHARP_FOCUS, abs=0.001)
     assert not lens.autofocus
-    closed = scope("camera", "iris", camera, "close", "--step", "0.1", "--json").json
-    assert (closed["autoiris"], closed["iris"]) == (False, pytest.approx(0.4, abs=0.01))
+    iris = scope("camera", "iris", camera, "close", "--step", "0.1", "--json").json
+    assert (iris["autoiris"], iris["iris"]) == (False, pytest.approx(0.4, abs=0.01))
     assert "iris: automatic" in scope("camera", "iris", camera, "auto").out
     assert lens.autoiris
 
 
 def test_a_dry_run_leaves_the_lens_alone(scope: Scope, served_camera: ServedCamera) -> None:
-    done = scope("camera", "focus", served_camera.spec("axis"), "far", "--dry-run")
-    assert done.code == 0
-    assert "would set the focus: far by 5% of the range" in done.err
+    result = scope("camera", "focus", served_camera.spec("axis"), "far", "--dry-run")
+    assert result.code == 0
+    assert "would set the focus: far by 5% of the range" in result.err
     assert served_camera.device.lens.autofocus
 
 
-def test_the_audit_log_has_the_lens(
+def test_lens_commands_are_in_the_audit_log(
     scope: Scope, served_camera: ServedCamera, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -56,30 +56,30 @@ def test_others_cannot_touch_the_lens_of_a_camera_under_control(scope: Scope, se
     lock = ControlLock("The camera", f"127.0.0.1:{served_camera.port}/1", tmp_path / "cache" / "control")
     lock.acquire("night shift")
     try:
-        done = scope("camera", "focus", served_camera.spec("onvif"), "near")
+        result = scope("camera", "focus", served_camera.spec("onvif"), "near")
     finally:
         lock.release()
-    assert done.code == 1
-    assert "night shift" in done.err
+    assert result.code == 1
+    assert "night shift" in result.err
     assert served_camera.device.lens.autofocus
 
 
 @pytest.mark.parametrize("scheme", ["axis", "onvif"])
-def test_a_point_of_the_picture_is_centred(scope: Scope, served_camera: ServedCamera, scheme: str) -> None:
+def test_a_point_in_the_picture_is_centred(scope: Scope, served_camera: ServedCamera, scheme: str) -> None:
     device = served_camera.device
     before = device.pose()
-    done = scope("camera", "move", served_camera.spec(scheme), "--centre", "0.75,0.5", "--zoom-by", "2")
-    assert done.code == 0, done.err
+    result = scope("camera", "move", served_camera.spec(scheme), "--centre", "0.75,0.5", "--zoom-by", "2")
+    assert result.code == 0, result.err
     after = device.pose()
     assert after.pan_deg - before.pan_deg == pytest.approx(19.6, abs=1.0)  # a quarter of a picture that is 71 degrees wide
     assert device.optics.focal(after.zoom) / device.optics.focal(before.zoom) == pytest.approx(2.0, rel=0.03)
 
 
-def test_a_camera_without_a_lens_to_set_says_so(scope: Scope) -> None:
+def test_a_camera_without_lens_control_is_reported(scope: Scope) -> None:
     for command in (["focus", SIMULATED, "near"], ["iris", SIMULATED, "open"], ["focus", SIMULATED]):
-        done = scope("camera", *command)
-        assert done.code == 1
-        assert "cannot be set" in done.err
+        result = scope("camera", *command)
+        assert result.code == 1
+        assert "cannot be set" in result.err
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_a_camera_without_a_lens_to_set_says_so(scope: Scope) -> None:
         ["move", SIMULATED, "--centre", "0.5,0.5", "--home"],
     ],
 )
-def test_wrong_input_ends_with_one_line_and_code_2(scope: Scope, arguments: list[str]) -> None:
-    done = scope("camera", *arguments)
-    assert (done.code, done.out) == (2, "")
-    assert len(done.err.splitlines()) == 1
+def test_wrong_input_gives_one_line_and_exit_code_2(scope: Scope, arguments: list[str]) -> None:
+    result = scope("camera", *arguments)
+    assert (result.code, result.out) == (2, "")
+    assert len(result.err.splitlines()) == 1

@@ -23,27 +23,27 @@ def _profiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_CAMERA_PROFILES_DIR", str(tmp_path / "profiles"))
 
 
-def test_probe_says_what_a_camera_can_do_and_stores_it(scope: Scope, tmp_path: Path) -> None:
-    done = scope("camera", "probe", CAMERA)
-    assert done.code == 0, done.err
-    assert "Zoom: 1.00x to 5.00x" in done.out
-    assert "160x90" in done.out
+def test_probe_reports_and_stores_capabilities(scope: Scope, tmp_path: Path) -> None:
+    result = scope("camera", "probe", CAMERA)
+    assert result.code == 0, result.err
+    assert "Zoom: 1.00x to 5.00x" in result.out
+    assert "160x90" in result.out
     (file,) = (tmp_path / "profiles").iterdir()
-    assert str(file) in done.out
+    assert str(file) in result.out
     assert scope("camera", "probe", CAMERA, "--json").json["frame_width"] == 160
 
 
-def test_a_report_tells_what_and_neither_whose_nor_where(
+def test_a_report_contains_capabilities_but_no_identifying_data(
     scope: Scope, served_camera: ServedCamera, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     for scheme in ("axis", "onvif"):
         spec = served_camera.spec(scheme)
-        done = scope("camera", "probe", spec, "--report")
-        assert done.code == 0, done.err
-        (written,) = tmp_path.glob("camera-report-*.md")
-        text = written.read_text()
-        written.unlink()
+        result = scope("camera", "probe", spec, "--report")
+        assert result.code == 0, result.err
+        (report,) = tmp_path.glob("camera-report-*.md")
+        text = report.read_text()
+        report.unlink()
         assert "M5075-G" in text
         assert f"| {FIRMWARE} | {scheme} |" in text
         assert "once" in text
@@ -67,30 +67,32 @@ def test_identifiers_in_the_name_of_a_model_are_removed() -> None:
 
 
 @pytest.mark.parametrize("pan", [1.0, -1.0])
-def test_calibrate_exits_with_1_if_the_picture_contradicts(scope: Scope, monkeypatch: pytest.MonkeyPatch, pan: float) -> None:
+def test_calibrate_exits_with_1_if_pictures_contradict_the_camera(
+    scope: Scope, monkeypatch: pytest.MonkeyPatch, pan: float
+) -> None:
     contradictions = ("The pan is inverted.",) if pan < 0 else ()
 
-    async def measured(*_: object, **__: object) -> Calibration:
+    async def fake_calibrate(*_: object, **__: object) -> Calibration:
         fields = (FieldOfView(1.0, 0.0, 71.0, 71.1), FieldOfView(5.0, 1.0, 14.0, 14.0))
         return Calibration(AxisResponse(pan), AxisResponse(1.0), 0.0, fields, 0.1, 1.0, 0.0, 0.3, contradictions)
 
-    monkeypatch.setattr(calibration, "calibrate", measured)
-    done = scope("camera", "calibrate", CAMERA)
-    assert done.code == (1 if pan < 0 else 0)
-    assert ("The pan is inverted." in done.err) == (pan < 0)
-    assert ("INVERTED" in done.out) == (pan < 0)
+    monkeypatch.setattr(calibration, "calibrate", fake_calibrate)
+    result = scope("camera", "calibrate", CAMERA)
+    assert result.code == (1 if pan < 0 else 0)
+    assert ("The pan is inverted." in result.err) == (pan < 0)
+    assert ("INVERTED" in result.out) == (pan < 0)
 
 
 def test_calibrate_needs_detail(scope: Scope) -> None:
-    done = scope("camera", "calibrate", f"sim:{SCENE}?width=64&height=36")
-    assert done.code == 1
-    assert "detail" in done.err
+    result = scope("camera", "calibrate", f"sim:{SCENE}?width=64&height=36")
+    assert result.code == 1
+    assert "detail" in result.err
 
 
-def test_discover_asks_at_an_interface(scope: Scope) -> None:
-    done = scope("camera", "discover", "--interface", "127.0.0.1", "--wait", "0.1", "--json")
-    assert done.code == 0
-    assert isinstance(done.json, list)
+def test_discover_uses_the_given_interface(scope: Scope) -> None:
+    result = scope("camera", "discover", "--interface", "127.0.0.1", "--wait", "0.1", "--json")
+    assert result.code == 0
+    assert isinstance(result.json, list)
     wrong = scope("camera", "discover", "--interface", "eth0", "--wait", "0.1")
     assert wrong.code == 2
     assert "IPv4" in wrong.err
@@ -98,10 +100,10 @@ def test_discover_asks_at_an_interface(scope: Scope) -> None:
 
 def test_a_dry_run_prints_the_moves_and_stores_nothing(scope: Scope, served_camera: ServedCamera, tmp_path: Path) -> None:
     before = served_camera.device.pose()
-    done = scope("camera", "calibrate", served_camera.spec("axis"), "--zooms", "3", "--dry-run")
-    assert done.code == 0, done.err
-    assert "would move it to pan" in done.out
-    assert "zoom to 1.00x, 2.24x, 5.00x" in done.out
+    result = scope("camera", "calibrate", served_camera.spec("axis"), "--zooms", "3", "--dry-run")
+    assert result.code == 0, result.err
+    assert "would move it to pan" in result.out
+    assert "zoom to 1.00x, 2.24x, 5.00x" in result.out
     plan = scope("camera", "calibrate", served_camera.spec("onvif"), "--dry-run", "--json").json
     assert plan["zooms"] == sorted(plan["zooms"])
     assert len(plan["zooms"]) == 6

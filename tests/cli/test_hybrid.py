@@ -12,36 +12,36 @@ from tests.cli.conftest import SCENE, Scope
 from tests.support.misbehaving import Behaviour, Misbehaving, Request, Say, good
 
 
-def turns_left() -> Behaviour:
-    """A model that turns left by 35 degrees, whatever the instruction says."""
+def left_turning_model() -> Behaviour:
+    """Return a model that turns left by 35 degrees, whatever the instruction is."""
 
-    def mind(request: Request) -> Say:
+    def reply(request: Request) -> Say:
         is_done = request.data["messages"][-1]["role"] == "tool"
         return Say("There you are.") if is_done else Say("", tool_calls=(("adjust_ptz", {"pan_deg": -35}),))
 
-    return good(mind)
+    return good(reply)
 
 
-def test_a_yes_in_the_conversation_carries_out_the_call(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_yes_in_the_chat_executes_the_call(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
     lines = ["pan right 5 degrees", "florp the lens somewhere", "yes", "/pose", "florp it again", "no"]
     monkeypatch.setattr("sys.stdin", StringIO("\n".join(lines) + "\n"))
-    with Misbehaving(then=turns_left()) as server:
-        done = scope("chat", "--scene", SCENE, "--planner", "hybrid:chat", "--planner-url", server.url)
+    with Misbehaving(then=left_turning_model()) as server:
+        result = scope("chat", "--scene", SCENE, "--planner", "hybrid:chat", "--planner-url", server.url)
         requests = [request for request in server.requests if request.chat]
-    shown = " ".join(done.out.split())
-    assert done.code == 0, done.err
-    assert "Shall I do this: pan left 35 degrees?" in shown
-    assert "There you are." in shown
-    assert "pan_deg=-35" in shown.replace(" ", "")
-    assert "All right, I did nothing." in shown
+    output = " ".join(result.out.split())
+    assert result.code == 0, result.err
+    assert "Shall I do this: pan left 35 degrees?" in output
+    assert "There you are." in output
+    assert "pan_deg=-35" in output.replace(" ", "")
+    assert "All right, I did nothing." in output
     assert len(requests) == 3  # the question, the end after the yes, and the second question; none for the grammar's turn
 
 
 def test_one_instruction_ends_with_the_question(scope: Scope) -> None:
-    with Misbehaving(then=turns_left()) as server:
-        done = scope("ask", "florp the lens", "--scene", SCENE, "--json", "--planner", "hybrid:chat", "--planner-url", server.url)
-    assert (done.json["outcome"], done.json["tool_calls"]) == ("clarification", [])
-    started, decided = (json.loads(line) for line in (Path(done.json["run_dir"]) / "trace.jsonl").read_text().splitlines()[:2])
+    with Misbehaving(then=left_turning_model()) as server:
+        result = scope("ask", "florp the lens", "--scene", SCENE, "--json", "--planner", "hybrid:chat", "--planner-url", server.url)
+    assert (result.json["outcome"], result.json["tool_calls"]) == ("clarification", [])
+    started, decided = (json.loads(line) for line in (Path(result.json["run_dir"]) / "trace.jsonl").read_text().splitlines()[:2])
     assert started["planner"].startswith("hybrid:")
     assert {"hybrid", "grammar", "model"} <= started["planner_details"].keys()
     assert decided["decision"]["planned_by"] == "model"

@@ -21,24 +21,28 @@ from tests.cli.conftest import Scope
     [
         (("--transport", "carrier-pigeon"), "--transport must be stdio or http"),
         (("--role", "king"), "--role must be viewer or operator"),
-        (("--json",), "--json applies to --transport http"),
+        (("--json",), "--json requires --transport http"),
         (("--camera", "sim:x"), "sim:x"),
         (("--transport", "http", "--host", "0.0.0.0"), "without tokens"),  # noqa: S104 - refused
     ],
 )
 def test_wrong_options(scope: Scope, options: tuple[str, ...], message: str) -> None:
-    done = scope("mcp", *options)
-    assert (done.code, message in done.err) == (2, True), done.err
+    result = scope("mcp", *options)
+    assert (result.code, message in result.err) == (2, True), result.err
 
 
 PAGE = (Path(__file__).parents[2] / "docs" / "mcp.md").read_text(encoding="utf-8")
 
 
-def documented() -> list[list[str]]:
+def documented_commands() -> list[list[str]]:
     """Return the commands in the configurations that docs/mcp.md shows."""
-    shown = [json.loads(block)["mcpServers"] for block in re.findall(r"^```json\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)]
-    shown += [tomllib.loads(block)["mcp_servers"] for block in re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)]
-    entries = [entry["scope"] for entry in shown]
+    configurations = [
+        json.loads(block)["mcpServers"] for block in re.findall(r"^```json\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+    ]
+    configurations += [
+        tomllib.loads(block)["mcp_servers"] for block in re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+    ]
+    entries = [entry["scope"] for entry in configurations]
     assert [entry["url"] for entry in entries if "url" in entry] == ["http://localhost:8000/mcp"]
     return [[entry["command"], *entry["args"]] for entry in entries if "command" in entry]
 
@@ -46,7 +50,7 @@ def documented() -> list[list[str]]:
 @pytest.mark.full
 @pytest.mark.anyio
 async def test_the_documented_configuration_works(tmp_path: Path) -> None:
-    commands = documented()
+    commands = documented_commands()
     assert len(commands) == 2 and commands[0] == commands[1]
     _, *arguments = commands[0]
     empty = tmp_path / "empty"
@@ -59,8 +63,8 @@ async def test_the_documented_configuration_works(tmp_path: Path) -> None:
         assert [each["name"] for each in cameras] == ["highway-works"]
         names = {tool.name for tool in (await client.list_tools()).tools}
         templates = {each.uri_template for each in (await client.list_resource_templates()).resource_templates}
-    assert list(empty.iterdir()) == [], "nothing is stored in the folder in which the command starts"
+    assert list(empty.iterdir()) == [], "nothing must be stored in the working folder"
     if sys.platform == "linux":
         assert (tmp_path / "data" / "scope-ptz" / "runs").is_dir()
-    assert names <= set(re.findall(r"`(\w+)`", PAGE)), "the page lists every tool"
-    assert templates <= set(re.findall(r"`(scope://[^`]+)`", PAGE)), "the page lists every resource"
+    assert names <= set(re.findall(r"`(\w+)`", PAGE)), "the page must list every tool"
+    assert templates <= set(re.findall(r"`(scope://[^`]+)`", PAGE)), "the page must list every resource"

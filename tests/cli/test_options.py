@@ -32,8 +32,8 @@ SMALL = Sizes(width=1)
 def run(function: object, *arguments: str) -> tuple[int, str]:
     app = typer.Typer(pretty_exceptions_enable=False)
     app.command()(command(function))  # type: ignore[arg-type]
-    done = CliRunner().invoke(app, arguments)
-    return done.exit_code, done.output
+    result = CliRunner().invoke(app, arguments)
+    return result.exit_code, result.output
 
 
 def test_a_group_arrives_as_one_object() -> None:
@@ -58,7 +58,7 @@ def test_the_returned_number_is_the_exit_code() -> None:
 
 
 @pytest.mark.parametrize(("error", "code"), [(InputError("Wrong."), 2), (PlannerError("Broken."), 1), (KeyboardInterrupt(), 130)])
-def test_errors_are_exit_codes(error: BaseException, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_have_exit_codes(error: BaseException, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("scope_ptz.cli.exit._ignore_interrupts", lambda: None)
 
     def fail() -> None:
@@ -68,11 +68,11 @@ def test_errors_are_exit_codes(error: BaseException, code: int, monkeypatch: pyt
 
 
 def test_every_model_flag_reaches_the_options() -> None:
-    given = PairFlags(
+    flags = PairFlags(
         planner="a", perception="b", pair="c", planner_url="d", perception_url="e", planner_model="f", perception_model="g",
         planner_option=["h=1"], perception_option=["i=2"], reader="j", detector="k", timeout=1.5,
     )  # fmt: skip
-    options = given.options()
+    options = flags.options()
     assert (options.planner, options.perception, options.pair, options.timeout_s) == ("a", "b", "c", 1.5)
     assert (options.planner_options, options.perception_options) == (("h=1",), ("i=2",))
     assert ModelFlags().options("x").pair == "x"
@@ -86,13 +86,13 @@ def test_names_of_options_are_unique_within_a_command() -> None:
     assert names.index("pair") < names.index("planner")
 
 
-@pytest.mark.parametrize("words", [
+@pytest.mark.parametrize("arguments", [
     "", "--help", "show", "show a", "show a b", "show a --level", "show a --level 3", "show a --level 5", "show a --level x",
     "show a --level 99", "show a --file f", "show a --name x --name y", "show a --share 0.5", "show a --share 1", "show a --on",
     "show a --off --loud", "show '' --text ''", "show a --text é --no-such", "--loudly show a", "--loudly", "show --help", "shwo a",
 ])  # fmt: skip
-def test_conversions_without_effect_are_left_out_without_effect(words: str) -> None:
-    def made(cls: type[TyperGroup]) -> typer.Typer:
+def test_skipping_unneeded_conversions_does_not_change_results(arguments: str) -> None:
+    def make_app(cls: type[TyperGroup]) -> typer.Typer:
         app = typer.Typer(cls=cls, pretty_exceptions_enable=False)
 
         @app.callback()
@@ -114,5 +114,5 @@ def test_conversions_without_effect_are_left_out_without_effect(words: str) -> N
 
         return app
 
-    lean, plain = (CliRunner().invoke(made(cls), shlex.split(words)) for cls in (LeanGroup, TyperGroup))
+    lean, plain = (CliRunner().invoke(make_app(cls), shlex.split(arguments)) for cls in (LeanGroup, TyperGroup))
     assert (lean.exit_code, lean.output) == (plain.exit_code, plain.output)

@@ -12,34 +12,34 @@ from tests.cli.conftest import SCENE, Scope
 
 
 @pytest.fixture
-def asked(scope: Scope) -> str:
-    """The id of a run."""
+def run_id(scope: Scope) -> str:
+    """Return the id of a run."""
     return Path(scope("ask", "count the balls", "--scene", SCENE, "--json").json["run_dir"]).name
 
 
-def test_runs_are_listed_shown_exported_and_pruned(scope: Scope, asked: str, tmp_path: Path) -> None:
-    assert asked in scope("runs", "list").out
+def test_runs_are_listed_shown_exported_and_pruned(scope: Scope, run_id: str, tmp_path: Path) -> None:
+    assert run_id in scope("runs", "list").out
     listed = scope("runs", "list", "--text", "balls", "--outcome", "answered", "--since", "2020-01-01", "--json").json
-    assert [run["id"] for run in listed["runs"]] == [asked]
+    assert [run["id"] for run in listed["runs"]] == [run_id]
     assert scope("runs", "list", "--rating", "good").out == "No runs found.\n"
-    shown = scope("runs", "show", asked)
-    assert shown.out.startswith("count the balls\n")
-    assert "count_objects(description=" in shown.out
-    assert scope("runs", "show", asked, "--json").json["step_list"][0]["tool"] == "count_objects"
+    summary = scope("runs", "show", run_id)
+    assert summary.out.startswith("count the balls\n")
+    assert "count_objects(description=" in summary.out
+    assert scope("runs", "show", run_id, "--json").json["step_list"][0]["tool"] == "count_objects"
     out = tmp_path / "out.jsonl"
     assert scope("runs", "export", "--format", "chat", "-o", str(out), "--json").json == {"runs": 1, "file": str(out)}
-    assert json.loads(out.read_text())["run"] == asked
+    assert json.loads(out.read_text())["run"] == run_id
     assert "Would remove 1 runs" in scope("runs", "prune", "--newest", "0").out
-    assert scope("runs", "prune", "--newest", "0", "--yes", "--json").json["runs"] == [asked]
+    assert scope("runs", "prune", "--newest", "0", "--yes", "--json").json["runs"] == [run_id]
     assert scope("runs", "list").out == "No runs found.\n"
 
 
-def test_indexing_reports_damage_and_audit_logs(scope: Scope, asked: str, tmp_path: Path) -> None:
+def test_indexing_reports_damage_and_audit_logs(scope: Scope, run_id: str, tmp_path: Path) -> None:
     (tmp_path / "audit.jsonl").write_text(
         '{"time": "2026-01-01T00:00:00+00:00", "camera": "dock", "actor": "ben", "event": "move"}\n'
     )
-    done = scope("runs", "index", "--audit", str(tmp_path / "audit.jsonl"), "--json")
-    assert (done.code, done.json["added"], done.json["audit_entries"]) == (0, 1, 1)
+    result = scope("runs", "index", "--audit", str(tmp_path / "audit.jsonl"), "--json")
+    assert (result.code, result.json["added"], result.json["audit_entries"]) == (0, 1, 1)
     listed = scope("runs", "audit", "--camera", "dock").out
     assert re.fullmatch(r"\S+ \S+ +dock +ben +move\n", listed)
     (entry,) = scope("runs", "audit", "--since", "2025-12-31", "--json").json
@@ -48,9 +48,9 @@ def test_indexing_reports_damage_and_audit_logs(scope: Scope, asked: str, tmp_pa
     copy = tmp_path / "runs" / "damaged"
     copy.mkdir()
     (copy / "trace.jsonl").write_text("{]\n")
-    done = scope("runs", "index")
-    assert done.code == 1
-    assert "line 1 is damaged" in done.err
+    result = scope("runs", "index")
+    assert result.code == 1
+    assert "line 1 is damaged" in result.err
 
 
 @pytest.mark.parametrize(
@@ -64,8 +64,8 @@ def test_indexing_reports_damage_and_audit_logs(scope: Scope, asked: str, tmp_pa
         (("list", "--runs-dir", "/nowhere"), "The runs folder /nowhere does not exist"),
     ],
 )
-def test_wrong_input_is_one_clear_line(scope: Scope, asked: str, arguments: tuple[str, ...], message: str) -> None:
-    done = scope("runs", *arguments)
-    assert done.code == 2
-    assert message in done.err
-    assert len(done.err.splitlines()) == 1
+def test_wrong_input_gives_one_clear_line(scope: Scope, run_id: str, arguments: tuple[str, ...], message: str) -> None:
+    result = scope("runs", *arguments)
+    assert result.code == 2
+    assert message in result.err
+    assert len(result.err.splitlines()) == 1

@@ -31,47 +31,47 @@ MOONDREAM: dict[str, dict[str, Any]] = {
 }
 
 
-def able(request: Request) -> Say:
-    """A model that passes the checks."""
+def capable_model(request: Request) -> Say:
+    """Reply as a model that passes the checks."""
     messages = request.data["messages"]
     if not request.data.get("tools"):
         return Say(text="Hello.")
     if messages[-1]["role"] == "tool":
         return Say(text="The picture is saved.")
-    asked = str(messages[-1]["content"])
-    if PICTURE_INSTRUCTION in asked:
+    instruction = str(messages[-1]["content"])
+    if PICTURE_INSTRUCTION in instruction:
         return Say(text="", tool_calls=(("take_image", {}),))
-    if TURN_INSTRUCTION in asked or "pan right 20" in asked:
+    if TURN_INSTRUCTION in instruction or "pan right 20" in instruction:
         return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": 20}),))
     return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": "far"}),))
 
 
-def in_text(request: Request) -> Say:
-    """A model that passes the checks, on a server that leaves its calls in the text."""
-    said = able(request)
-    if not said.tool_calls:
-        return said
-    ((name, arguments),) = said.tool_calls
+def calls_in_text(request: Request) -> Say:
+    """Reply as a model that passes the checks, on a server that leaves its calls in the text."""
+    reply = capable_model(request)
+    if not reply.tool_calls:
+        return reply
+    ((name, arguments),) = reply.tool_calls
     return Say(text=f"<tool_call>\n{json.dumps({'name': name, 'arguments': arguments})}\n</tool_call>")
 
 
 def checks(scope: Scope, *options: str) -> tuple[int, dict[str, str]]:
-    done = scope("doctor", "--json", *options)
-    return done.code, {check["what"]: check["verdict"] for check in done.json}
+    result = scope("doctor", "--json", *options)
+    return result.code, {check["what"]: check["verdict"] for check in result.json}
 
 
-def strict(mind: Behaviour) -> Behaviour:
-    """A server that accepts only the name of its model."""
+def strict_about_model(behaviour: Behaviour) -> Behaviour:
+    """Return a server that accepts only the name of its model."""
 
     async def behave(x: Exchange) -> None:
         wrong = x.request.chat and x.request.data["model"] != MODEL
-        await (status(404, "no such model") if wrong else mind)(x)
+        await (status(404, "no such model") if wrong else behaviour)(x)
 
     return behave
 
 
 def test_a_good_server_passes_every_check(scope: Scope) -> None:
-    with Misbehaving(then=strict(good(able))) as server:
+    with Misbehaving(then=strict_about_model(good(capable_model))) as server:
         code, verdicts = checks(scope, "--planner-url", server.url)
     assert code == 0
     assert set(verdicts.values()) == {"ok"}
@@ -79,7 +79,7 @@ def test_a_good_server_passes_every_check(scope: Scope) -> None:
 
 
 def test_calls_in_the_text_are_a_warning_and_not_a_failure(scope: Scope) -> None:
-    with Misbehaving(then=good(in_text)) as server:
+    with Misbehaving(then=good(calls_in_text)) as server:
         code, verdicts = checks(scope, "--planner-url", server.url)
     assert code == 0
     assert verdicts["a tool call"] == verdicts["a tool call, streamed"] == "partly"
@@ -102,7 +102,7 @@ def test_an_unreachable_server_is_reported_once_and_immediately(scope: Scope) ->
 
 
 @pytest.mark.parametrize("behaviour", [status(500), body("<html>", "text/html"), body('{"choices": []}'), body("{")])
-def test_bad_servers_fail_checks_and_break_nothing(scope: Scope, behaviour: Behaviour) -> None:
+def test_bad_servers_fail_checks_without_a_crash(scope: Scope, behaviour: Behaviour) -> None:
     with Misbehaving(then=behaviour) as server:
         code, verdicts = checks(scope, "--planner-url", server.url, "--planner-model", "x")
     assert code == 1
@@ -110,8 +110,8 @@ def test_bad_servers_fail_checks_and_break_nothing(scope: Scope, behaviour: Beha
 
 
 def test_models_without_a_server_cannot_be_checked(scope: Scope) -> None:
-    done = scope("doctor", "--planner", "grammar")
-    assert (done.code, done.err.count("\n")) == (2, 1)
+    result = scope("doctor", "--planner", "grammar")
+    assert (result.code, result.err.count("\n")) == (2, 1)
 
 
 def test_perception_is_checked_on_a_frame(scope: Scope) -> None:
@@ -123,10 +123,10 @@ def test_perception_is_checked_on_a_frame(scope: Scope) -> None:
     assert verdicts["boxes of 'traffic cone'"] == "partly"
 
 
-def profiled(scope: Scope, *options: str, code: int = 0) -> Any:
-    done = scope("profile", "--scene", SCENE, "--frames", "2", "--json", *options)
-    assert done.code == code, done.err
-    return done.json
+def profile(scope: Scope, *options: str, code: int = 0) -> Any:
+    result = scope("profile", "--scene", SCENE, "--frames", "2", "--json", *options)
+    assert result.code == code, result.err
+    return result.json
 
 
 def test_a_profile_reports_speed_validity_and_the_verdict(scope: Scope, tmp_path: Path) -> None:
@@ -137,9 +137,9 @@ def test_a_profile_reports_speed_validity_and_the_verdict(scope: Scope, tmp_path
         {"instruction": "florp", "calls": []},
     ]
     file.write_text("\n".join(map(json.dumps, lines)))
-    with Misbehaving(then=good(able)) as server:
+    with Misbehaving(then=good(capable_model)) as server:
         url = server.url
-        report = profiled(
+        report = profile(
             scope, "qwen3-30b-a3b+moondream3", "--planner-url", url, "--perception-url", url, "--instructions", str(file)
         )  # fmt: skip
         text = scope("profile", "--planner-url", url, "--instructions", str(file), "--prompts").out
@@ -158,14 +158,14 @@ def test_a_profile_reports_speed_validity_and_the_verdict(scope: Scope, tmp_path
 
 def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
     with Misbehaving(then=status(401)) as server:
-        report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
+        report = profile(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
         assert report["perception"]["perception"]["failures"] == {"unauthorised": 8}
     assert report["real_time"] == "unknown"
 
 
 def test_perception_that_fails_at_one_request_does_not_pass(scope: Scope) -> None:
     with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
-        report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
+        report = profile(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
     perception = report["perception"]["perception"]
     assert (set(perception["by_skill"]), perception["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
     assert "out of memory" in perception["first_failure"]
@@ -174,7 +174,7 @@ def test_perception_that_fails_at_one_request_does_not_pass(scope: Scope) -> Non
 
 def test_server_failures_do_not_count_as_wrong_choices(scope: Scope) -> None:
     with Misbehaving(then=status(503, "loading")) as server:
-        report = profiled(scope, "--planner-url", server.url, "--prompts", "--limit", "3", code=1)
+        report = profile(scope, "--planner-url", server.url, "--prompts", "--limit", "3", code=1)
     planner = report["planner"]["planner"]
     assert planner["failures"] == {"circuit-open": 3}
     assert "loading" in planner["first_failure"]
@@ -186,5 +186,5 @@ def test_server_failures_do_not_count_as_wrong_choices(scope: Scope) -> None:
     "options", [(), ("grammar+moondream2",), ("--planner-url", "http://127.0.0.1:9/v1", "--instructions", "/none")]
 )
 def test_models_that_cannot_be_profiled(scope: Scope, options: tuple[str, ...]) -> None:
-    done = scope("profile", *options)
-    assert (done.code, done.err.count("\n")) == (2, 1)
+    result = scope("profile", *options)
+    assert (result.code, result.err.count("\n")) == (2, 1)

@@ -1,4 +1,4 @@
-"""``scope ask --perception simulation-only-truth``: a driver at a virtual camera, with the ground truth that it serves."""
+"""``scope ask --perception simulation-only-truth``: a camera driver with the ground truth that a virtual camera serves."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ PASSWORD = "parity-on-loopback"
 
 
 @pytest.fixture(params=[True, False], ids=["truth", "no truth"])
-def served(request: pytest.FixtureRequest, scenes: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[ServedCamera]:
+def camera_server(
+    request: pytest.FixtureRequest, scenes: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Iterator[ServedCamera]:
     monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", PASSWORD)
     monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
     device = VirtualDevice(
@@ -30,12 +32,12 @@ def served(request: pytest.FixtureRequest, scenes: Path, monkeypatch: pytest.Mon
         yield camera
 
 
-@pytest.mark.parametrize("served", [True], indirect=True)
-def test_it_answers_and_is_labelled_everywhere(scope: Scope, served: ServedCamera, tmp_path: Path) -> None:
-    spec = f"axis://op@127.0.0.1:{served.port}?width=320&height=180"
-    done = scope("ask", "how many blocks are there?", "--camera", spec, "--perception", SERVED_TRUTH, "--json")
-    assert done.code == 0, done.err
-    assert done.json["answer"] == f"I can see 1 block in this view. (Source: {SERVED_TRUTH}.)"
+@pytest.mark.parametrize("camera_server", [True], indirect=True)
+def test_answers_and_traces_name_the_source(scope: Scope, camera_server: ServedCamera, tmp_path: Path) -> None:
+    spec = f"axis://op@127.0.0.1:{camera_server.port}?width=320&height=180"
+    result = scope("ask", "how many blocks are there?", "--camera", spec, "--perception", SERVED_TRUTH, "--json")
+    assert result.code == 0, result.err
+    assert result.json["answer"] == f"I can see 1 block in this view. (Source: {SERVED_TRUTH}.)"
     (trace,) = (tmp_path / "runs").rglob("trace.jsonl")
     start = json.loads(trace.read_text().splitlines()[0])
     assert start["perception"] == SERVED_TRUTH
@@ -44,20 +46,20 @@ def test_it_answers_and_is_labelled_everywhere(scope: Scope, served: ServedCamer
     assert PASSWORD not in trace.read_text()
 
 
-@pytest.mark.parametrize("served", [False], indirect=True)
-def test_a_camera_that_offers_none_says_what_to_do(scope: Scope, served: ServedCamera) -> None:
-    spec = f"axis://op@127.0.0.1:{served.port}?width=320&height=180"
-    done = scope("ask", "how many blocks are there?", "--camera", spec, "--perception", SERVED_TRUTH, "--json")
-    assert "scope camera serve --truth" in done.out
+@pytest.mark.parametrize("camera_server", [False], indirect=True)
+def test_a_camera_without_served_truth_gives_advice(scope: Scope, camera_server: ServedCamera) -> None:
+    spec = f"axis://op@127.0.0.1:{camera_server.port}?width=320&height=180"
+    result = scope("ask", "how many blocks are there?", "--camera", spec, "--perception", SERVED_TRUTH, "--json")
+    assert "scope camera serve --truth" in result.out
 
 
 def test_other_cameras_are_refused(scope: Scope) -> None:
-    done = scope("ask", "how many blocks are there?", "--camera", SCENE, "--perception", SERVED_TRUTH)
-    assert done.code == 2
-    assert "virtual camera on this machine" in done.err
+    result = scope("ask", "how many blocks are there?", "--camera", SCENE, "--perception", SERVED_TRUTH)
+    assert result.code == 2
+    assert "virtual camera on this machine" in result.err
 
 
-def test_evaluations_have_no_served_camera(scope: Scope) -> None:
-    done = scope("bench", "run", "--perception", SERVED_TRUTH, "--limit", "1")
-    assert done.code == 2
-    assert "virtual camera on this machine" in done.err
+def test_evaluations_reject_served_truth(scope: Scope) -> None:
+    result = scope("bench", "run", "--perception", SERVED_TRUTH, "--limit", "1")
+    assert result.code == 2
+    assert "virtual camera on this machine" in result.err

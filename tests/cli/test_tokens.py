@@ -25,5 +25,5 @@ def test_tokens_are_added_listed_and_removed(scope: Scope, tmp_path: Path) -> No
 
 
 def test_a_server_of_unknown_cameras_does_not_start(scope: Scope) -> None:
-    done = scope("serve", "--camera", "axis://operator@10.0.0.7", "--port", "0")
-    assert (done.code, "There is no camera or scene" in done.err) == (2, True)
+    result = scope("serve", "--camera", "axis://operator@10.0.0.7", "--port", "0")
+    assert (result.code, "There is no camera or scene" in result.err) == (2, True)

@@ -62,7 +62,7 @@ def wait_until_free(console: str) -> None:
 
 
 def eventually(page: Page, holds: Callable[[], bool]) -> None:
-    """Wait up to 20 s until a condition holds that no element of the page shows."""
+    """Wait up to 20 s for a condition that is not visible on the page."""
     for _ in range(200):
         if holds():
             return
@@ -119,7 +119,7 @@ def watched(console: str, browser: Browser) -> Iterator[PageWithErrors]:
 
 @contextmanager
 def watching(console: str, browser: Browser) -> Iterator[PageWithErrors]:
-    """Return a context with a new browser profile. At its end, errors in the browser console and requests to other hosts fail."""
+    """Return a context with a new browser profile. Errors in the browser console and requests to other hosts are failures."""
     context = browser.new_context(viewport={"width": 1280, "height": 720})
     context.set_default_timeout(60_000)
     found = PageWithErrors(context, console)

@@ -116,7 +116,7 @@ def test_every_socket_needs_a_token_and_the_pages_own_origin(guarded: tuple[str,
         pass
 
 
-def test_the_server_asks_nobody(guarded: tuple[str, str, Path]) -> None:
+def test_the_server_opens_no_outgoing_connections(guarded: tuple[str, str, Path]) -> None:
     url, secret, notes = guarded
     with httpx2.Client(base_url=url, trust_env=False, timeout=60, headers={"Authorization": f"Bearer {secret}"}) as client:
         client.get("/")

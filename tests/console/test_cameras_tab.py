@@ -79,7 +79,7 @@ def choose(page: Page, name: str) -> None:
     expect(page.locator(".wait")).to_be_hidden()
 
 
-def test_cards_say_what_cameras_are_and_whether_they_work(page: Page, scene: str) -> None:
+def test_cards_show_the_kind_and_health_of_cameras(page: Page, scene: str) -> None:
     shown = card(page, scene)
     expect(shown).to_have_attribute("aria-current", "true")
     expect(shown.locator(".state")).to_have_text("Connected")
@@ -154,7 +154,7 @@ def test_the_slider_moves_the_scene_while_it_is_dragged(page: Page, api: httpx2.
     expect(part.get_by_role("button", name="Pause scene time")).to_be_visible()
 
 
-def test_only_the_one_in_control_changes_scene_time(page: Page, watched: PageWithErrors, api: httpx2.Client, scene: str) -> None:
+def test_only_the_client_in_control_changes_scene_time(page: Page, watched: PageWithErrors, api: httpx2.Client, scene: str) -> None:
     page.keyboard.press("h")
     expect(page.locator(".control")).to_contain_text("You are in control")
     other = watched.open()
@@ -198,7 +198,7 @@ def test_a_virtual_camera_is_turned_on_and_off(page: Page, scene: str) -> None:
         program.get(picture)
 
 
-def test_a_camera_that_fails_says_so_once(page: Page, scene: str) -> None:
+def test_a_camera_failure_is_shown_once(page: Page, scene: str) -> None:
     card(page, BROKEN).get_by_role("button", name=f"Show {BROKEN} on this page").click()
     expect(page.locator(".wait")).to_contain_text("cannot be reached")
     page.wait_for_timeout(500)
@@ -210,7 +210,7 @@ def test_a_camera_that_fails_says_so_once(page: Page, scene: str) -> None:
     expect(page.locator(".presets .tile").first).to_be_visible()
 
 
-def test_a_cancelled_instruction_says_so_once(page: Page) -> None:
+def test_a_cancelled_instruction_is_reported_once(page: Page) -> None:
     page.get_by_label("Instruction", exact=True).fill("keep panning right in 5 degree steps until you see a tram")
     page.keyboard.press("Enter")
     expect(page.locator(".turn .step").first).to_be_visible()

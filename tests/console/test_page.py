@@ -215,8 +215,8 @@ def test_control_is_handed_over(page: Page, watched: PageWithErrors) -> None:
     expect(other.locator(".control")).to_contain_text("You are in control")
 
 
-def test_two_browsers_never_fight(page: Page, watched: PageWithErrors) -> None:
-    """The one in control moves the camera; nothing that the other one does moves it, until control is handed over."""
+def test_only_one_browser_moves_the_camera(page: Page, watched: PageWithErrors) -> None:
+    """Only the browser in control moves the camera, until it hands control over."""
     other = watched.open()
     expect(other.locator(".control")).to_contain_text("is in control")
     before = pose(page)

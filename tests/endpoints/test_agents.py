@@ -23,7 +23,7 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
 from tests.agent.scripted import ScriptedCamera, ScriptedPerception, ScriptedPlanner, answer, calls
-from tests.support.faults import FAULTS, PATIENT, Fault
+from tests.support.faults import FAULTS, LONG_TIMEOUTS, Fault
 from tests.support.misbehaving import MOONDREAM, Behaviour, Misbehaving, Say, body, good, never_accepts, nobody_listens, say
 from tests.support.misbehaving import status as http_status
 
@@ -35,11 +35,11 @@ ASK = ("query_answer", {"question": "what colour is the van?"})
 K = FailureKind
 
 
-def endpoint(url: str, patience: Timeouts = PATIENT, retries: int = 0) -> Endpoint:
+def endpoint(url: str, patience: Timeouts = LONG_TIMEOUTS, retries: int = 0) -> Endpoint:
     return Endpoint(url=url, model="m", key=SecretStr(KEY), timeouts=patience, retries=retries)
 
 
-def planner_at(url: str, *, stream: bool, patience: Timeouts = PATIENT, retries: int = 0) -> ChatPlanner:
+def planner_at(url: str, *, stream: bool, patience: Timeouts = LONG_TIMEOUTS, retries: int = 0) -> ChatPlanner:
     at = endpoint(url, patience, retries)
     return ChatPlanner(at, ChatOptions(stream=stream), client=ChatClient(at, caller=Caller(at, sleep=_no_sleep)))
 
@@ -48,11 +48,11 @@ async def _no_sleep(_: float) -> None:
     return None
 
 
-def perception_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
+def perception_at(url: str, backend: str, patience: Timeouts = LONG_TIMEOUTS) -> Perception:
     return make_backend(BackendSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(url, patience)))
 
 
-class ScriptedReplies:
+class FinishedRun:
     """A finished run, its records, and its trace."""
 
     def __init__(self, run: RunResult, records: list[Any], trace: str) -> None:
@@ -60,7 +60,7 @@ class ScriptedReplies:
         self.calls = [record for record in records if isinstance(record, Called)]
 
 
-async def run(planner: Planner, perception: Perception, folder: Path) -> ScriptedReplies:
+async def run(planner: Planner, perception: Perception, folder: Path) -> FinishedRun:
     """Run an agent and return the result, after checking that the trace does not contain the key."""
     records: list[Any] = []
     path = folder / "trace.jsonl"
@@ -78,12 +78,12 @@ async def run(planner: Planner, perception: Perception, folder: Path) -> Scripte
     assert KEY not in trace
     assert isinstance(records[-1], Ended)
     assert camera.log[-1] in ("frame", "move", "stop")
-    return ScriptedReplies(done, records, trace)
+    return FinishedRun(done, records, trace)
 
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
-async def test_a_planner_whose_server_fails_ends_the_run_and_says_how(fault: Fault, stream: bool, tmp_path: Path) -> None:
+async def test_a_planner_whose_server_fails_ends_the_run_with_the_failure_kind(fault: Fault, stream: bool, tmp_path: Path) -> None:
     with Misbehaving(then=fault.make()) as server:
         told = await run(planner_at(server.url, stream=stream, patience=fault.timeouts), ScriptedPerception(3), tmp_path)
     kind = fault.expected(stream)
@@ -94,7 +94,7 @@ async def test_a_planner_whose_server_fails_ends_the_run_and_says_how(fault: Fau
 
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
-async def test_a_planner_whose_server_is_gone(stream: bool, tmp_path: Path) -> None:
+async def test_a_planner_whose_server_is_unreachable(stream: bool, tmp_path: Path) -> None:
     with nobody_listens() as url:
         told = await run(planner_at(url, stream=stream), ScriptedPerception(3), tmp_path)
     assert (told.ended.outcome, told.ended.kind, told.ended.server_events) == ("planner_error", "refused", {"refused": 1})
@@ -213,7 +213,7 @@ async def test_perception_recovers(backend: str, tmp_path: Path) -> None:
     assert told.ended.server_events == {"server-error": 1}
 
 
-def moondream_says(**changes: Any) -> Behaviour:
+def moondream_reply(**changes: Any) -> Behaviour:
     return good(moondream={**MOONDREAM, **changes})
 
 
@@ -222,20 +222,20 @@ def boxes(*corners: Any) -> dict[str, Any]:
 
 
 ODD_PLACES: list[tuple[str, Behaviour, int | None]] = [
-    ("no field", moondream_says(detect={"things": []}), None),
-    ("null", moondream_says(detect={"objects": None}), None),
-    ("a number", moondream_says(detect={"objects": 4}), None),
-    ("text", moondream_says(detect={"objects": "four cones"}), None),
-    ("boxes as text", moondream_says(detect={"objects": ["left", "right"]}), None),
-    ("none", moondream_says(detect={"objects": []}), 0),
-    ("outside", moondream_says(detect=boxes((-0.5, 0.2, 1.7, 0.6))), 1),
-    ("500", moondream_says(detect=boxes(*[(i / 1000, 0.1, i / 1000 + 0.2, 0.1 + (i % 7) / 10 + 0.05) for i in range(500)])), -1),
+    ("no field", moondream_reply(detect={"things": []}), None),
+    ("null", moondream_reply(detect={"objects": None}), None),
+    ("a number", moondream_reply(detect={"objects": 4}), None),
+    ("text", moondream_reply(detect={"objects": "four cones"}), None),
+    ("boxes as text", moondream_reply(detect={"objects": ["left", "right"]}), None),
+    ("none", moondream_reply(detect={"objects": []}), 0),
+    ("outside", moondream_reply(detect=boxes((-0.5, 0.2, 1.7, 0.6))), 1),
+    ("500", moondream_reply(detect=boxes(*[(i / 1000, 0.1, i / 1000 + 0.2, 0.1 + (i % 7) / 10 + 0.05) for i in range(500)])), -1),
 ]
 """What a Moondream server answers, and the count that must come of it: None is an error, -1 any count above 0."""
 
 
 @pytest.mark.parametrize(("name", "behaviour", "count"), ODD_PLACES, ids=[name for name, _, _ in ODD_PLACES])
-async def test_unusual_places(name: str, behaviour: Behaviour, count: int | None, tmp_path: Path) -> None:
+async def test_unusual_coordinates(name: str, behaviour: Behaviour, count: int | None, tmp_path: Path) -> None:
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=behaviour) as server:
         told = await run(planner, perception_at(server.url, "moondream"), tmp_path)
@@ -258,7 +258,7 @@ NOT_FINITE = [
 
 @pytest.mark.parametrize("text", NOT_FINITE, ids=["NaN", "infinity"])
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_places_that_are_no_numbers_are_errors(text: str, backend: str, tmp_path: Path) -> None:
+async def test_coordinates_that_are_not_numbers_are_errors(text: str, backend: str, tmp_path: Path) -> None:
     """An unreadable box does not mean that nothing was found, so the perception call fails."""
     reply = body(text) if backend == "moondream" else say(text)
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
@@ -284,7 +284,7 @@ ODD_WORDS = [
 
 
 @pytest.mark.parametrize(("text", "count"), [odd[1:] for odd in ODD_WORDS], ids=[odd[0] for odd in ODD_WORDS])
-async def test_unusual_names_for_places(text: str, count: int | None, tmp_path: Path) -> None:
+async def test_unusual_names_of_coordinates(text: str, count: int | None, tmp_path: Path) -> None:
     perception = BackendSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=good(Say(text))) as server:
@@ -307,7 +307,7 @@ def _many(number: int) -> list[tuple[float, float]]:
 async def test_500_points_are_limited_and_incomplete(backend: str) -> None:
     frame = await ScriptedCamera().frame()
     if backend == "moondream":
-        reply = moondream_says(point={"points": [{"x": x, "y": y} for x, y in _many(500)]})
+        reply = moondream_reply(point={"points": [{"x": x, "y": y} for x, y in _many(500)]})
     else:
         reply = say(json.dumps([{"point_2d": [1000 * x, 1000 * y], "label": "cone"} for x, y in _many(500)]))
     with Misbehaving(then=reply) as server:

@@ -74,7 +74,7 @@ async def test_an_answer_that_begins_with_a_mark_and_ends_without_a_line_end(lin
     ("content", "kind"),
     [("", FailureKind.EMPTY), ("<html>Please log in</html>", FailureKind.MALFORMED), ("data: {}\n\n", FailureKind.CUT_OFF)],
 )
-async def test_a_reply_that_is_no_stream_is_described(content: str, kind: FailureKind) -> None:
+async def test_a_reply_that_is_not_a_stream_is_described(content: str, kind: FailureKind) -> None:
     with Misbehaving(then=body(content, "text/event-stream")) as server:
         client = ChatClient(Endpoint(url=server.url, retries=0))
         with pytest.raises(ServerFailure) as raised:

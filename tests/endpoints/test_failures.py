@@ -14,7 +14,7 @@ from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, count_failures
 from scope_ptz.endpoints.http import JsonClient
 from scope_ptz.endpoints.retries import Caller
-from tests.support.faults import FAULTS, PATIENT, Fault
+from tests.support.faults import FAULTS, LONG_TIMEOUTS, Fault
 from tests.support.misbehaving import Misbehaving, body, never_accepts, nobody_listens, speaks_no_tls, status
 
 pytestmark = pytest.mark.anyio
@@ -24,7 +24,7 @@ MESSAGES = [{"role": "user", "content": "hello"}]
 
 
 def endpoint(url: str, **changes: Any) -> Endpoint:
-    defaults = {"url": url, "model": "m", "key": KEY, "timeouts": PATIENT, "retries": 0}
+    defaults = {"url": url, "model": "m", "key": KEY, "timeouts": LONG_TIMEOUTS, "retries": 0}
     return Endpoint.model_validate(defaults | changes)
 
 
@@ -93,7 +93,7 @@ async def test_https_to_a_server_without_tls(how: str) -> None:
 @pytest.mark.parametrize("how", ["whole", "streaming", "json"])
 async def test_retries_repair_temporary_failures(how: str) -> None:
     for fault in FAULTS:
-        if fault.name not in ("429", "503", "connection reset", "cut off", "no JSON", "200 with an error body"):
+        if fault.name not in ("429", "503", "connection reset", "cut off", "invalid JSON", "200 with an error body"):
             continue
         with Misbehaving([fault.make()]) as server:
             at = endpoint(server.url, retries=1)

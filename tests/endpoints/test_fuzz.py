@@ -62,7 +62,7 @@ def damaged(value: Any, rng: random.Random) -> Any:
     return copy
 
 
-def damaged_bytes(data: bytes, rng: random.Random) -> bytes:
+def damage_bytes(data: bytes, rng: random.Random) -> bytes:
     """Return the bytes truncated or with some of them changed."""
     if rng.random() < 0.4:
         return data[: rng.randrange(len(data))]
@@ -72,22 +72,22 @@ def damaged_bytes(data: bytes, rng: random.Random) -> bytes:
     return bytes(changed)
 
 
-def ruined(data: Any, rng: random.Random) -> bytes:
+def damage_body(data: Any, rng: random.Random) -> bytes:
     if rng.random() < 0.7:
         return json.dumps(damaged(data, rng)).encode()
-    return damaged_bytes(json.dumps(data).encode(), rng)
+    return damage_bytes(json.dumps(data).encode(), rng)
 
 
-def ruined_chat(say: Say, rng: random.Random) -> Behaviour:
+def damaged_chat(say: Say, rng: random.Random) -> Behaviour:
     """A damaged completion, or a stream with one damaged chunk."""
 
     async def behave(x: Exchange) -> None:
         if not x.request.streaming:
-            await x.whole(ruined(completion(say), rng))
+            await x.whole(damage_body(completion(say), rng))
             return
         chunks = [json.dumps(piece).encode() for piece in pieces(say)]
         index = rng.randrange(len(chunks))
-        chunks[index] = ruined(json.loads(chunks[index]), rng).replace(b"\n", b" ")
+        chunks[index] = damage_body(json.loads(chunks[index]), rng).replace(b"\n", b" ")
         await x.whole(b"".join(b"data: %s\n\n" % chunk for chunk in [*chunks, b"[DONE]"]), content_type="text/event-stream")
 
     return behave
@@ -108,7 +108,7 @@ async def run(planner: Planner, perception: Perception) -> tuple[RunResult, list
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
 async def test_planners(stream: bool) -> None:
     rng = random.Random(5)
-    with Misbehaving(then=ruined_chat(SPOKEN, rng)) as server:
+    with Misbehaving(then=damaged_chat(SPOKEN, rng)) as server:
         for _ in range(ROUNDS):
             at = Endpoint(url=server.url, model="m", retries=0)
             planner = ChatPlanner(at, ChatOptions(stream=stream))
@@ -125,11 +125,11 @@ async def test_perception_backends(backend: str, tool: str) -> None:
     call = (tool, {"question": "what is it?"} if tool == "query_answer" else {"description": "cones"})
 
     async def moondream(x: Exchange) -> None:
-        await body(ruined(MOONDREAM[x.request.path.rpartition("/")[2]], rng))(x)
+        await body(damage_body(MOONDREAM[x.request.path.rpartition("/")[2]], rng))(x)
 
     async def chat(x: Exchange) -> None:
-        words = PLACES.text if rng.random() < 0.3 else ruined(json.loads(PLACES.text), rng).decode("utf-8", "replace")
-        await (ruined_chat(PLACES, rng) if rng.random() < 0.4 else body(json.dumps(completion(Say(words)))))(x)
+        words = PLACES.text if rng.random() < 0.3 else damage_body(json.loads(PLACES.text), rng).decode("utf-8", "replace")
+        await (damaged_chat(PLACES, rng) if rng.random() < 0.4 else body(json.dumps(completion(Say(words)))))(x)
 
     with Misbehaving(then=moondream if backend == "moondream" else chat) as server:
         spec = BackendSpec(name="eyes", backend=backend, model="m", endpoint=Endpoint(url=server.url, retries=0))

@@ -26,7 +26,7 @@ OLLAMA = {
 SGLANG = {"/get_server_info": json.dumps({"internal_states": [{"memory_usage": {"weight": 8.5, "kvcache": 2.25}}], "tp_size": 1})}
 
 
-def telling(places: dict[str, str]) -> Behaviour:
+def serving_pages(places: dict[str, str]) -> Behaviour:
     async def behave(x: Exchange) -> None:
         known = x.request.path in places
         await (body(places[x.request.path], "text/plain") if known else status(404))(x)
@@ -40,7 +40,7 @@ def facts(behaviour: Behaviour) -> dict[str, str]:
 
 
 def test_vllm() -> None:
-    told = facts(telling(VLLM))
+    told = facts(serving_pages(VLLM))
     assert told["/v1/models max_model_len"] == "16384"
     assert told["/version version"] == "0.33.0"
     assert told["/metrics gpu_memory_utilization"] == "0.9"
@@ -50,7 +50,7 @@ def test_vllm() -> None:
 
 @pytest.mark.parametrize(("places", "expected"), [(OLLAMA, 5.0), (SGLANG, 10.75)])
 def test_memory_is_read_where_it_is_reported(places: dict[str, str], expected: float) -> None:
-    assert memory_gb(facts(telling(places))) == expected
+    assert memory_gb(facts(serving_pages(places))) == expected
 
 
 @pytest.mark.parametrize("behaviour", [status(500), body("{"), body("[1, 2"), body('{"id": NaN}'), huge()])

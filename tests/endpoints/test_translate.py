@@ -114,7 +114,7 @@ def test_a_failure_deep_in_a_chain_is_found() -> None:
 
 
 @pytest.mark.parametrize("kind", list(FailureKind))
-def test_every_kind_says_what_was_wrong_and_what_to_do(kind: FailureKind) -> None:
+def test_every_kind_has_a_message_and_a_remedy(kind: FailureKind) -> None:
     words = str(ServerFailure(kind, where=AT.url))
     assert words.startswith(f"The model server at {AT.url} ")
     assert words.count(". ") >= 1

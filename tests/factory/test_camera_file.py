@@ -1,4 +1,4 @@
-"""Cameras by name in scope.yaml: the file, what it refuses, and the rules around a named camera."""
+"""Named cameras in scope.yaml: the file, its validation, and the rules of a named camera."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.anyio
 async def test_a_named_camera_keeps_the_rules_of_its_site(site: Path) -> None:
-    async with await open_camera("yard-gate", actor="anna") as opened:
-        assert str(opened.spec) == "yard-gate"
-        assert isinstance(opened.camera, GuardedCamera)
-        opened.record_instruction("look at the windows")
-        arrival = await opened.camera.move(Pose(30.0, 0.0, 1.0))
+    async with await open_camera("yard-gate", actor="anna") as handle:
+        assert str(handle.spec) == "yard-gate"
+        assert isinstance(handle.camera, GuardedCamera)
+        handle.record_instruction("look at the windows")
+        arrival = await handle.camera.move(Pose(30.0, 0.0, 1.0))
         assert arrival.limited_by == "the keep-out region 'windows'"
-        assert opened.camera.info.limits.max_pan_deg == 90.0
+        assert handle.camera.info.limits.max_pan_deg == 90.0
     entries = [json.loads(line) for line in (site / "logs" / "audit.jsonl").read_text().splitlines()]
     assert [entry["event"] for entry in entries] == ["instruction", "move", "arrived"]
     assert entries[0]["text"] == "look at the windows"
@@ -50,9 +50,9 @@ async def test_a_named_camera_keeps_the_rules_of_its_site(site: Path) -> None:
 
 
 @pytest.mark.anyio
-async def test_a_named_camera_without_rules_is_the_camera_itself(site: Path) -> None:
-    async with await open_camera("roof") as opened:
-        assert not isinstance(opened.camera, GuardedCamera)
+async def test_a_named_camera_without_rules_is_not_wrapped(site: Path) -> None:
+    async with await open_camera("roof") as handle:
+        assert not isinstance(handle.camera, GuardedCamera)
 
 
 def test_names_are_listed_and_scenes_stay_reachable(site: Path) -> None:
@@ -72,7 +72,7 @@ def test_a_file_can_be_named_in_the_environment(tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.parametrize(("text", "message"), [
-    ("cameras: [", "not valid YAML in line"),
+    ("cameras: [", "not valid YAML on line"),
     ("- 1", "invalid at the top level"),
     ("version: 7", "invalid at version"),
     ("cameras: {Yard: {camera: 'sim:x'}}", "Yard"),
@@ -81,7 +81,7 @@ def test_a_file_can_be_named_in_the_environment(tmp_path: Path, monkeypatch: pyt
     ("cameras: {a: {camera: 'sim:x', rules: {keep_out: [{name: n, pan_deg: [1, 1]}]}}}", "with two different angles"),
     ("cameras: {a: {camera: 'sim:x', fingerprint: '12:34'}}", "64 hexadecimal digits"),
 ])  # fmt: skip
-def test_a_wrong_file_is_refused_with_the_place(tmp_path: Path, text: str, message: str) -> None:
+def test_an_invalid_file_is_rejected_with_the_position_of_the_error(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "scope.yaml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=message):
@@ -91,22 +91,22 @@ def test_a_wrong_file_is_refused_with_the_place(tmp_path: Path, text: str, messa
 def test_a_password_in_the_file_is_refused_and_not_repeated(tmp_path: Path) -> None:
     path = tmp_path / "scope.yaml"
     path.write_text("cameras: {a: {camera: 'axis://op@10.0.0.7', password: hunter2}}")
-    with pytest.raises(ConfigError, match="keyring, prompt, or env:NAME") as caught:
+    with pytest.raises(ConfigError, match="keyring, prompt, or env:NAME") as excinfo:
         load_camera_file(path)
-    assert "hunter2" not in str(caught.value)
+    assert "hunter2" not in str(excinfo.value)
 
 
 def test_a_named_spec_needs_a_scheme_and_no_password(site: Path) -> None:
     (site / "scope.yaml").write_text("cameras: {a: {camera: b}, b: {camera: a}, c: {camera: 'axis://op:hunter2@10.0.0.7'}}")
     with pytest.raises(InputError, match="must have a spec with a scheme"):
         parse_camera("a")
-    with pytest.raises(InputError, match="Remove user:password@") as caught:
+    with pytest.raises(InputError, match="Remove user:password@") as excinfo:
         parse_camera("c")
-    assert "hunter2" not in str(caught.value)
+    assert "hunter2" not in str(excinfo.value)
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe", b"a: &a [*a]", b"x" * 2_000_000, b"[" * 5000])
-def test_hostile_files_end_in_one_message(tmp_path: Path, content: bytes) -> None:
+def test_malformed_files_give_a_config_error(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "scope.yaml"
     path.write_bytes(content)
     with pytest.raises(ConfigError):
@@ -120,6 +120,6 @@ def test_an_empty_file_names_no_cameras(tmp_path: Path) -> None:
 
 
 def test_the_schema_describes_every_field() -> None:
-    described = json.dumps(schema())
+    schema_text = json.dumps(schema())
     for field in ("keep_out", "soft_limits", "masks", "dead_zone_deg", "min_interval_s", "mounting", "audit_log", "fingerprint"):
-        assert field in described
+        assert field in schema_text

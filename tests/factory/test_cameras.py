@@ -42,9 +42,9 @@ def test_schemes_are_case_insensitive_and_options_follow_a_question_mark() -> No
         ("axis://op@host?channel=0", "whole number from 1 to 64"),
         ("axis://op@host?password=x", "There is no camera option 'password'"),
         ("axis://op@host?hfov_wide=60", "both hfov_wide and hfov_tele"),
-        ("axis://op@host?hfov_wide=60&hfov_tele=61", "The wide angle must be larger"),
-        ("yard.blend", "write blender:yard.blend"),
-        ("C:\\yard.blend", r"write blender:C:\\yard.blend"),
+        ("axis://op@host?hfov_wide=60&hfov_tele=61", "hfov_wide must be the larger angle"),
+        ("yard.blend", "Use blender:yard.blend"),
+        ("C:\\yard.blend", r"Use blender:C:\\yard.blend"),
         ("blender:missing.blend", "The file missing.blend does not exist"),
         ("blender:no-such-scene", "There is no scene that Blender can build 'no-such-scene'"),
         ("sim:yard?samples=3", "There is no camera option 'samples'"),
@@ -68,15 +68,15 @@ def test_errors_of_wrong_specs(text: str, message: str) -> None:
     ],
 )
 def test_passwords_are_refused_and_not_repeated(text: str) -> None:
-    with pytest.raises(InputError) as refused:
+    with pytest.raises(InputError) as excinfo:
         parse_camera(text)
-    assert "ter2" not in str(refused.value)
+    assert "ter2" not in str(excinfo.value)
 
 
 def test_a_mistyped_scheme_does_not_repeat_its_address() -> None:
-    with pytest.raises(InputError) as refused:
+    with pytest.raises(InputError) as excinfo:
         parse_camera("axi://10.0.0.7/hunter2")
-    assert "hunter2" not in str(refused.value)
+    assert "hunter2" not in str(excinfo.value)
 
 
 def test_available_cameras_are_listed() -> None:
@@ -88,31 +88,31 @@ def test_available_cameras_are_listed() -> None:
 
 @pytest.mark.anyio
 async def test_a_simulated_camera_opens_with_its_truth() -> None:
-    async with await open_camera(SCENE, time_s=3.0) as opened:
-        assert isinstance(opened.camera, SimulatedCamera)
-        assert opened.has_truth
-        assert opened.scene is not None
-        assert opened.scenes is not None
-        assert opened.scenes(SCENE) is opened.scene
-        assert opened.clock.now_s() == 3.0
-        perception = make_perception(ResolvedPerception("ground-truth"), opened.scenes, 0)
-        assert (await perception.detect(await opened.camera.frame(), "box")).source == "ground-truth"
+    async with await open_camera(SCENE, time_s=3.0) as handle:
+        assert isinstance(handle.camera, SimulatedCamera)
+        assert handle.has_truth
+        assert handle.scene is not None
+        assert handle.scenes is not None
+        assert handle.scenes(SCENE) is handle.scene
+        assert handle.clock.now_s() == 3.0
+        perception = make_perception(ResolvedPerception("ground-truth"), handle.scenes, 0)
+        assert (await perception.detect(await handle.camera.frame(), "box")).source == "ground-truth"
 
 
 @pytest.mark.anyio
 async def test_the_size_of_frames_is_an_option() -> None:
-    async with await open_camera(f"sim:{SCENE}?width=64&height=36") as opened:
-        assert (await opened.camera.frame()).image.shape == (36, 64, 3)
+    async with await open_camera(f"sim:{SCENE}?width=64&height=36") as handle:
+        assert (await handle.camera.frame()).image.shape == (36, 64, 3)
 
 
 @pytest.mark.anyio
-async def test_it_starts_at_a_preset() -> None:
-    async with await open_camera(SCENE) as opened:
-        preset = (await opened.camera.presets())[-1].name
-    async with await open_camera(SCENE, preset=preset) as opened:
-        there = await opened.camera.pose()
-        assert (await opened.camera.go_to_preset(preset)).pose == there
-        assert there != Pose()
+async def test_a_camera_starts_at_a_preset() -> None:
+    async with await open_camera(SCENE) as handle:
+        preset = (await handle.camera.presets())[-1].name
+    async with await open_camera(SCENE, preset=preset) as handle:
+        preset_pose = await handle.camera.pose()
+        assert (await handle.camera.go_to_preset(preset)).pose == preset_pose
+        assert preset_pose != Pose()
 
 
 @pytest.mark.anyio
@@ -129,5 +129,5 @@ async def test_invalid_start_presets() -> None:
 
 @pytest.mark.parametrize("name", ["ground-truth", "noisy"])
 def test_ground_truth_needs_a_scene(name: str) -> None:
-    with pytest.raises(InputError, match=f"'{name}' reads the ground truth of a simulated scene, and this camera has none"):
+    with pytest.raises(InputError, match=f"'{name}' uses the ground truth of a simulated scene, but this camera has none"):
         make_perception(ResolvedPerception(name), None, 0)

@@ -31,7 +31,7 @@ async def test_a_registered_model_in_a_pair() -> None:
 
 @pytest.mark.parametrize("name", ["hybrid:", "hybrid:grammar", "hybrid:hybrid:chat"])
 async def test_the_spec_must_name_a_model(name: str) -> None:
-    with pytest.raises(InputError, match="names no language model"):
+    with pytest.raises(InputError, match="does not name a language model"):
         await resolve_models(ModelOptions(planner=name))
 
 

@@ -1,4 +1,4 @@
-"""Specs of ONVIF cameras: options that are checked before anything is connected."""
+"""Specs of ONVIF cameras: options are validated before a connection is opened."""
 
 from __future__ import annotations
 
@@ -34,6 +34,6 @@ def test_good_specs(text: str) -> None:
     ],
 )
 def test_wrong_specs(text: str, reason: str) -> None:
-    with pytest.raises(InputError, match=reason) as caught:
+    with pytest.raises(InputError, match=reason) as excinfo:
         parse_camera(text)
-    assert "secret" not in str(caught.value)
+    assert "secret" not in str(excinfo.value)

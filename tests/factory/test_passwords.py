@@ -18,30 +18,30 @@ SPEC = CameraSpec("axis", "operator@10.0.0.7")
 
 
 class MemoryKeyring(keyring.backend.KeyringBackend):
-    """A keyring that lives as long as its test."""
+    """An in-memory keyring."""
 
     priority = 1
 
     def __init__(self) -> None:
-        self.kept: dict[tuple[str, str], str] = {}
+        self.passwords: dict[tuple[str, str], str] = {}
 
     def get_password(self, service: str, username: str) -> str | None:
-        return self.kept.get((service, username))
+        return self.passwords.get((service, username))
 
     def set_password(self, service: str, username: str, password: str) -> None:
-        self.kept[service, username] = password
+        self.passwords[service, username] = password
 
     def delete_password(self, service: str, username: str) -> None:
-        del self.kept[service, username]
+        del self.passwords[service, username]
 
 
 @pytest.fixture(autouse=True)
 def ring(monkeypatch: pytest.MonkeyPatch) -> Iterator[MemoryKeyring]:
     monkeypatch.delenv("SCOPE_CAMERA_PASSWORD", raising=False)
-    made = MemoryKeyring()
+    memory_keyring = MemoryKeyring()
     before = keyring.get_keyring()
-    keyring.set_keyring(made)
-    yield made
+    keyring.set_keyring(memory_keyring)
+    yield memory_keyring
     keyring.set_keyring(before)
 
 
@@ -60,7 +60,7 @@ def test_the_environment_comes_first(ring: MemoryKeyring, monkeypatch: pytest.Mo
     assert "from the environment" not in repr(found)
 
 
-def test_a_camera_file_names_the_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ring: MemoryKeyring) -> None:
+def test_a_camera_file_selects_the_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ring: MemoryKeyring) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scope.yaml").write_text(
         "cameras:\n  a: {camera: 'axis://operator@10.0.0.7', password: env:YARD}\n"
@@ -68,7 +68,7 @@ def test_a_camera_file_names_the_place(tmp_path: Path, monkeypatch: pytest.Monke
     )
     monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", "of all cameras")
     monkeypatch.setenv("YARD", "of the yard")
-    ring.kept["scope-ptz", "operator@10.0.0.7"] = "of the keyring"
+    ring.passwords["scope-ptz", "operator@10.0.0.7"] = "of the keyring"
     assert find_credentials(parse_camera("a")).password == "of the yard"
     assert find_credentials(parse_camera("b")).password == "of the keyring"
     monkeypatch.delenv("YARD")
@@ -83,12 +83,12 @@ def test_an_account_and_a_password_are_needed() -> None:
         store_password(SPEC, "")
 
 
-def test_a_broken_keyring_is_as_good_as_none(ring: MemoryKeyring, monkeypatch: pytest.MonkeyPatch) -> None:
-    def locked(*_: str) -> str:
+def test_a_broken_keyring_is_treated_as_empty(ring: MemoryKeyring, monkeypatch: pytest.MonkeyPatch) -> None:
+    def raise_locked(*_: str) -> str:
         raise RuntimeError("locked")
 
-    monkeypatch.setattr(ring, "get_password", locked)
-    monkeypatch.setattr(ring, "set_password", locked)
+    monkeypatch.setattr(ring, "get_password", raise_locked)
+    monkeypatch.setattr(ring, "set_password", raise_locked)
     with pytest.raises(ConfigError, match="There is no password"):
         find_credentials(SPEC)
     with pytest.raises(ConfigError, match="did not store"):

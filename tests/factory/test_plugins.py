@@ -1,4 +1,4 @@
-"""Plug-ins as separately installed packages: listed, checked and used by the commands, broken ones included."""
+"""Commands list, check and use plug-ins from separately installed packages, including broken ones."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ EXAMPLES = ("scope-still-camera", "scope-nudge-planner", "scope-bright-perceptio
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the three example packages, built and installed offline with the build backend of uv."""
+def plugin_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the three example packages, built and installed offline with the build backend of uv."""
     uv = shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
     assert uv is not None, "uv is missing; `make test` installs it"
     sources = tmp_path_factory.mktemp("sources") / "plugins"
@@ -50,7 +50,7 @@ Scope = Callable[..., CommandResult]
 
 @pytest.fixture
 def scope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Iterator[Scope]:
-    """Run a command in this process, in which the packages in ``site`` are installed for the time of the test."""
+    """Return a function that runs a command in this process, with the packages in ``site`` importable during the test."""
     monkeypatch.setenv("SCOPE_RUNS_DIR", str(tmp_path))
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.chdir(tmp_path)
@@ -62,9 +62,9 @@ def scope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
         monkeypatch.setattr("sys.argv", ["scope", *arguments])
         monkeypatch.setattr("sys.stdin", io.StringIO(stdin))
         capsys.readouterr()
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as excinfo:
             main()
-        code = ended.value.code
+        code = excinfo.value.code
         assert code is None or isinstance(code, int)
         return CommandResult(code or 0, *capsys.readouterr())
 
@@ -84,50 +84,52 @@ def write_package(site: Path, module: str, code: str, group: str, name: str, tar
     (info / "entry_points.txt").write_text(f"[scope_ptz.{group}]\n{name} = {target or f'{module}:make'}\n")
 
 
-def test_plugins_are_listed(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "models", "plugins", "--json")
-    listed = {(row["kind"], row["name"], row["package"], row["problem"]) for row in json.loads(done.out)}
+def test_plugins_are_listed(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(plugin_site, "models", "plugins", "--json")
+    listed = {(row["kind"], row["name"], row["package"], row["problem"]) for row in json.loads(run_result.out)}
     assert listed == {
         ("camera", "still", "scope-still-camera 1.0", ""),
         ("planner", "nudge", "scope-nudge-planner 1.0", ""),
         ("perception", "bright", "scope-bright-perception 1.0", ""),
     }
-    models = scope(installed, "models").out
+    models = scope(plugin_site, "models").out
     assert "nudge (scope-nudge-planner 1.0)" in models
     assert "bright (scope-bright-perception 1.0)" in models
 
 
-def test_doctor_checks_plugins(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "doctor", "--json")
-    found = {finding["what"]: finding for finding in json.loads(done.out)}
-    assert found["camera still"]["verdict"] == "ok"
-    assert found["camera still"]["detail"].endswith("still camera, 320 x 180")
-    assert found["planner nudge"]["verdict"] == "ok"
-    assert found["perception bright"]["verdict"] == "ok"
-    assert found["perception bright"]["detail"].endswith("skills: detect")
+def test_doctor_checks_plugins(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(plugin_site, "doctor", "--json")
+    findings = {finding["what"]: finding for finding in json.loads(run_result.out)}
+    assert findings["camera still"]["verdict"] == "ok"
+    assert findings["camera still"]["detail"].endswith("still camera, 320 x 180")
+    assert findings["planner nudge"]["verdict"] == "ok"
+    assert findings["perception bright"]["verdict"] == "ok"
+    assert findings["perception bright"]["detail"].endswith("skills: detect")
 
 
-def test_ask_uses_all_three(installed: Path, tmp_path: Path) -> None:
-    done = separate_process(
-        installed, tmp_path, "ask", "look for the lamp", "--camera", "still:lamp", "--planner", "nudge", "--planner-option",
+def test_ask_uses_all_three_plugins(plugin_site: Path, tmp_path: Path) -> None:
+    run_result = separate_process(
+        plugin_site, tmp_path, "ask", "look for the lamp", "--camera", "still:lamp", "--planner", "nudge", "--planner-option",
         "pan_deg=20", "--perception", "bright", "--json",
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    run = json.loads(done.stdout)
+    assert run_result.returncode == 0, run_result.stderr
+    run = json.loads(run_result.stdout)
     assert run["answer"] == "Nudged. 1 of 'lamp' in the current view (seen by bright)."
     assert run["pose"]["pan_deg"] == 20.0
 
 
-def test_chat_uses_a_camera_of_a_plugin(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "chat", "--camera", "still:lamp", "--perception", "bright", stdin="pan right 10\n/pose\n/quit\n")
-    assert done.code == 0, done.err
-    assert "pan 10°" in done.out
+def test_chat_uses_a_camera_of_a_plugin(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(
+        plugin_site, "chat", "--camera", "still:lamp", "--perception", "bright", stdin="pan right 10\n/pose\n/quit\n"
+    )
+    assert run_result.code == 0, run_result.err
+    assert "pan 10°" in run_result.out
 
 
 @pytest.mark.full
-def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Path, tmp_path: Path) -> None:
-    done = separate_process(
-        installed,
+def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(plugin_site: Path, tmp_path: Path) -> None:
+    run_result = separate_process(
+        plugin_site,
         tmp_path,
         "bench",
         "run",
@@ -141,30 +143,30 @@ def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Pa
         "logs",
         "--json",
     )
-    assert done.returncode == 0, done.stderr
-    result: dict[str, Any] = json.loads(done.stdout)
+    assert run_result.returncode == 0, run_result.stderr
+    result: dict[str, Any] = json.loads(run_result.stdout)
     assert result["pair"] == "nudge + bright"
     assert result["runs"] == 2
 
 
-def test_ground_truth_is_refused_for_a_camera_without_it(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "ask", "pan right 10", "--camera", "still:lamp", "--perception", "ground-truth")
-    assert done.code == 2
-    assert "this camera has none. Name a vision model with --perception" in done.err
+def test_ground_truth_is_refused_for_a_camera_without_it(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(plugin_site, "ask", "pan right 10", "--camera", "still:lamp", "--perception", "ground-truth")
+    assert run_result.code == 2
+    assert "this camera has none. Choose a vision model with --perception" in run_result.err
 
 
-def test_a_camera_without_ground_truth_moves_without_perception(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "ask", "pan right 10", "--camera", "still:lamp")
-    assert done.code == 0, done.err
-    assert "perception none" in done.out
-    done = scope(installed, "ask", "how many cones are there?", "--camera", "still:lamp")
-    assert "Name a vision model with --perception" in " ".join(done.out.split())
+def test_a_camera_without_ground_truth_moves_without_perception(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(plugin_site, "ask", "pan right 10", "--camera", "still:lamp")
+    assert run_result.code == 0, run_result.err
+    assert "perception none" in run_result.out
+    run_result = scope(plugin_site, "ask", "how many cones are there?", "--camera", "still:lamp")
+    assert "Name a vision model with --perception" in " ".join(run_result.out.split())
 
 
-def test_a_camera_that_does_not_open_ends_in_one_line(scope: Scope, installed: Path) -> None:
-    done = scope(installed, "ask", "pan right 10", "--camera", "still:candle", "--perception", "bright")
-    assert done.code == 1
-    assert done.err == "scope: There is no still camera 'candle'. Known: lamp.\n"
+def test_a_camera_that_does_not_open_gives_one_line(scope: Scope, plugin_site: Path) -> None:
+    run_result = scope(plugin_site, "ask", "pan right 10", "--camera", "still:candle", "--perception", "bright")
+    assert run_result.code == 1
+    assert run_result.err == "scope: There is no still camera 'candle'. Known: lamp.\n"
 
 
 BROKEN = {
@@ -184,41 +186,41 @@ def test_a_broken_plugin_gives_one_line_and_breaks_nothing_else(scope: Scope, ca
     code, message = BROKEN[case]
     site = tmp_path / "site"
     site.mkdir()
-    write_package(site, "someones_camera", f"{code}\n", "cameras", "odd")
-    done = scope(site, "ask", "pan right 5", "--camera", "odd:x")
-    assert done.code == 2
-    assert message in done.err
-    assert done.err.count("\n") == 1
+    write_package(site, "third_party_camera", f"{code}\n", "cameras", "odd")
+    run_result = scope(site, "ask", "pan right 5", "--camera", "odd:x")
+    assert run_result.code == 2
+    assert message in run_result.err
+    assert run_result.err.count("\n") == 1
     assert scope(site, "models", "plugins").code == 0
 
 
 def test_doctor_reports_broken_plugins(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
-    write_package(site, "someones_camera", "import no_such_package\n", "cameras", "odd")
-    write_package(site, "someones_planner", "def make(spec):\n    return object()\n", "planners", "strange")
-    write_package(site, "someones_perception", "make = 1\n", "perception", "blurred")
-    write_package(site, "someones_grammar", "make = print\n", "planners", "grammar")
-    write_package(site, "someones_ocr", "make = print\n", "perception", "ocr")
-    done = scope(site, "doctor", "--json")
-    assert done.code == 1
-    found = {finding["what"]: finding for finding in json.loads(done.out)}
-    assert {found[name]["verdict"] for name in ("camera odd", "perception blurred", "planner grammar", "perception ocr")} == {
+    write_package(site, "third_party_camera", "import no_such_package\n", "cameras", "odd")
+    write_package(site, "third_party_planner", "def make(spec):\n    return object()\n", "planners", "strange")
+    write_package(site, "third_party_perception", "make = 1\n", "perception", "blurred")
+    write_package(site, "third_party_grammar", "make = print\n", "planners", "grammar")
+    write_package(site, "third_party_ocr", "make = print\n", "perception", "ocr")
+    run_result = scope(site, "doctor", "--json")
+    assert run_result.code == 1
+    findings = {finding["what"]: finding for finding in json.loads(run_result.out)}
+    assert {findings[name]["verdict"] for name in ("camera odd", "perception blurred", "planner grammar", "perception ocr")} == {
         "missing"
     }
-    assert "ModuleNotFoundError" in found["camera odd"]["detail"]
-    assert "it must be an instance of scope_ptz.planner.base.Planner" in found["planner strange"]["detail"]
-    assert "its name is that of a built-in planner, which is used instead" in found["planner grammar"]["detail"]
-    assert all("\n" not in finding["detail"] for finding in found.values())
+    assert "ModuleNotFoundError" in findings["camera odd"]["detail"]
+    assert "it must be an instance of scope_ptz.planner.base.Planner" in findings["planner strange"]["detail"]
+    assert "a built-in planner has the same name and is used instead" in findings["planner grammar"]["detail"]
+    assert all("\n" not in finding["detail"] for finding in findings.values())
 
 
 def test_a_plugin_cannot_replace_a_built_in_name(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()
-    write_package(site, "someones_grammar", "import no_such_package\n", "planners", "grammar")
-    write_package(site, "someones_sim", "import no_such_package\n", "cameras", "sim")
-    done = scope(site, "ask", "pan right 5", "--camera", "sim:highway-works", "--planner", "grammar", "--json")
-    assert done.code == 0, done.err
+    write_package(site, "third_party_grammar", "import no_such_package\n", "planners", "grammar")
+    write_package(site, "third_party_sim", "import no_such_package\n", "cameras", "sim")
+    run_result = scope(site, "ask", "pan right 5", "--camera", "sim:highway-works", "--planner", "grammar", "--json")
+    assert run_result.code == 0, run_result.err
 
 
 def test_two_packages_with_the_same_plugin_name(scope: Scope, tmp_path: Path) -> None:
@@ -226,6 +228,6 @@ def test_two_packages_with_the_same_plugin_name(scope: Scope, tmp_path: Path) ->
     site.mkdir()
     write_package(site, "first_camera", "make = print\n", "cameras", "odd")
     write_package(site, "second_camera", "make = print\n", "cameras", "odd")
-    done = scope(site, "ask", "pan right 5", "--camera", "odd:x")
-    assert done.code == 2
-    assert "Several packages provide 'odd': first_camera 1.0 and second_camera 1.0" in done.err
+    run_result = scope(site, "ask", "pan right 5", "--camera", "odd:x")
+    assert run_result.code == 2
+    assert "Several packages provide 'odd': first_camera 1.0 and second_camera 1.0" in run_result.err

@@ -25,7 +25,7 @@ HEADLINES: tuple[Headline, ...] = ("correct", "incorrect", "correct", "unscored"
 
 
 def trials() -> list[Trial]:
-    """Runs of six tasks at several viewpoints."""
+    """Return trials of six tasks at several viewpoints."""
     tasks = load_split("lite")[:: len(load_split("lite")) // len(HEADLINES)]
     return [
         Trial(
@@ -38,7 +38,7 @@ def trials() -> list[Trial]:
 def plan(*finished: Trial) -> EvaluationPlan:
     return EvaluationPlan(
         runs=6, planner="grammar", perception="ground-truth", agent=None, concurrency=1, finished=finished,
-        estimate=Estimate(6, 6, 6), asks_planner_server=False,
+        estimate=Estimate(6, 6, 6), uses_planner_server=False,
     )  # fmt: skip
 
 
@@ -46,14 +46,14 @@ def state(folder: Path) -> ProgressState:
     return ProgressState.model_validate_json((folder / STATE_FILE).read_text())
 
 
-def stored(folder: Path) -> list[Trial]:
+def stored_trials(folder: Path) -> list[Trial]:
     return [Trial.model_validate_json(line) for line in (folder / TRIALS_FILE).read_text().splitlines()]
 
 
 @pytest.fixture
 def progress(tmp_path: Path) -> Iterator[ProgressFiles]:
-    with closing(ProgressFiles(tmp_path / "progress")) as made:
-        yield made
+    with closing(ProgressFiles(tmp_path / "progress")) as files:
+        yield files
 
 
 def test_progress_has_the_scores_of_the_evaluation(progress: ProgressFiles, tmp_path: Path) -> None:
@@ -65,26 +65,26 @@ def test_progress_has_the_scores_of_the_evaluation(progress: ProgressFiles, tmp_
         progress.run_began(trial.sample, Entry(facts=trial.task, world=trial.task.scene))
         assert [each.task for each in state(tmp_path / "progress").running] == [trial.task.id]
         progress.run_ended(trial.sample, trial)
-    now = state(tmp_path / "progress")
-    assert (now.done, now.correct, now.incorrect, now.unscored, now.broken, now.running) == (6, 3, 1, 1, 1, ())
-    assert now.micro is not None and now.macro is not None and now.micro.low is not None and now.micro.high is not None
-    assert now.micro.value == pytest.approx(accuracy(rows)) and now.macro.value == pytest.approx(macro_accuracy(rows))
-    assert now.micro.low < now.micro.value < now.micro.high
-    assert sum(each.runs for each in now.categories) == 6
-    assert now.seconds_left == 0.0 and not now.finished
-    assert stored(tmp_path / "progress") == rows
+    last = state(tmp_path / "progress")
+    assert (last.done, last.correct, last.incorrect, last.unscored, last.broken, last.running) == (6, 3, 1, 1, 1, ())
+    assert last.micro is not None and last.macro is not None and last.micro.low is not None and last.micro.high is not None
+    assert last.micro.value == pytest.approx(accuracy(rows)) and last.macro.value == pytest.approx(macro_accuracy(rows))
+    assert last.micro.low < last.micro.value < last.micro.high
+    assert sum(each.runs for each in last.categories) == 6
+    assert last.seconds_left == 0.0 and not last.finished
+    assert stored_trials(tmp_path / "progress") == rows
 
 
-def test_a_repeated_run_replaces_the_one_before(progress: ProgressFiles, tmp_path: Path) -> None:
+def test_a_repeated_run_replaces_the_earlier_one(progress: ProgressFiles, tmp_path: Path) -> None:
     rows, tmp_path = trials(), tmp_path / "progress"
     progress.planned(plan(*rows))
-    again = rows[4].model_copy(update={"headline": "correct"})
-    progress.run_ended(again.sample, again)
+    repeated = rows[4].model_copy(update={"headline": "correct"})
+    progress.run_ended(repeated.sample, repeated)
     assert (state(tmp_path).done, state(tmp_path).broken, state(tmp_path).correct) == (6, 0, 4)
-    assert stored(tmp_path) == [*rows[:4], again, rows[5]]
+    assert stored_trials(tmp_path) == [*rows[:4], repeated, rows[5]]
 
 
-def test_one_evaluation_writes_to_a_folder(tmp_path: Path) -> None:
+def test_only_one_evaluation_can_write_to_a_folder(tmp_path: Path) -> None:
     progress = ProgressFiles(tmp_path)
     with pytest.raises(InputError, match="Another evaluation"):
         ProgressFiles(tmp_path)
@@ -98,10 +98,10 @@ def test_one_evaluation_writes_to_a_folder(tmp_path: Path) -> None:
 def test_a_full_disk_does_not_stop_the_evaluation(progress: ProgressFiles, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows, tmp_path = trials(), tmp_path / "progress"
 
-    def full(*_: object, **__: object) -> int:
+    def raise_disk_full(*_: object, **__: object) -> int:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(Path, "write_text", raise_disk_full)
     progress.planned(plan())
     progress.run_ended(rows[0].sample, rows[0])
     monkeypatch.undo()
@@ -110,7 +110,7 @@ def test_a_full_disk_does_not_stop_the_evaluation(progress: ProgressFiles, tmp_p
     assert any("No space left" in note for note in state(tmp_path).notes)
 
 
-def test_a_group_passes_everything_on(tmp_path: Path) -> None:
+def test_a_group_forwards_every_event(tmp_path: Path) -> None:
     with closing(ProgressFiles(tmp_path / "one")) as one, closing(ProgressFiles(tmp_path / "other")) as other:
         group, rows = ProgressGroup(one, other), trials()
         group.planned(plan())

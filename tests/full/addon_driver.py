@@ -1,4 +1,4 @@
-"""Runs inside Blender: opens a scene, registers the add-on, and executes expressions that it reads from standard input.
+"""Run the add-on inside Blender: build a scene, enable the add-on, and evaluate expressions from standard input.
 
 The argument after ``--`` is the folder with the add-on's package. Without it, the installed add-on ``scope_addon`` is enabled. Each
 line of the input is an expression, whose value is printed as JSON. The names ``bpy``, ``math``, ``session``, ``wake``, ``scene``,
@@ -63,8 +63,8 @@ def read_lines() -> None:
     LINES.put("")
 
 
-def execute(names: dict[str, Any]) -> bool:
-    """Execute what has arrived. Return whether the input is still open."""
+def evaluate_lines(names: dict[str, Any]) -> bool:
+    """Evaluate the lines that have arrived. Return whether the input is still open."""
     while not LINES.empty():
         line = LINES.get()
         if not line:
@@ -74,19 +74,19 @@ def execute(names: dict[str, Any]) -> bool:
             reply = {"value": eval(line, names)}  # noqa: S307 - the test's own expressions
         except Exception as error:
             reply = {"error": f"{type(error).__name__}: {error}"}
-        say("reply", reply)
+        emit("reply", reply)
     return True
 
 
 def finish(addon: Any) -> None:
-    """Remove the add-on, and print what is left of it in the scene."""
+    """Remove the add-on, and print the cameras that remain in the scene."""
     addon.unregister()
     scene = bpy.context.scene
     found = sorted(item.name for item in scene.objects if item.type == "CAMERA")
-    say("end", {"cameras": found, "active": scene.camera.name})
+    emit("end", {"cameras": found, "active": scene.camera.name})
 
 
-def say(kind: str, content: object) -> None:
+def emit(kind: str, content: object) -> None:
     """Print a line that the test reads."""
     sys.stdout.write(f"@{kind} {json.dumps(content, default=str)}\n")
     sys.stdout.flush()
@@ -115,11 +115,11 @@ def main() -> None:
     names = {"bpy": bpy, "session": module.session, "wake": module.wake, "addon": addon, "run": run}
     names |= {"cameras": importlib.import_module("scope_addon.scene.cameras"), "math": math}
     threading.Thread(target=read_lines, daemon=True).start()
-    say("reply", {"value": bpy.app.version_string})
+    emit("reply", {"value": bpy.app.version_string})
     if not bpy.app.background:
 
         def work() -> float | None:
-            if execute(names):
+            if evaluate_lines(names):
                 return 0.02
             finish(addon)
             bpy.ops.wm.quit_blender()
@@ -127,7 +127,7 @@ def main() -> None:
 
         bpy.app.timers.register(work, first_interval=0.5)
         return
-    while execute(names):
+    while evaluate_lines(names):
         time.sleep(module.session.tick() or 0.02)
     finish(addon)
 

@@ -1,4 +1,4 @@
-"""The command line's fixtures, for tests that drive the whole program."""
+"""Fixtures of the command line, for tests of the whole program."""
 
 from __future__ import annotations
 

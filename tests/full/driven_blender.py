@@ -19,12 +19,12 @@ from scope_ptz.blender.environment import ensure_environment
 from scope_ptz.settings import load_settings
 
 DRIVER = Path(__file__).with_name("addon_driver.py")
-START_S = 180.0
-REPLY_S = 50.0  # shorter than the add-on's own timeouts, so that a main thread that waits for the network fails the test
+START_TIMEOUT_S = 180.0
+REPLY_TIMEOUT_S = 50.0  # shorter than the add-on's own timeouts, so that a main thread that waits for the network fails the test
 
 
 class DrivenBlender:
-    """A Blender with the add-on.
+    """A Blender process with the add-on.
 
     Args:
         command: The command that starts it.
@@ -39,14 +39,14 @@ class DrivenBlender:
         self._output: list[str] = []
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
-        self.version = self._reply("reply", START_S)["value"]
+        self.version = self._reply("reply", START_TIMEOUT_S)["value"]
 
     def __call__(self, expression: str) -> Any:
         """Evaluate an expression in Blender, and return its value."""
         assert self._process.stdin is not None
         self._process.stdin.write(expression + "\n")
         self._process.stdin.flush()
-        reply = self._reply("reply", REPLY_S)
+        reply = self._reply("reply", REPLY_TIMEOUT_S)
         assert "error" not in reply, f"{expression}: {reply['error']}"
         return reply["value"]
 
@@ -58,7 +58,7 @@ class DrivenBlender:
             time.sleep(0.05)
 
     def ask(self, instruction: str) -> Any:
-        """Run an instruction, and return its end."""
+        """Run an instruction, and return its outcome."""
         self(f"session.ask({instruction!r}, '')")
         self.wait_for("session.run is None")
         return self("session.end")
@@ -67,13 +67,13 @@ class DrivenBlender:
         """Let Blender remove the add-on and quit, and return what the driver reports."""
         assert self._process.stdin is not None
         self._process.stdin.close()
-        report = self._reply("end", REPLY_S)
+        report = self._reply("end", REPLY_TIMEOUT_S)
         self._process.wait(60)
         self._listener.join(60)
         return report
 
     def kill(self) -> None:
-        """End the process, if it still runs."""
+        """Kill the process if it is still running."""
         self._process.kill()
         self._process.wait()
         self._listener.join(60)
@@ -100,8 +100,8 @@ class DrivenBlender:
 
 def environment(home: Path, **others: str) -> dict[str, str]:
     """Return environment variables for a Blender that shares no settings with the user's."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "BLENDER", "SCOPE"))}
-    return {**kept, "HOME": str(home), "BLENDER_USER_RESOURCES": str(home / "blender"), "PYTHONUNBUFFERED": "1", **others}
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "BLENDER", "SCOPE"))}
+    return {**inherited, "HOME": str(home), "BLENDER_USER_RESOURCES": str(home / "blender"), "PYTHONUNBUFFERED": "1", **others}
 
 
 def worker_python() -> Path:
@@ -110,7 +110,7 @@ def worker_python() -> Path:
 
 
 @contextmanager
-def without_window(home: Path) -> Iterator[DrivenBlender]:
+def blender_without_window(home: Path) -> Iterator[DrivenBlender]:
     """Start the ``bpy`` module with the add-on."""
     blender = DrivenBlender([str(worker_python()), str(DRIVER), "--", str(addon_folder().parent)], environment(home))
     try:
@@ -120,8 +120,8 @@ def without_window(home: Path) -> Iterator[DrivenBlender]:
 
 
 @contextmanager
-def screen(size: str = "1500x900") -> Iterator[str]:
-    """Start an X server without a screen, and return its name. The server chooses a free number."""
+def virtual_screen(size: str = "1500x900") -> Iterator[str]:
+    """Start a virtual X server, and yield its display name. The server chooses a free number."""
     program = shutil.which("Xvfb")
     assert program is not None, "install xvfb"
     reading, writing = os.pipe()
@@ -139,13 +139,13 @@ def screen(size: str = "1500x900") -> Iterator[str]:
 
 
 @contextmanager
-def in_window(home: Path, display: str, *options: str, folder: Path | None = None) -> Iterator[DrivenBlender]:
+def blender_in_window(home: Path, display: str, *options: str, folder: Path | None = None) -> Iterator[DrivenBlender]:
     """Start the ``blender`` program in a window, with the add-on from a folder, or with the installed one."""
     program = shutil.which("blender")
     assert program is not None, "install blender"
-    place = ["--window-geometry", "0", "0", "1500", "900"]
+    geometry = ["--window-geometry", "0", "0", "1500", "900"]
     folders = [] if folder is None else [str(folder)]
-    command = [program, "--factory-startup", *options, *place, "--python", str(DRIVER), "--", *folders]
+    command = [program, "--factory-startup", *options, *geometry, "--python", str(DRIVER), "--", *folders]
     blender = DrivenBlender(command, environment(home, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1"))
     try:
         yield blender
@@ -154,7 +154,7 @@ def in_window(home: Path, display: str, *options: str, folder: Path | None = Non
 
 
 def screenshot(display: str, path: Path, size: str = "1500x900") -> None:
-    """Store a picture of a screen."""
+    """Save a screenshot of a display."""
     program = shutil.which("ffmpeg")
     assert program is not None, "install ffmpeg"
     grab = ["-f", "x11grab", "-video_size", size, "-i", display, "-frames:v", "1"]

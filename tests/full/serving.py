@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-START_S = 180.0
+START_TIMEOUT_S = 180.0
 
 
 @contextmanager
 def transformers_serve(model: Path, log: Path) -> Iterator[str]:
-    """Serve a checkpoint on a processor; the address of its API. Offline, so that nothing but the checkpoint is used."""
+    """Serve a checkpoint on the CPU, and yield the URL of its API. It runs offline, so only the checkpoint is used."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -38,7 +38,7 @@ def transformers_serve(model: Path, log: Path) -> Iterator[str]:
 
 
 def _wait(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
-    deadline = time.monotonic() + START_S
+    deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
         assert process.poll() is None, f"transformers serve ended: {log.read_text()[-2000:]}"
         try:

@@ -20,7 +20,7 @@ from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.serve.site.site import SiteOptions
 from tests.addon.fake_blender import CAMERA, window_camera
 from tests.addon.test_protocol import replying
-from tests.full.driven_blender import DrivenBlender, environment, without_window, worker_python
+from tests.full.driven_blender import DrivenBlender, blender_without_window, environment, worker_python
 from tests.serve.serving import Served, serving
 
 pytestmark = pytest.mark.full
@@ -28,15 +28,15 @@ pytestmark = pytest.mark.full
 
 @pytest.fixture(scope="module")
 def blender(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DrivenBlender]:
-    with without_window(tmp_path_factory.mktemp("home")) as driven:
-        driven("[setattr(scene.render, 'engine', 'BLENDER_WORKBENCH'), setattr(scene.scope, 'width', 160)]")
-        driven("setattr(scene.scope, 'height', 90)")
-        yield driven
-        assert driven.end() == {"cameras": ["Main Gate", "roof"], "active": "Main Gate"}, "the scene is as it was"
+    with blender_without_window(tmp_path_factory.mktemp("home")) as blender_process:
+        blender_process("[setattr(scene.render, 'engine', 'BLENDER_WORKBENCH'), setattr(scene.scope, 'width', 160)]")
+        blender_process("setattr(scene.scope, 'height', 90)")
+        yield blender_process
+        assert blender_process.end() == {"cameras": ["Main Gate", "roof"], "active": "Main Gate"}, "the scene must be restored"
 
 
 @pytest.fixture
-def served(blender: DrivenBlender, tmp_path: Path) -> Iterator[Served]:
+def site_server(blender: DrivenBlender, tmp_path: Path) -> Iterator[Served]:
     options = SiteOptions(tmp_path / "runs")
     with serving(options, Access("127.0.0.1", limits=RateLimits(None)), {CAMERA: f"{CAMERA}:"}) as server:
         blender(f"session.connect({server.root!r}, '', {CAMERA!r})")
@@ -47,7 +47,7 @@ def served(blender: DrivenBlender, tmp_path: Path) -> Iterator[Served]:
 
 @pytest.mark.anyio
 class TestBlenderWindowCamera(CameraConformance):
-    """The conformance suite of cameras, with the pictures of a Blender."""
+    """The conformance suite of cameras, with pictures from Blender."""
 
     @pytest.fixture(autouse=True)
     def _parts(self, blender: DrivenBlender, tmp_path: Path) -> None:
@@ -60,7 +60,7 @@ class TestBlenderWindowCamera(CameraConformance):
             yield camera
 
 
-def test_a_question_moves_the_camera_in_the_open_scene(blender: DrivenBlender, served: Served) -> None:
+def test_a_question_moves_the_camera_in_the_open_scene(blender: DrivenBlender, site_server: Served) -> None:
     outcome, text, timings = blender.ask("go to the roof preset, then pan right 20 degrees and zoom in 2x")
     assert (outcome, "roof" in text) == ("Answered", True)
     assert [part for part, _ in timings][-1] == "total"
@@ -70,8 +70,8 @@ def test_a_question_moves_the_camera_in_the_open_scene(blender: DrivenBlender, s
     assert blender("bpy.data.images['SCOPE frame'].size[0]") == 160
 
 
-def test_pictures_show_the_scene(blender: DrivenBlender, served: Served) -> None:
-    with served.client() as client:
+def test_pictures_show_the_scene(blender: DrivenBlender, site_server: Served) -> None:
+    with site_server.client() as client:
         client.post(f"/cameras/{CAMERA}/home")
         data = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
     picture = np.asarray(cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)).astype(int)
@@ -80,25 +80,25 @@ def test_pictures_show_the_scene(blender: DrivenBlender, served: Served) -> None
     assert abs(corner - corner.mean()).max() < 30, "the background is grey"
 
 
-def test_the_users_settings_are_restored(blender: DrivenBlender, served: Served) -> None:
+def test_the_users_settings_are_restored(blender: DrivenBlender, site_server: Served) -> None:
     settings = "[scene.render.resolution_x, scene.render.filepath, scene.render.image_settings.file_format, scene.render.engine]"
     before = blender(settings)
     assert before[0] != 160
-    with served.client() as client:
+    with site_server.client() as client:
         assert client.get(f"/cameras/{CAMERA}/frame").status_code == 200
     assert blender(settings) == before
 
 
-def test_a_change_of_the_scene_is_seen_and_an_unchanged_scene_is_not_drawn_again(blender: DrivenBlender, served: Served) -> None:
-    with served.client() as client:
+def test_only_a_changed_scene_is_drawn_again(blender: DrivenBlender, site_server: Served) -> None:
+    with site_server.client() as client:
 
         def take() -> bytes:
             return client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
 
         first = take()
-        drawn = blender("session.executor.pictures")
+        picture_count = blender("session.executor.pictures")
         assert take() == first
-        assert blender("session.executor.pictures") == drawn
+        assert blender("session.executor.pictures") == picture_count
         blender("bpy.data.objects['box'].location.__setattr__('z', 3.0)")
         blender("bpy.context.view_layer.update()")
         assert take() != first
@@ -106,9 +106,9 @@ def test_a_change_of_the_scene_is_seen_and_an_unchanged_scene_is_not_drawn_again
         blender("bpy.context.view_layer.update()")
 
 
-def test_presets_are_cameras_of_the_scene(blender: DrivenBlender, served: Served, tmp_path: Path) -> None:
+def test_presets_are_cameras_of_the_scene(blender: DrivenBlender, site_server: Served, tmp_path: Path) -> None:
     blender.wait_for("session.presets == ['main-gate', 'roof']")
-    with served.client() as client:
+    with site_server.client() as client:
         client.post(f"/cameras/{CAMERA}/move", json={"pan_deg": 25.0, "tilt_deg": -7.0, "zoom": 2.0})
         assert client.put(f"/cameras/{CAMERA}/presets/The box", json={"description": "close"}).status_code == 200
         client.post(f"/cameras/{CAMERA}/home")
@@ -116,23 +116,23 @@ def test_presets_are_cameras_of_the_scene(blender: DrivenBlender, served: Served
         assert arrival["pose"] == pytest.approx({"pan_deg": 25.0, "tilt_deg": -7.0, "zoom": 2.0}, abs=0.01)
     path = tmp_path / "saved.blend"
     blender(f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r}, copy=True) and None")
-    look = "import bpy; bpy.ops.wm.open_mainfile(filepath={!r}); s = bpy.context.scene; "
-    look += "print('found', sorted(o.name for o in s.objects if o.type == 'CAMERA'), s.camera.name)"
-    done = subprocess.run(
-        [str(worker_python()), "-c", look.format(str(path))], capture_output=True, text=True, check=True, timeout=120
+    script = "import bpy; bpy.ops.wm.open_mainfile(filepath={!r}); s = bpy.context.scene; "
+    script += "print('found', sorted(o.name for o in s.objects if o.type == 'CAMERA'), s.camera.name)"
+    result = subprocess.run(
+        [str(worker_python()), "-c", script.format(str(path))], capture_output=True, text=True, check=True, timeout=120
     )
-    assert "found ['Main Gate', 'The box', 'roof'] Main Gate" in done.stdout, "the file has its own active camera"
-    assert blender("scene.camera.name") == "SCOPE camera", "and SCOPE's camera is back after saving"
-    with served.client() as client:
+    assert "found ['Main Gate', 'The box', 'roof'] Main Gate" in result.stdout, "the saved file must keep its own active camera"
+    assert blender("scene.camera.name") == "SCOPE camera", "SCOPE's camera must be active again after saving"
+    with site_server.client() as client:
         assert client.delete(f"/cameras/{CAMERA}/presets/The box").status_code == 204
         assert client.delete(f"/cameras/{CAMERA}/presets/roof").json()["error"]["code"] == "refused_by_camera"
     assert blender("[o.name for o in scene.objects if 'box' in o.name]") == ["box"]
 
 
-def test_the_camera_goes_on_with_another_file(blender: DrivenBlender, served: Served, tmp_path: Path) -> None:
+def test_the_camera_works_with_another_file(blender: DrivenBlender, site_server: Served, tmp_path: Path) -> None:
     path = str(tmp_path / "other.blend")
     blender(f"bpy.ops.wm.save_as_mainfile(filepath={path!r}, copy=True) and None")
-    with served.client() as client:
+    with site_server.client() as client:
         client.post(f"/cameras/{CAMERA}/presets/roof/go")
         before = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
         blender(f"bpy.ops.wm.open_mainfile(filepath={path!r}) and None")
@@ -145,7 +145,7 @@ def test_the_camera_goes_on_with_another_file(blender: DrivenBlender, served: Se
 
 
 def test_the_token_is_not_stored(tmp_path: Path) -> None:
-    with without_window(tmp_path) as blender:
+    with blender_without_window(tmp_path) as blender:
         preferences = "bpy.context.preferences.addons['scope_addon'].preferences"
         blender(f"setattr({preferences}, 'token', 'a-secret-token')")
         assert blender(f"{preferences}.token") == "a-secret-token"
@@ -165,16 +165,16 @@ def test_a_silent_server_does_not_stop_blender(blender: DrivenBlender) -> None:
         assert blender("session.state") == "off"
 
 
-def test_problems_are_told_in_words(blender: DrivenBlender) -> None:
+def test_problems_are_reported_in_words(blender: DrivenBlender) -> None:
     blender("session.connect('http://127.0.0.1:9', '', 'blender-window')")
     blender.wait_for("session.state == 'off'")
-    assert "No server answers" in blender("session.problem")
+    assert "No server is running" in blender("session.problem")
     assert blender("scene.camera.name") == "Main Gate"
 
 
 @pytest.fixture
 def program(tmp_path: Path) -> Path:
-    """The ``scope`` program of the sources under test, which need not be the installed one."""
+    """Return a ``scope`` program that runs the sources under test instead of an installed package."""
     path = tmp_path / "scope"
     start = f"import sys\nsys.path.insert(0, {str(addon_folder().parent)!r})\nfrom scope_ptz.cli import main\nmain()\n"
     path.write_text(f"#!{sys.executable}\n{start}")
@@ -196,10 +196,10 @@ def test_the_add_on_starts_and_ends_a_server(blender: DrivenBlender, program: Pa
     blender.wait_for("session.state == 'connected'")
     assert blender.ask("pan left 10 degrees")[0] == "Answered"
     process = "session._server._process"
-    number = blender(f"{process}.pid")
+    pid = blender(f"{process}.pid")
     blender("session.disconnect()")
     blender.wait_for("session.state == 'off'")
-    blender.wait_for(f"not __import__('os').path.exists('/proc/{number}/cmdline') or not open('/proc/{number}/cmdline').read()")
+    blender.wait_for(f"not __import__('os').path.exists('/proc/{pid}/cmdline') or not open('/proc/{pid}/cmdline').read()")
 
 
 def test_the_file_installs_as_an_extension(tmp_path: Path) -> None:
@@ -213,8 +213,8 @@ print("enabled", "bl_ext.user_default.scope_addon" in bpy.context.preferences.ad
 bpy.ops.preferences.addon_disable(module="bl_ext.user_default.scope_addon")
 print("disabled", not hasattr(bpy.types, "SCOPE_PT_ask"), not hasattr(bpy.types.Scene, "scope"))
 """
-    done = subprocess.run(
+    result = subprocess.run(
         [str(worker_python()), "-c", code], env=environment(tmp_path), capture_output=True, text=True, timeout=180, check=False
     )
-    assert "enabled True True" in done.stdout, done.stdout + done.stderr
-    assert "disabled True True" in done.stdout
+    assert "enabled True True" in result.stdout, result.stdout + result.stderr
+    assert "disabled True True" in result.stdout

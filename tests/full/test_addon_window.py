@@ -18,19 +18,19 @@ from scope_ptz.serve.site.marks import ACCENT
 from scope_ptz.serve.site.pairs import DEFAULT_PAIR
 from scope_ptz.serve.site.site import SiteOptions
 from tests.addon.fake_blender import CAMERA
-from tests.full.driven_blender import DrivenBlender, environment, in_window, screen, screenshot
+from tests.full.driven_blender import DrivenBlender, blender_in_window, environment, screenshot, virtual_screen
 from tests.serve.serving import Served, serving
 from tests.support.misbehaving import MOONDREAM, Misbehaving
 
 pytestmark = pytest.mark.full
 
-SEEING_PAIR = "grammar+moondream3"
+VISION_PAIR = "grammar+moondream3"
 PREFERENCES = "bpy.context.preferences.addons['scope_addon'].preferences"
 
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A home folder in which the zip file is installed, as a user of Blender 3.4 does it."""
+    """Return a home folder in which the zip file is installed, as in Blender 3.4."""
     folder = tmp_path_factory.mktemp("home")
     write_addon_zip(folder / "scope.zip")
     code = f"import bpy; bpy.ops.preferences.addon_install(filepath={str(folder / 'scope.zip')!r})"
@@ -41,14 +41,14 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def display() -> Iterator[str]:
-    with screen() as name:
+    with virtual_screen() as name:
         yield name
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A server whose second pair has a deliberate fake of Moondream. It detects one object, always at the same place."""
-    options = SiteOptions(tmp_path_factory.mktemp("served"), pairs=(DEFAULT_PAIR, SEEING_PAIR))
+def site_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Run a server whose second pair uses a fake Moondream, which always detects one object at the same place."""
+    options = SiteOptions(tmp_path_factory.mktemp("served"), pairs=(DEFAULT_PAIR, VISION_PAIR))
     access = Access("127.0.0.1", limits=RateLimits(None))
     with pytest.MonkeyPatch.context() as patch, Misbehaving() as model:
         patch.setenv("SCOPE_PERCEPTION_URL", model.url)
@@ -57,15 +57,15 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 @pytest.fixture(scope="module")
-def blender(home: Path, display: str, served: Served) -> Iterator[DrivenBlender]:
-    with in_window(home, display) as driven:
-        driven("[setattr(scene.scope, 'width', 480), setattr(scene.scope, 'height', 270)]")
-        driven(f"[setattr({PREFERENCES}, 'use_own', 'ADDRESS'), setattr({PREFERENCES}, 'address', {served.root!r})]")
-        assert driven("run('connect')") == ["FINISHED"]
-        driven.wait_for("session.state == 'connected'")
-        driven("run('look')")
-        yield driven
-        assert driven.end() == {"cameras": ["Main Gate", "roof"], "active": "Main Gate"}
+def blender(home: Path, display: str, site_server: Served) -> Iterator[DrivenBlender]:
+    with blender_in_window(home, display) as blender_process:
+        blender_process("[setattr(scene.scope, 'width', 480), setattr(scene.scope, 'height', 270)]")
+        blender_process(f"[setattr({PREFERENCES}, 'use_own', 'ADDRESS'), setattr({PREFERENCES}, 'address', {site_server.root!r})]")
+        assert blender_process("run('connect')") == ["FINISHED"]
+        blender_process.wait_for("session.state == 'connected'")
+        blender_process("run('look')")
+        yield blender_process
+        assert blender_process.end() == {"cameras": ["Main Gate", "roof"], "active": "Main Gate"}
 
 
 def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: str, tmp_path: Path) -> None:
@@ -85,16 +85,16 @@ def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: s
     assert abs(first - second)[100:800, 100:1000].mean() > 3.0, "the viewport shows that the camera has moved"
 
 
-def test_the_viewports_picture_has_no_overlays(blender: DrivenBlender, served: Served) -> None:
-    with served.client() as client:
+def test_the_viewports_picture_has_no_overlays(blender: DrivenBlender, site_server: Served) -> None:
+    with site_server.client() as client:
         client.post(f"/cameras/{CAMERA}/home")
-        drawn = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
+        viewport_png = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
         blender("setattr(scene.scope, 'source', 'RENDER')")
         blender("setattr(scene.render, 'engine', 'BLENDER_WORKBENCH')")
-        rendered = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
+        render_png = client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
         blender("setattr(scene.scope, 'source', 'VIEWPORT')")
-    ours, theirs = (cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) for data in (drawn, rendered))
-    edges = [cv2.dilate(cv2.Canny(picture, 60, 120), np.ones((5, 5))) > 0 for picture in (ours, theirs)]
+    viewport, render = (cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) for data in (viewport_png, render_png))
+    edges = [cv2.dilate(cv2.Canny(picture, 60, 120), np.ones((5, 5))) > 0 for picture in (viewport, render)]
     overlap = (edges[0] & edges[1]).sum() / (edges[0] | edges[1]).sum()
     assert overlap > 0.6, f"the viewport and the render engine show the same outlines, but only {overlap:.2f} agree"
 
@@ -115,14 +115,16 @@ def test_a_preset_is_created_from_the_viewport(blender: DrivenBlender) -> None:
 
 def test_the_picture_opens_in_an_image_editor(blender: DrivenBlender) -> None:
     assert blender("run('picture')") == ["FINISHED"]
-    shown = "[a.spaces.active.image.name for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'IMAGE_EDITOR']"
-    assert blender(shown) == ["SCOPE frame"]
+    image_names = (
+        "[a.spaces.active.image.name for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'IMAGE_EDITOR']"
+    )
+    assert blender(image_names) == ["SCOPE frame"]
 
 
 def test_detections_are_marked_in_the_image_editor(blender: DrivenBlender, display: str, tmp_path: Path) -> None:
     assert blender("run('picture')") == ["FINISHED"]
     blender("setattr(bpy.context.window_manager.scope, 'question', 'how many cones are there?')")
-    blender(f"setattr(bpy.context.window_manager.scope, 'pair', {SEEING_PAIR!r})")
+    blender(f"setattr(bpy.context.window_manager.scope, 'pair', {VISION_PAIR!r})")
     assert blender("run('ask')") == ["FINISHED"]
     blender.wait_for("session.run is None")
     assert blender("session.end")[0] == "Answered", blender("session.end")
@@ -131,12 +133,12 @@ def test_detections_are_marked_in_the_image_editor(blender: DrivenBlender, displ
     row = "[round(255 * value) for value in bpy.data.images['SCOPE frame'].pixels[480 * 4 * 135 : 480 * 4 * 136]]"
     left, right = (round(480 * MOONDREAM["detect"]["objects"][0][side]) for side in ("x_min", "x_max"))
 
-    def marked() -> list[int]:
+    def marked_columns() -> list[int]:
         pixels = np.array(blender(row)).reshape(480, 4)[:, :3]
         return np.flatnonzero(abs(pixels - ACCENT).max(axis=1) < 40).tolist()
 
     deadline_s = time.monotonic() + 60.0
-    while not (found := marked()):
+    while not (found := marked_columns()):
         assert time.monotonic() < deadline_s, "the picture has no marks"
         time.sleep(0.1)
     screenshot(display, tmp_path / "marked.png")

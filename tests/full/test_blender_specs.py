@@ -25,7 +25,7 @@ pytestmark = pytest.mark.full
 SCENE = Path(__file__).with_name("small_scene.py")
 SMALL = "samples=4&width=160&height=90"
 
-# A floor with a red box to the north; scripts that leave a marker file if anything in the file runs.
+# Creates a file with a red box to the north, and with scripts that write to a marker file when they run.
 MAKE_FILE = """
 import bpy, math, sys
 bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -94,9 +94,9 @@ def redness(pixels: NDArray[np.uint8]) -> float:
 
 @pytest.mark.anyio
 async def test_a_file_opens_at_its_active_camera(blend_file: Path) -> None:
-    async with await open_camera(f"blender:{blend_file}?{SMALL}") as opened:
-        camera = opened.camera
-        assert not opened.has_truth
+    async with await open_camera(f"blender:{blend_file}?{SMALL}") as handle:
+        camera = handle.camera
+        assert not handle.has_truth
         assert [(p.name, p.description) for p in await camera.presets()] == [
             ("main-gate", "Main Gate"),
             ("main-gate-2", "main-gate"),
@@ -119,14 +119,14 @@ async def test_a_file_opens_at_its_active_camera(blend_file: Path) -> None:
 
 @pytest.mark.anyio
 async def test_time_moves_the_animation_of_a_file(blend_file: Path) -> None:
-    async with await open_camera(f"blender:{blend_file}?{SMALL}", time_s=10.0) as opened:
-        assert redness((await opened.camera.frame()).image) == 0.0, "the box has left the picture"
+    async with await open_camera(f"blender:{blend_file}?{SMALL}", time_s=10.0) as handle:
+        assert redness((await handle.camera.frame()).image) == 0.0, "the box has left the picture"
 
 
 @pytest.mark.anyio
-async def test_nothing_inside_a_file_runs(python: str, blend_file: Path, marker: Path) -> None:
-    async with await open_camera(f"blender:{blend_file}?{SMALL}") as opened:
-        await opened.camera.frame()
+async def test_scripts_in_a_file_do_not_run(python: str, blend_file: Path, marker: Path) -> None:
+    async with await open_camera(f"blender:{blend_file}?{SMALL}") as handle:
+        await handle.camera.frame()
     await to_thread.run_sync(check_markers, python, blend_file, marker)
 
 
@@ -146,24 +146,24 @@ async def test_a_file_that_is_not_a_blend_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.anyio
-async def test_a_scene_of_code_looks_like_its_camera_opened_by_hand() -> None:
-    async with await open_camera(f"blender:{SCENE}?{SMALL}") as opened:
-        assert [p.name for p in await opened.camera.presets()] == ["yard", "sign"]
-        assert not opened.has_truth, "no pack of this scene exists"
-        first = await opened.camera.frame()
-        await opened.camera.go_to_preset("sign")
-        other = await opened.camera.frame()
+async def test_a_scene_from_code_opens_at_presets_and_viewpoints() -> None:
+    async with await open_camera(f"blender:{SCENE}?{SMALL}") as handle:
+        assert [p.name for p in await handle.camera.presets()] == ["yard", "sign"]
+        assert not handle.has_truth, "no pack of this scene exists"
+        first = await handle.camera.frame()
+        await handle.camera.go_to_preset("sign")
+        other = await handle.camera.frame()
         assert ssim(first.image, other.image) < 0.9
-    async with await open_camera(f"blender:{SCENE}?{SMALL}", viewpoint="corner") as opened:
-        assert ssim((await opened.camera.frame()).image, other.image) > 0.95
+    async with await open_camera(f"blender:{SCENE}?{SMALL}", viewpoint="corner") as handle:
+        assert ssim((await handle.camera.frame()).image, other.image) > 0.95
 
 
 @pytest.mark.anyio
 class TestBlendFileCamera(CameraConformance):
     @pytest.fixture(autouse=True)
     async def parts(self, blend_file: Path) -> AsyncIterator[None]:
-        async with await open_camera(f"blender:{blend_file}?samples=2&width=160&height=90") as opened:
-            self.opened: OpenCamera = opened
+        async with await open_camera(f"blender:{blend_file}?samples=2&width=160&height=90") as handle:
+            self.opened: OpenCamera = handle
             yield
 
     @asynccontextmanager

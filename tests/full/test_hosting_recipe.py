@@ -1,4 +1,4 @@
-"""The commands of docs/hosting.md, with a host in a process of its own that is killed in between."""
+"""The commands of docs/hosting.md, with a host in a separate process that is killed once."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ import pytest
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.splits import load_split
-from tests.bench.engine.making import TASKS
+from tests.bench.engine.yard_tasks import TASKS
 
 pytestmark = pytest.mark.full
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -36,26 +36,26 @@ class Recipe:
     def scope(self, *arguments: str, code: int = 0) -> str:
         """Run a command, and return its output."""
         command = [sys.executable, "-m", "scope_ptz.cli", *arguments]
-        done = subprocess.run(
+        result = subprocess.run(
             command, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=600, check=False
         )
-        assert done.returncode == code, done.stdout + done.stderr
-        return done.stdout + done.stderr
+        assert result.returncode == code, result.stdout + result.stderr
+        return result.stdout + result.stderr
 
     def example(self, name: str, *arguments: str) -> None:
         """Run an example program."""
         command = [sys.executable, str(EXAMPLES / name), *arguments]
-        done = subprocess.run(
+        result = subprocess.run(
             command, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=600, check=False
         )
-        assert done.returncode == 0, done.stderr
+        assert result.returncode == 0, result.stderr
 
     @contextmanager
-    def host(self, *further: str) -> Iterator[tuple[subprocess.Popen[str], list[dict[str, Any]]]]:
-        """Run the host, and yield its process and what it printed until it listened."""
+    def host(self, *extra: str) -> Iterator[tuple[subprocess.Popen[str], list[dict[str, Any]]]]:
+        """Run the host, and yield its process and the lines that it printed until it listened."""
         command = [
             sys.executable, "-m", "scope_ptz.cli", "bench", "host", "--tasks", "private.jsonl", "--key", "host.key",
-            "--out", "hosted", "--port", "0", "--json", "--until-done", *further,
+            "--out", "hosted", "--port", "0", "--json", "--until-done", *extra,
         ]  # fmt: skip
         process = subprocess.Popen(command, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, text=True)
         assert process.stdout is not None
@@ -124,7 +124,7 @@ def test_the_recipe(analytic_folder: Path, tmp_path: Path) -> None:
     assert "edited after it was signed" in recipe.scope(*board, "--host-key", "host.key.pub")
 
 
-def test_closing_counts_everything(analytic_folder: Path, tmp_path: Path) -> None:
+def test_closing_counts_unfinished_runs_as_incorrect(analytic_folder: Path, tmp_path: Path) -> None:
     recipe = Recipe(tmp_path, analytic_folder.parent)
     dump_tasks(TASKS, tmp_path / "private.jsonl")
     recipe.scope("bench", "keygen", "--out", "host.key")
@@ -137,10 +137,10 @@ def test_closing_counts_everything(analytic_folder: Path, tmp_path: Path) -> Non
     assert {trial.headline for trial in trials} == {"incorrect"}
 
 
-@pytest.mark.parametrize("further", [(), ("--seeds", "48151623")], ids=["another seed", "a private variation"])
-def test_a_private_seed_gives_other_tasks(tmp_path: Path, further: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("extra", [(), ("--seeds", "48151623")], ids=["another seed", "a private variation"])
+def test_a_private_seed_gives_other_tasks(tmp_path: Path, extra: tuple[str, ...]) -> None:
     recipe = Recipe(tmp_path, None)
-    build = ("bench", "build", "--scene", "highway-works", "--share", "0.05", *further)
+    build = ("bench", "build", "--scene", "highway-works", "--share", "0.05", *extra)
     recipe.scope(*build, "--seed", "918273645", "--out", "one.jsonl")
     recipe.scope(*build, "--seed", "192837465", "--out", "other.jsonl")
     one, other = load_split(tmp_path / "one.jsonl"), load_split(tmp_path / "other.jsonl")

@@ -30,7 +30,7 @@ def run_and_kill(runs: Path, wait_s: float) -> dict[str, list[str]]:
     """Give instructions to a server, and kill it after ``wait_s`` seconds. Return the records that the client received, by run."""
     command = [sys.executable, "-m", "scope_ptz.cli", "serve", "--port", "0", "--json", "--camera", "analytic-yard"]
     program = subprocess.Popen([*command, "--runs-dir", str(runs)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    seen: dict[str, list[str]] = {}
+    received: dict[str, list[str]] = {}
     try:
         assert program.stdout is not None
         url = json.loads(program.stdout.readline())["url"]
@@ -41,32 +41,32 @@ def run_and_kill(runs: Path, wait_s: float) -> dict[str, list[str]]:
             try:
                 while True:
                     run = client.post("/runs", json={"camera": "analytic-yard", "instruction": INSTRUCTION}).json()["id"]
-                    seen[run] = []
+                    received[run] = []
                     with client.stream("GET", f"/runs/{run}/events") as events:
                         for line in events.iter_lines():
                             if line.startswith("data: "):
-                                seen[run].append(line.removeprefix("data: "))
+                                received[run].append(line.removeprefix("data: "))
             except httpx2.HTTPError:
                 killer.join()
     finally:
         if program.poll() is None:
             program.kill()
         program.communicate()
-    return seen
+    return received
 
 
 @pytest.mark.full
 def test_random_kills_lose_no_finished_step(scenes: None, tmp_path: Path) -> None:
-    runs, rng, seen = tmp_path / "runs", random.Random(7), dict[str, list[str]]()
+    runs, rng, received = tmp_path / "runs", random.Random(7), dict[str, list[str]]()
     for _ in range(KILLS):
-        seen |= run_and_kill(runs, rng.uniform(0.05, 4.0))
-    assert sum(map(len, seen.values())) > KILLS, "clients saw steps before the kills"
+        received |= run_and_kill(runs, rng.uniform(0.05, 4.0))
+    assert sum(map(len, received.values())) > KILLS, "clients saw steps before the kills"
     with RunStore(runs) as store:
         report = store.index()
         assert not report.damaged
-        stored = {run: store.run(run) for run in seen}
+        stored = {run: store.run(run) for run in received}
     unfinished = []
-    for run, records in seen.items():
+    for run, records in received.items():
         assert set(records) <= set((runs / run / "trace.jsonl").read_text().splitlines()), run
         calls = [record for record in records if json.loads(record)["event"] == "call"]
         assert len(stored[run].steps) >= len(calls), run
@@ -87,7 +87,7 @@ def test_a_full_disk_causes_a_clear_message_and_loses_no_run(scenes: None, tmp_p
     """A limit on the size of files simulates a full disk: writing beyond the limit fails with an error."""
     runs = tmp_path / "runs"
     command = [sys.executable, "-m", "scope_ptz.cli", "serve", "--port", "0", "--json", "--camera", "analytic-yard"]
-    limited = (
+    limit_file_size = (
         "import os, resource, signal, sys\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))\n"
@@ -96,7 +96,7 @@ def test_a_full_disk_causes_a_clear_message_and_loses_no_run(scenes: None, tmp_p
     with RunStore(runs) as store:
         store.index()
     environment = {**os.environ, "SCOPE_PICTURES_DIR": str(tmp_path / "cache")}
-    command = [sys.executable, "-c", limited, *command, "--runs-dir", str(runs)]
+    command = [sys.executable, "-c", limit_file_size, *command, "--runs-dir", str(runs)]
     program = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
     try:
         assert program.stdout is not None

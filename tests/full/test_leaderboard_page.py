@@ -1,4 +1,4 @@
-"""The leaderboard in a browser: its script sorts the tables, and its policy blocks nothing of its own."""
+"""The leaderboard in a browser: its script sorts the tables, and its security policy does not block the script."""
 
 from __future__ import annotations
 

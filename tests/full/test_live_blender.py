@@ -45,9 +45,9 @@ def command() -> list[str]:
 
 @pytest.fixture(scope="module")
 def worker(command: list[str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[BlenderWorker]:
-    with BlenderWorker(command, tmp_path_factory.mktemp("blender") / "blender.log") as started:
-        started.request("load_scene", {"source": SCENE})
-        yield started
+    with BlenderWorker(command, tmp_path_factory.mktemp("blender") / "blender.log") as blender:
+        blender.request("load_scene", {"source": SCENE})
+        yield blender
 
 
 @pytest.fixture(scope="module")
@@ -56,12 +56,12 @@ def live_scene(worker: BlenderWorker) -> SceneFile:
 
 
 @pytest.fixture(scope="module")
-def baked(command: list[str], tmp_path_factory: pytest.TempPathFactory) -> Scene:
+def baked_scene(command: list[str], tmp_path_factory: pytest.TempPathFactory) -> Scene:
     folder = tmp_path_factory.mktemp("scenes") / "small-yard"
     cache = tmp_path_factory.mktemp("cache")
-    found = bake(SCENE, folder, quality=TINY, command=command, cache_dir=cache, viewpoints=["mast"], progress=silent)
-    assert 1 <= found.packs[0].tiles <= TINY.max_cells
-    assert {r.viewpoint for r in found.reports} == {"mast"}, "the finished pack is held against live renders"
+    bake_result = bake(SCENE, folder, quality=TINY, command=command, cache_dir=cache, viewpoints=["mast"], progress=silent)
+    assert 1 <= bake_result.packs[0].tiles <= TINY.max_cells
+    assert {r.viewpoint for r in bake_result.reports} == {"mast"}, "the finished pack is compared with live renders"
     file = folder / "scene.json"
     scene = SceneFile.model_validate_json(file.read_text())
     assert [v.name for v in scene.viewpoints] == ["mast", "corner"]
@@ -87,39 +87,41 @@ def test_panorama_and_perspective_see_the_same_world(worker: BlenderWorker, tmp_
         with np.load(tmp_path / "t.npz") as file:
             found[name] = file["ids"], file["depth"]
     x, y = np.meshgrid((np.arange(320) + 0.5) / 320, (np.arange(180) + 0.5) / 180)
-    where = sphere.points(view.directions(np.stack([x, y], axis=-1)))
-    columns, rows = (where[..., 0] * 2048).astype(int), (where[..., 1] * 512).astype(int)
+    points = sphere.points(view.directions(np.stack([x, y], axis=-1)))
+    columns, rows = (points[..., 0] * 2048).astype(int), (points[..., 1] * 512).astype(int)
     ids, depth = found["sphere"][0][rows, columns], found["sphere"][1][rows, columns]
     same = ids == found["view"][0]
     assert same.mean() > 0.985
-    real = same & (depth > 0) & (found["view"][1] > 0)
-    assert np.median(depth[real] / found["view"][1][real]) == pytest.approx(1.0, abs=0.002)
+    visible = same & (depth > 0) & (found["view"][1] > 0)
+    assert np.median(depth[visible] / found["view"][1][visible]) == pytest.approx(1.0, abs=0.002)
 
 
-def test_the_pack_looks_like_live_renders(worker: BlenderWorker, baked: Scene) -> None:
-    poses = draw_poses(baked, 5, 4, 2, ["mast"])
-    reports = verify(baked, worker, poses, silent, samples=8, width=320, height=180)
+def test_the_pack_looks_like_live_renders(worker: BlenderWorker, baked_scene: Scene) -> None:
+    poses = draw_poses(baked_scene, 5, 4, 2, ["mast"])
+    reports = verify(baked_scene, worker, poses, silent, samples=8, width=320, height=180)
     assert len(reports) == len(poses) > 0
     assert all(r.ssim > 0.85 for r in reports), reports
     assert all(r.box_iou is None or r.box_iou > 0.85 for r in reports), reports
 
 
-def test_an_actor_in_the_pack_is_where_live_blender_has_it(worker: BlenderWorker, baked: Scene, tmp_path: Path) -> None:
+def test_actors_have_the_same_position_in_the_pack_and_in_live_blender(
+    worker: BlenderWorker, baked_scene: Scene, tmp_path: Path
+) -> None:
     view = Perspective(-25, -20, 40, 320, 180)
     for time_s in (2.3, 3.1):
         request = {"viewpoint": "mast", "projection": perspective_request(view), "out": str(tmp_path / "t.npz"), "time_s": time_s}
         worker.request("truth", request)
         with np.load(tmp_path / "t.npz") as file:
             live = file["ids"]
-        stored = instance_numbers(baked, "mast", view, time_s)
-        number = baked.file.actors[0].number
+        stored = instance_numbers(baked_scene, "mast", view, time_s)
+        number = baked_scene.file.actors[0].number
         assert box_ious(stored, live, 100)[number] > 0.85
 
 
 @pytest.mark.anyio
-async def test_both_cameras_give_the_same_picture(worker: BlenderWorker, live_scene: SceneFile, baked: Scene) -> None:
+async def test_both_cameras_give_the_same_picture(worker: BlenderWorker, live_scene: SceneFile, baked_scene: Scene) -> None:
     live = BlenderCamera(worker, live_scene, samples=8, clock=SceneClock(2.3), width=320, height=180)
-    stored = SimulatedCamera(baked, viewpoint="mast", clock=SceneClock(2.3), width=320, height=180)
+    stored = SimulatedCamera(baked_scene, viewpoint="mast", clock=SceneClock(2.3), width=320, height=180)
     assert await live.presets() == await stored.presets()
     frames = []
     for camera in (live, stored):

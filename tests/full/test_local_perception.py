@@ -42,15 +42,15 @@ def server(checkpoint: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 @pytest.fixture(params=["transformers_local", "openai_vision"])
 def spec(request: pytest.FixtureRequest, checkpoint: Path) -> BackendSpec:
-    """The same model in this process and behind a server."""
-    made = BackendSpec(name="tiny", backend=request.param, model=str(checkpoint), coordinates=vision.STYLE.name)
+    """Return the spec of the same model, in this process or behind a server."""
+    local_spec = BackendSpec(name="tiny", backend=request.param, model=str(checkpoint), coordinates=vision.STYLE.name)
     if request.param == "transformers_local":
-        return made
-    return made.model_copy(update={"endpoint": Endpoint(url=request.getfixturevalue("server"))})
+        return local_spec
+    return local_spec.model_copy(update={"endpoint": Endpoint(url=request.getfixturevalue("server"))})
 
 
 @asynccontextmanager
-async def opened(spec: BackendSpec) -> AsyncIterator[Perception]:
+async def open_backend(spec: BackendSpec) -> AsyncIterator[Perception]:
     perception = make_backend(spec)
     try:
         yield perception
@@ -62,7 +62,7 @@ async def opened(spec: BackendSpec) -> AsyncIterator[Perception]:
 @pytest.mark.parametrize("corner", ["top left", "bottom right"])
 async def test_a_vision_model_locates_an_object(spec: BackendSpec, corner: str) -> None:
     frame = vision.frame(corner)
-    async with opened(spec) as perception:
+    async with open_backend(spec) as perception:
         (box,) = (await perception.detect(frame, "square")).boxes
         expected = tuple(v / 1000 for v in vision.CORNERS[corner] or ())
         assert (box.x_min, box.y_min, box.x_max, box.y_max) == pytest.approx(expected)
@@ -74,7 +74,7 @@ async def test_a_vision_model_locates_an_object(spec: BackendSpec, corner: str) 
 
 @pytest.mark.anyio
 async def test_a_vision_model_reports_an_absence(spec: BackendSpec) -> None:
-    async with opened(spec) as perception:
+    async with open_backend(spec) as perception:
         assert (await perception.detect(vision.frame("nowhere"), "square")).boxes == ()
         assert (await perception.query(vision.frame("nowhere"), vision.QUESTION)).text == "No."
 
@@ -84,18 +84,18 @@ class TestConformance(PerceptionConformance):
     present, absent = "square", "square"
 
     @pytest.fixture(autouse=True)
-    def _given(self, spec: BackendSpec) -> None:
+    def _configure(self, spec: BackendSpec) -> None:
         self.spec, self.question = spec, vision.QUESTION
 
     def perception(self) -> AbstractAsyncContextManager[Perception]:
-        return opened(self.spec)
+        return open_backend(self.spec)
 
     def frame(self) -> Frame:
         return vision.frame("bottom right")
 
-    async def test_absent_things_are_an_empty_list(self) -> None:
+    async def test_absent_objects_give_empty_results(self) -> None:
         """The tiny model knows only one object, so the picture does not contain it."""
-        async with opened(self.spec) as perception:
+        async with open_backend(self.spec) as perception:
             assert (await perception.detect(vision.frame("nowhere"), self.absent)).boxes == ()
 
 
@@ -127,17 +127,17 @@ async def test_scores_below_the_threshold_give_no_detections(maker: str, tmp_pat
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", ["zero_shot", "transformers_local"])
 async def test_a_missing_model_is_an_error(backend: str, tmp_path: Path) -> None:
-    perception = make_backend(BackendSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
+    perception = make_backend(BackendSpec(name="vision", backend=backend, model=str(tmp_path / "nowhere")))
     with pytest.raises(PerceptionError):
         await perception.detect(vision.frame("top left"), "square")
 
 
 @given(st.integers(14, 6000), st.integers(14, 6000), st.sampled_from([28, 32]), st.sampled_from([3136, 65536]))
-def test_pictures_are_resized_as_the_models_themselves_would(width: int, height: int, factor: int, min_pixels: int) -> None:
-    from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize as theirs
+def test_pictures_are_resized_as_in_transformers(width: int, height: int, factor: int, min_pixels: int) -> None:
+    from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize as reference_resize
 
     assume(max(width, height) / min(width, height) <= 200 and min(width, height) * 2 > factor)
     ours = smart_resize(width, height, factor=factor, min_pixels=min_pixels, max_pixels=1_310_720)
-    assert ours[::-1] == theirs(height, width, factor=factor, min_pixels=min_pixels, max_pixels=1_310_720)
+    assert ours[::-1] == reference_resize(height, width, factor=factor, min_pixels=min_pixels, max_pixels=1_310_720)
     if max(ours) / min(ours) <= 200:
-        assert theirs(ours[1], ours[0], factor=factor, min_pixels=min_pixels, max_pixels=12_845_056) == ours[::-1]
+        assert reference_resize(ours[1], ours[0], factor=factor, min_pixels=min_pixels, max_pixels=12_845_056) == ours[::-1]

@@ -1,4 +1,4 @@
-"""Programs of the system against the streams of a virtual camera: ffprobe, ffmpeg, and a browser's ``<img>``."""
+"""The streams of a virtual camera in installed programs: ffprobe, ffmpeg, and a browser's ``<img>``."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ STREAMS = {"rtsp over tcp": ["-rtsp_transport", "tcp"], "rtsp over udp": ["-rtsp
 
 
 def program(name: str) -> str:
-    """Return the path of a program; a tier without it fails."""
-    found = shutil.which(name)
+    """Return the path of a program, or fail with the name of its package."""
+    path = shutil.which(name)
     package = {"ffprobe": "ffmpeg"}.get(name, name)
-    assert found, f"{name} is missing. Install Debian's package: apt-get install --no-install-recommends {package}"
-    return found
+    assert path, f"{name} is missing. Install Debian's package: apt-get install --no-install-recommends {package}"
+    return path
 
 
 async def run(*command: str) -> bytes:
-    """Run a program and return what it prints."""
-    done = await to_thread.run_sync(lambda: subprocess.run(command, capture_output=True, timeout=120, check=False))
-    assert done.returncode == 0, done.stderr.decode(errors="replace")[-2000:]
-    return done.stdout
+    """Run a program and return its output."""
+    result = await to_thread.run_sync(lambda: subprocess.run(command, capture_output=True, timeout=120, check=False))
+    assert result.returncode == 0, result.stderr.decode(errors="replace")[-2000:]
+    return result.stdout
 
 
 @asynccontextmanager
@@ -60,13 +60,13 @@ def address(camera: ServedCamera, stream: str) -> str:
     return url.replace("://", "://root:pass%20word@")
 
 
-def likeness(image: NDArray[np.uint8], camera: ServedCamera) -> tuple[float, float]:
-    """Return the mean differences to the picture of the camera's pose, and to that of the opposite direction."""
+def differences(image: NDArray[np.uint8], camera: ServedCamera) -> tuple[float, float]:
+    """Return the mean differences from the picture at the camera's pose, and from that in the opposite direction."""
     device = camera.device
     height, width = image.shape[:2]
     right = device.expose(width, height).image
     device.move(Pose(-140.0, -5.0, 1.0))
-    while device.moving():
+    while device.is_moving():
         pass
     wrong = device.expose(width, height).image
     return float(np.abs(image - right.astype(float)).mean()), float(np.abs(image - wrong.astype(float)).mean())
@@ -75,10 +75,10 @@ def likeness(image: NDArray[np.uint8], camera: ServedCamera) -> tuple[float, flo
 @pytest.mark.parametrize("stream", STREAMS)
 async def test_ffprobe_finds_the_stream(analytic_scene: Scene, stream: str) -> None:
     async with camera_of(analytic_scene) as camera:
-        printed = await run(
+        output = await run(
             program("ffprobe"), "-v", "error", *STREAMS[stream], "-show_streams", "-of", "json", address(camera, stream)
         )
-    (found,) = json.loads(printed)["streams"]
+    (found,) = json.loads(output)["streams"]
     assert (found["codec_type"], found["width"], found["height"]) == ("video", 640, 360)
     if stream == "mjpeg":
         assert found["codec_name"] == "mjpeg"
@@ -96,13 +96,13 @@ async def test_ffmpeg_reads_pictures_without_an_error(analytic_scene: Scene, str
         )  # fmt: skip
         image = cv2.imread(str(tmp_path / "50.png"))
         assert image is not None, "fewer than 50 pictures"
-        right, wrong = likeness(np.asarray(image[..., ::-1], np.uint8), camera)
+        right, wrong = differences(np.asarray(image[..., ::-1], np.uint8), camera)
     assert right < 6
     assert right < wrong / 2
 
 
 async def test_a_browser_shows_motion_jpeg(analytic_scene: Scene, tmp_path: Path) -> None:
-    """The page of the camera holds an ``<img>`` of its stream. Browsers send no account for it unless they asked for one."""
+    """The camera's page contains an ``<img>`` of its stream. The camera has no accounts, because browsers send no credentials."""
     async with camera_of(analytic_scene, accounts=False) as camera:
         shot = tmp_path / "page.png"
         await run(
@@ -113,7 +113,7 @@ async def test_a_browser_shows_motion_jpeg(analytic_scene: Scene, tmp_path: Path
         assert page is not None
         device = camera.device
         picture = device.expose().image[..., ::-1]
-        # The browser scales the picture to the width of its page, beside margins.
+        # The browser scales the picture to the width of its page, with margins.
         small = cv2.resize(page, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
         best = max(
             float(cv2.matchTemplate(small, cv2.resize(picture, (width, width * 9 // 16)), cv2.TM_CCOEFF_NORMED).max())

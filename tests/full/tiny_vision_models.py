@@ -1,6 +1,6 @@
-"""Tiny vision checkpoints: detectors with random weights, and a vision model that is trained to see one kind of object.
+"""Tiny vision checkpoints: detectors with random weights, and a vision model that is trained to recognise one type of object.
 
-The code that loads real checkpoints, in process and in servers, loads them as well. Only their size differs.
+The code that loads real checkpoints, in process and in servers, loads these. Only their size differs.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from tests.full.vision import square
 
 SIDE, PATCH = 56, 14
 MARKS = ["<|endoftext|>", "<|im_start|>", "<|im_end|>", "<image>"]
-# A real model's template shows whole prompts. This one cuts them short, because reading them is what takes time.
+# The template of a real model contains whole prompts. This one truncates them, because long prompts are slow.
 CHAT_TEMPLATE = """
 {%- for message in messages -%}
 <|im_start|>{{ message.role }}
@@ -53,7 +53,7 @@ CHAT_TEMPLATE = """
 
 
 def tiny_vision_chat(folder: Path, lessons: Sequence[tuple[str, dict[str, str]]], seed: int = 0) -> Path:
-    """A LLaVA of a few hundred thousand parameters that answers each prompt by what it sees: prompt to {corner: reply}."""
+    """Train a small LLaVA, and save it. ``lessons`` are pairs of a prompt and its replies by the corner of the square."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     processor = _processor([text for prompt, replies in lessons for text in (prompt, *replies.values())])
@@ -80,7 +80,7 @@ def tiny_vision_chat(folder: Path, lessons: Sequence[tuple[str, dict[str, str]]]
         if step > 20 and max(float(loss.detach()) for loss in losses) < 0.004:
             break
     else:
-        raise AssertionError("the tiny vision model did not learn to see")
+        raise AssertionError("the tiny vision model did not learn its lessons")
     model.eval()
     model.save_pretrained(folder)
     processor.save_pretrained(folder)
@@ -107,28 +107,28 @@ def _processor(texts: Sequence[str]) -> LlavaProcessor:
 
 
 def _batch(processor: LlavaProcessor, prompt: str, replies: dict[str, str]) -> dict[str, torch.Tensor]:
-    """One prompt over all corners; replies are padded, and only they are learned."""
+    """Return a batch of one prompt with all corners. Replies are padded, and only their tokens are trained."""
     tokenizer: Any = processor.tokenizer
     content = [{"type": "image"}, {"type": "text", "text": prompt}]
-    asked = processor.apply_chat_template([{"role": "user", "content": content}], add_generation_prompt=True, tokenize=False)
+    prompt_text = processor.apply_chat_template([{"role": "user", "content": content}], add_generation_prompt=True, tokenize=False)
     images = [PillowImage.fromarray(square(corner)) for corner in replies]
-    head = processor(images=images, text=[asked] * len(images), return_tensors="pt")
-    said = [[*tokenizer(reply, add_special_tokens=False)["input_ids"], tokenizer.eos_token_id] for reply in replies.values()]
-    longest = max(map(len, said))
-    tail = torch.tensor([ids + [tokenizer.pad_token_id] * (longest - len(ids)) for ids in said])
-    learned = torch.tensor([ids + [-100] * (longest - len(ids)) for ids in said])
-    return {"input_ids": torch.cat([head["input_ids"], tail], dim=1), "pixel_values": head["pixel_values"], "learned": learned}
+    head = processor(images=images, text=[prompt_text] * len(images), return_tensors="pt")
+    reply_ids = [[*tokenizer(reply, add_special_tokens=False)["input_ids"], tokenizer.eos_token_id] for reply in replies.values()]
+    longest = max(map(len, reply_ids))
+    tail = torch.tensor([ids + [tokenizer.pad_token_id] * (longest - len(ids)) for ids in reply_ids])
+    labels = torch.tensor([ids + [-100] * (longest - len(ids)) for ids in reply_ids])
+    return {"input_ids": torch.cat([head["input_ids"], tail], dim=1), "pixel_values": head["pixel_values"], "labels": labels}
 
 
 def _loss(model: LlavaForConditionalGeneration, batch: dict[str, torch.Tensor]) -> torch.Tensor:
-    learned = batch["learned"]
-    output = model(input_ids=batch["input_ids"], pixel_values=batch["pixel_values"], logits_to_keep=learned.shape[1] + 1)
+    labels = batch["labels"]
+    output = model(input_ids=batch["input_ids"], pixel_values=batch["pixel_values"], logits_to_keep=labels.shape[1] + 1)
     logits = output.logits[:, :-1]
-    return torch.nn.functional.cross_entropy(logits.reshape(-1, logits.shape[-1]), learned.reshape(-1), ignore_index=-100)
+    return torch.nn.functional.cross_entropy(logits.reshape(-1, logits.shape[-1]), labels.reshape(-1), ignore_index=-100)
 
 
 def tiny_owlv2(folder: Path, seed: int = 0) -> Path:
-    """An OWLv2 with random weights. Its first text token must not be number 0, which the model takes for padding."""
+    """Save an OWLv2 with random weights. A text must not begin with token 0, which the model treats as padding."""
     torch.manual_seed(seed)
     words = ["!", "<|startoftext|>", "<|endoftext|>", *[c + end for c in "abcdefghijklmnopqrstuvwxyz" for end in ("", "</w>")]]
     vocabulary = {word: number for number, word in enumerate(words)}
@@ -148,7 +148,7 @@ def tiny_owlv2(folder: Path, seed: int = 0) -> Path:
 
 
 def tiny_grounding_dino(folder: Path, seed: int = 0) -> Path:
-    """A Grounding DINO with random weights."""
+    """Save a Grounding DINO with random weights."""
     torch.manual_seed(seed)
     words = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]", ".", "?", "!", "a", "cone", "square", "traffic", "orange"]
     tokenizer = BertTokenizer(vocab={word: number for number, word in enumerate(words)}, model_max_length=64)

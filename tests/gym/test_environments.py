@@ -1,4 +1,4 @@
-"""What Gymnasium requires of every environment: spaces, seeds, vectors and registration."""
+"""Gymnasium's requirements for every environment: spaces, seeds, vectors and registration."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_check_env_with_default_options(name: str, make: Make) -> None:
 
 
 def rollout(env: Any, seed: int, steps: int = 5) -> list[Any]:
-    """The observations, rewards and infos of some random actions, frames as bytes."""
+    """Return the observations, rewards and infos of some random actions, with frames as bytes."""
     env.action_space.seed(seed)
     records: list[Any] = [env.reset(seed=seed)]
     for _ in range(steps):
@@ -189,7 +189,7 @@ def test_a_world_keeps_only_its_last_scenes_open(monkeypatch: pytest.MonkeyPatch
     world = World("ground-truth", SMALL, SMALL)
     opened: list[weakref.ref[Scene]] = []
     for name in (*list_scenes(), *list_scenes()):
-        opened.append(weakref.ref(world.scene_named(name)))
+        opened.append(weakref.ref(world.scene_by_name(name)))
         gc.collect()
         assert opened[-1]() is not None
         assert len({id(scene()) for scene in opened if scene() is not None}) <= MAX_SCENES
@@ -199,12 +199,12 @@ def test_a_world_keeps_only_its_last_scenes_open(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.usefixtures("yard")
 def test_the_variations_of_a_scene_share_its_layers() -> None:
     world = World("ground-truth", SMALL, SMALL)
-    original, varied, other = (world.scene_named(name) for name in (YARD, f"{YARD}-v1", f"{YARD}-v2"))
+    original, varied, other = (world.scene_by_name(name) for name in (YARD, f"{YARD}-v1", f"{YARD}-v2"))
     assert len({scene.viewpoint("mast") for scene in (original, varied, other)}) == 1
     again = weakref.ref(original)
     del original
     gc.collect()
-    assert again() is world.scene_named(YARD), "a variation keeps its scene open"
+    assert again() is world.scene_by_name(YARD), "a variation keeps its scene open"
     world.close()
 
 
@@ -213,7 +213,7 @@ def test_a_world_finds_a_closed_scene_again() -> None:
     world = World("ground-truth", SMALL, SMALL)
     frames = []
     for name in (YARD, f"{YARD}-v1", f"{YARD}-v2", YARD):
-        world.open(name, world.scene_named(name).file.home_preset, 1.0, 0)
+        world.open(name, world.scene_by_name(name).file.home_preset, 1.0, 0)
         frames.append(world.picture(world.pose))
     np.testing.assert_array_equal(frames[0], frames[-1])
     world.close()

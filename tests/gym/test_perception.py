@@ -17,7 +17,7 @@ Make = Callable[..., Any]
 
 
 class FakeModel(Perception):
-    """A fake of a vision model. It reports one box in every frame, remembers the frames, and can be told to fail."""
+    """A fake of a vision model. It reports one box in every frame, remembers the frames, and can be set to fail."""
 
     name = "fake-model"
 

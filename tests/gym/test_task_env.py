@@ -20,7 +20,7 @@ from scope_ptz.factory.validation_perception import ground_truth_tools
 from scope_ptz.gym import finish_action, move_action, movement_tasks, tool_action
 from scope_ptz.gym.rewards import CHECKS, DEFAULT_WEIGHTS, CheckRewards
 from scope_ptz.gym.shared_scenes import shared_scene
-from scope_ptz.gym.task_choice import chosen_tasks
+from scope_ptz.gym.task_choice import select_tasks
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from tests.gym.conftest import COUNTING, TURNING
@@ -55,7 +55,7 @@ def answer_to(task: Task) -> str:
 
 def sample() -> list[Task]:
     """One task of each category in the scene of these tests."""
-    tasks = [task for task in chosen_tasks("core") if task.world == "highway-works" and task.reference]
+    tasks = [task for task in select_tasks("core") if task.world == "highway-works" and task.reference]
     return list({task.category: task for task in reversed(tasks)}.values())
 
 
@@ -74,7 +74,7 @@ def test_a_reference_program_earns_the_verdict_and_every_check(task: Task, make:
 
 @pytest.mark.parametrize("answer", ["There is 1 worker in a white helmet.", "There are 3 workers in white helmets."])
 def test_the_checks_are_those_of_the_benchmark(answer: str, make: Make) -> None:
-    (task,) = chosen_tasks(COUNTING)
+    (task,) = select_tasks(COUNTING)
     env = make(TASK, task=task, frame_size=SMALL)
     _, info, _ = run_reference(env, task, answer)
     scene = shared_scene(task.world)
@@ -85,7 +85,7 @@ def test_the_checks_are_those_of_the_benchmark(answer: str, make: Make) -> None:
 
 
 def test_a_wrong_answer_earns_no_verdict(make: Make) -> None:
-    (task,) = chosen_tasks(COUNTING)
+    (task,) = select_tasks(COUNTING)
     total, info, _ = run_reference(make(TASK, task=task, frame_size=SMALL), task, "There are 3 workers in white helmets.")
     assert info["verdict"] == "incorrect"
     assert "verdict" not in total
@@ -156,7 +156,7 @@ def test_movement_tasks_need_only_moves(make: Make) -> None:
     }
 
 
-def test_several_tasks_are_drawn_by_the_seed(make: Make) -> None:
+def test_the_seed_determines_the_tasks(make: Make) -> None:
     env = make(TASK, task=[COUNTING, TURNING], frame_size=SMALL)
     drawn = [env.reset(seed=seed)[1]["task"] for seed in range(8)]
     assert set(drawn) == {COUNTING, TURNING}

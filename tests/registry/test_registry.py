@@ -10,7 +10,7 @@ import pytest
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends import backend_names
 from scope_ptz.perception.models.coordinates import CONVENTIONS
-from scope_ptz.planner.chat.families import switch_for
+from scope_ptz.planner.chat.families import reasoning_switch
 from scope_ptz.registry import Registry, load_registry
 
 # The paper's table of models: name, total size, active parameters (billions), precision.
@@ -84,7 +84,7 @@ def test_every_model_is_complete(registry: Registry) -> None:
             assert model.coordinates in {*CONVENTIONS, "pixels"}
             assert model.backend in backend_names()
         if model.thinking in ("default", "always"):
-            assert switch_for(model.repo, "off", None).fields, f"nothing is known to keep {model.name} from thinking"
+            assert reasoning_switch(model.repo, "off", None).fields, f"nothing is known to keep {model.name} from thinking"
         if model.sees:
             assert model.backend == "openai_vision"
         for server in model.serve:

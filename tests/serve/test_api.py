@@ -150,7 +150,7 @@ def test_every_tool_is_an_operation(client: httpx2.Client) -> None:
 
 
 @pytest.mark.full
-def test_moves_by_hand(client: httpx2.Client) -> None:
+def test_manual_moves(client: httpx2.Client) -> None:
     arrived = client.post(f"/cameras/{CAMERA}/move", json={"pan_deg": 30.0, "tilt_deg": -5.0, "zoom": 2.0}).json()
     assert arrived["pose"] == pytest.approx({"pan_deg": 30.0, "tilt_deg": -5.0, "zoom": 2.0})
     arrived = client.post(f"/cameras/{CAMERA}/centre", json={"x": 1.0, "y": 0.5}).json()

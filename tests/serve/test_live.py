@@ -30,7 +30,7 @@ def watch(served: Served) -> ClientConnection:
     return connect(f"ws://127.0.0.1:{served.port}/api/v1/cameras/{CAMERA}/live?width=320", proxy=None, max_size=2**24)
 
 
-def frame_of(socket: ClientConnection) -> tuple[dict[str, Any], bytes]:
+def make_frame(socket: ClientConnection) -> tuple[dict[str, Any], bytes]:
     """Return the metadata and the JPEG of the next frame, without acknowledging it."""
     while True:
         message = socket.recv(timeout=30)
@@ -52,7 +52,7 @@ def test_frames_come_one_after_the_other_with_their_pose(client: httpx2.Client, 
     with watch(served) as socket:
         numbers = []
         for _ in range(10):
-            facts, jpeg = frame_of(socket)
+            facts, jpeg = make_frame(socket)
             numbers.append(facts["number"])
             picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
             assert picture is not None and picture.shape[1::-1] == (320, 180)
@@ -63,20 +63,20 @@ def test_frames_come_one_after_the_other_with_their_pose(client: httpx2.Client, 
 
 def test_a_slow_client_gets_the_newest_frame_and_no_queue(client: httpx2.Client, served: Served) -> None:
     with watch(served) as socket:
-        first, _ = frame_of(socket)
+        first, _ = make_frame(socket)
         time.sleep(1.0)
         with pytest.raises(TimeoutError):
             while isinstance(socket.recv(timeout=0.2), str):
                 pass
         socket.send("drawn")
-        following, _ = frame_of(socket)
+        following, _ = make_frame(socket)
         socket.send("drawn")
         assert following["number"] >= first["number"] + 5
 
 
 @contextmanager
 def watch_new_stream(served: Served, began: threading.Event) -> Iterator[ClientConnection]:
-    """Watch once the camera's stream is one that sets ``began``. The stream of an earlier watcher goes on if a client
+    """Watch once the camera's stream is one that sets ``began``. The stream of an earlier watcher continues if a client
     connects before its next frame, so a client that meets it leaves again."""
     deadline = time.monotonic() + 60
     while True:
@@ -106,12 +106,12 @@ def test_a_frame_that_came_before_the_acknowledgement_is_sent_if_it_is_still_the
     monkeypatch.setattr(SimulatedCamera, "frames", two_frames)
     try:
         with watch_new_stream(served, began) as socket:
-            facts, _ = frame_of(socket)
+            facts, _ = make_frame(socket)
             second.set()
             assert published.wait(20)
             time.sleep(0.2)  # for the server to offer the frame to this client
             socket.send("drawn")
-            following, _ = frame_of(socket)
+            following, _ = make_frame(socket)
             assert following["number"] > facts["number"]
     finally:
         second.set()
@@ -136,7 +136,7 @@ def test_frames_are_taken_only_while_somebody_watches(
 ) -> None:
     live = served.site.stations[CAMERA].live
     with watch(served) as socket:
-        frame_of(socket)
+        make_frame(socket)
         assert live.watchers == 1
     deadline = time.monotonic() + 20
     while live.watchers:

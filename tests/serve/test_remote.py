@@ -132,7 +132,7 @@ def test_only_one_of_two_sessions_controls_the_camera(address: str) -> None:
 
 def test_options_of_the_server_are_refused(address: str) -> None:
     for options in ({"planner": "grammar"}, {"seed": 3}, {"runs_dir": "runs"}, {"perception_url": "http://x/v1"}, {"max_steps": 3}):
-        with pytest.raises(InputError, match="The server of this camera determines"):
+        with pytest.raises(InputError, match="The camera's server determines"):
             scope_ptz.open(address, **options)
     with pytest.raises(UnknownNameError, match="has no pair"):
         scope_ptz.open(address, pair="qwen3-4b+moondream3")
@@ -152,7 +152,7 @@ def test_errors_have_clear_messages(
         scope_ptz.open(address.replace("http://", "http://anna:secret@"))
     assert "secret" not in str(caught.value)
     there = f"{guarded.root}/{CAMERA}"
-    with pytest.raises(ConfigError, match="needs a token"):
+    with pytest.raises(ConfigError, match="requires a token"):
         scope_ptz.open(there)
     monkeypatch.setenv("SCOPE_TOKEN", tokens["vera"])
     with scope_ptz.open(there) as scope:

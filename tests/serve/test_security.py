@@ -181,7 +181,7 @@ def test_requests_of_other_sites_are_refused_on_loopback_too(served: Served, hea
         assert refused.value.response.status_code == 403
 
 
-def test_the_servers_own_page_is_let_in(served: Served) -> None:
+def test_the_servers_own_page_is_admitted(served: Served) -> None:
     own = {"Origin": served.root, "Sec-Fetch-Site": "same-origin"}
     with served.client() as client:
         assert client.get("/cameras", headers=own).status_code == 200

@@ -78,14 +78,14 @@ async def test_control_ends_soon_after_its_holder_has_disconnected(analytic_scen
     await control.require(ANNA, camera)
     await anyio.sleep(0.1)
     assert control.holder == ANNA, "a program needs no live connection"
-    with control.connected(ANNA):
-        with control.connected(ANNA):
+    with control.live_connection(ANNA):
+        with control.live_connection(ANNA):
             pass
-        with control.connected(BEN):
+        with control.live_connection(BEN):
             pass
         await anyio.sleep(0.1)
         assert control.holder == ANNA
-    with control.connected(ANNA):
+    with control.live_connection(ANNA):
         await anyio.sleep(0.1)
         assert control.holder == ANNA, "it has reconnected"
     await anyio.sleep(0.1)
@@ -102,7 +102,7 @@ async def test_control_ends_with_the_run_of_a_client_that_left(analytic_scene: S
     await control.release(ANNA)
     assert control.holder == ANNA  # for the run in progress
     busy = False
-    await control.run_ended()
+    await control.clear_if_released()
     assert control.holder is None
     assert camera.control_lock is not None and camera.control_lock.holder is None
 
@@ -115,7 +115,7 @@ async def test_a_client_that_comes_back_during_its_run_keeps_control(analytic_sc
     await control.release(ANNA)
     assert await control.ask(ANNA, camera)
     busy = False
-    await control.run_ended()
+    await control.clear_if_released()
     assert control.holder == ANNA
 
 
@@ -246,7 +246,7 @@ def test_a_server_on_the_network_does_not_start_without_tokens(scenes: None, tmp
 
 
 @pytest.mark.anyio
-async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scenes: None, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_cancelling_the_opening_of_a_camera_stops_its_prefetch(scenes: None, monkeypatch: pytest.MonkeyPatch) -> None:
     started, proceed, ended, prefetches = threading.Event(), threading.Event(), threading.Event(), []
     prefetch = SimulatedCamera.prefetch
 
@@ -264,7 +264,7 @@ async def test_a_camera_whose_opening_is_cancelled_leaves_no_reading_behind(scen
     monkeypatch.setattr(Prefetches, "start", start)
     monkeypatch.setattr(SimulatedCamera, "prefetch", slow)
     station = Station("yard", SPEC, Pairs(), actor="test")
-    opening = asyncio.create_task(station.opened())
+    opening = asyncio.create_task(station.get_open_camera())
     assert await anyio.to_thread.run_sync(started.wait, 30)
     opening.cancel()
     with pytest.raises(asyncio.CancelledError):

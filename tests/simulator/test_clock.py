@@ -79,7 +79,7 @@ async def test_a_pause_outlasts_a_hold_and_a_hold_outlasts_a_pause() -> None:
         max_size=20,
     )
 )
-async def test_time_is_the_sum_of_what_passed_at_each_speed(steps: list[tuple[str, float]]) -> None:
+async def test_time_is_the_sum_of_the_intervals_at_each_speed(steps: list[tuple[str, float]]) -> None:
     clock, expected_s, speed, playing = SceneClock(7.0), 7.0, 1.0, True
     for what, value in steps:
         if what == "sleep":

@@ -1,7 +1,8 @@
-"""What a live picture needs: prefetching, bounded memory, blended tiles, and actors that keep their heading."""
+"""Requirements of live pictures: prefetching, bounded memory, blended tiles, and actors that keep their heading."""
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -38,12 +39,25 @@ def _view(pan: float, tilt: float, zoom: float, width: int = WIDTH, height: int 
 def test_after_prefetching_no_view_reads_a_file(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = Scene(analytic_scene.folder)
     assert Prefetch(scene.viewpoint("mast"), width=WIDTH).wait(60)
-    monkeypatch.setattr(Pictures, "checked", lambda *_: pytest.fail("a file was read"))
+    monkeypatch.setattr(Pictures, "verify", lambda *_: pytest.fail("a file was read"))
     for pan, tilt, zoom in ((0.0, -8.0, 1.0), (0.0, -8.0, 2.0), (10.0, -6.0, 3.3), (18.5, -3.0, 5.0), (-170.0, -40.0, 5.0)):
         picture(scene, "mast", _view(pan, tilt, zoom), 4.0)
 
 
-def test_prefetching_a_damaged_viewpoint_says_so(analytic_scene: Scene, tmp_path: Path) -> None:
+def test_helper_threads_can_be_ended_and_start_again(analytic_scene: Scene) -> None:
+    scene = Scene(analytic_scene.folder)
+    colour_view(scene.viewpoint("mast"), _view(0.0, -8.0, 2.0))
+    id_view(scene.viewpoint("mast"), _view(0.0, -8.0, 2.0))  # with all layers in use, two threads render
+    for pan in (1.0, 2.0):
+        before = set(threading.enumerate())
+        picture(scene, "mast", _view(pan, -8.0, 2.0), 4.0)
+        (helper,) = set(threading.enumerate()) - before
+        scene.end_threads()
+        helper.join(60)
+        assert not helper.is_alive()
+
+
+def test_prefetching_reports_a_damaged_viewpoint(analytic_scene: Scene, tmp_path: Path) -> None:
     scene = Scene(analytic_scene.folder)
     viewpoint = scene.viewpoint("mast")
     viewpoint.pictures.folder = tmp_path
@@ -102,15 +116,15 @@ def test_a_part_is_exactly_that_part_of_the_whole(
 @settings(max_examples=40, deadline=None)
 def test_cells_that_count_as_covered_are_covered(pan: float, tilt: float, hfov_deg: float) -> None:
     view = _view(0.0, 0.0, 1.0, 640, 360)
-    for showing in Tiles([Perspective(pan, tilt, hfov_deg, 300, 200)]).in_view(view):
-        mask = showing.mask()
+    for tile_in_view in Tiles([Perspective(pan, tilt, hfov_deg, 300, 200)]).in_view(view):
+        mask = tile_in_view.mask()
         assert mask is not None
         whole = np.zeros((view.height, view.width), np.uint8)
-        whole[showing.place] = mask
+        whole[tile_in_view.place] = mask
         for y in range(0, view.height, 40):
             for x in range(0, view.width, 40):
                 cell = slice(y, y + 40), slice(x, x + 40)
-                visible, rest = visible_tiles([showing], cell)
+                visible, rest = visible_tiles([tile_in_view], cell)
                 if rest is None or any(tile.whole for tile in visible):
                     assert (whole[cell] == 255).all()
                 shown = np.zeros_like(whole)
@@ -127,7 +141,7 @@ def test_cells_that_count_as_covered_are_covered(pan: float, tilt: float, hfov_d
 @given(st.floats(-170, 170), st.floats(-40, 10), st.floats(12, 70))
 @settings(max_examples=25, deadline=None)
 def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan: float, tilt: float, hfov_deg: float) -> None:
-    """Maps of all tiles, drawn over each other without leaving anything out, are the same."""
+    """Maps of all tiles, drawn over each other completely, are the same."""
     viewpoint, view = analytic_scene.viewpoint("mast"), Perspective(pan, tilt, hfov_deg, 640, 360)
     atlas, tiles = viewpoint.colour_atlas, viewpoint.tiles
     found = view_map(viewpoint, atlas, view)
@@ -137,14 +151,16 @@ def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan:
     grid = Grid(view, step_px(view))
     slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), view.pixels_per_radian))
     expected = panorama_map(viewpoint.manifest.band, slot, grid, whole).copy()
-    for showing in reversed(tiles.in_view(view)):
-        slot = atlas.ensure(1 + showing.tile, suitable_scale(atlas, tiles.views[showing.tile].focal_px, view.pixels_per_radian))
-        part = Grid(view, step_px(view), showing.place)
-        nodes = tiles.points(showing, view, part.x, part.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
-        mask = showing.mask()
+    for tile_in_view in reversed(tiles.in_view(view)):
+        slot = atlas.ensure(
+            1 + tile_in_view.tile, suitable_scale(atlas, tiles.views[tile_in_view.tile].focal_px, view.pixels_per_radian)
+        )
+        part = Grid(view, step_px(view), tile_in_view.place)
+        nodes = tiles.points(tile_in_view, view, part.x, part.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+        mask = tile_in_view.mask()
         assert mask is not None
         inside = mask > 0
-        expected[showing.place][inside] = part.to_pixels(nodes)[inside]
+        expected[tile_in_view.place][inside] = part.to_pixels(nodes)[inside]
     np.testing.assert_array_equal(found, expected)
 
 
@@ -174,7 +190,7 @@ def test_a_tile_ends_without_an_edge(analytic_scene: Scene) -> None:
         assert np.abs(border - soft).mean() < 3
 
 
-def test_a_sprite_from_above_is_turned_the_way_its_actor_goes(analytic_scene: Scene) -> None:
+def test_a_sprite_from_above_is_rotated_to_the_heading_of_its_actor(analytic_scene: Scene) -> None:
     (actor,) = analytic_scene.file.actors
     bicycle = actor.model_copy(update={"size_m": (0.6, 1.8, 1.9)})
     south = np.array([0.0, -1.0, 0.0])
@@ -186,7 +202,7 @@ def test_a_sprite_from_above_is_turned_the_way_its_actor_goes(analytic_scene: Sc
     np.testing.assert_allclose(warp_matrix(bicycle, ahead, ahead), np.eye(2), atol=1e-9)
 
 
-def test_shares_of_sprites_add_up(analytic_scene: Scene) -> None:
+def test_weights_of_sprites_add_up(analytic_scene: Scene) -> None:
     viewpoint = analytic_scene.viewpoint("mast")
     shares = set()
     for time_s in np.arange(1.1, 7.0, 0.05):
@@ -200,7 +216,7 @@ def test_shares_of_sprites_add_up(analytic_scene: Scene) -> None:
 
 @given(st.integers(0, 150), st.integers(0, 240), st.floats(1, 4), st.floats(-30, 30), st.floats(3, 40))
 @settings(max_examples=30, deadline=None)
-def test_the_coarse_test_never_overlooks_what_hides_an_actor(
+def test_the_coarse_test_never_misses_an_occluder(
     analytic_scene: Scene, top: int, left: int, zoom: float, pan: float, far_m: float
 ) -> None:
     view, viewpoint = _view(pan, -8.0, zoom, 640, 360), analytic_scene.viewpoint("mast")
@@ -210,7 +226,7 @@ def test_the_coarse_test_never_overlooks_what_hides_an_actor(
     rise = Grid(view, 8, part).to_pixels(Grid(view, 8, part).directions()[..., 2])
 
     doubtful = np.zeros(needed.shape, bool)
-    found = viewpoint.clearance.doubtful(
+    found = viewpoint.clearance.find_uncertain_part(
         view,
         part,
         needed,

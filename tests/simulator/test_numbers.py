@@ -81,7 +81,7 @@ def test_no_positions_have_no_numbers() -> None:
 
 @given(st.integers(1, 200), st.integers(1, 300), st.integers(0, 2**31))
 @settings(max_examples=40, deadline=None)
-def test_every_pixel_has_a_place_of_its_own(height: int, width: int, seed: int) -> None:
+def test_every_pixel_has_a_separate_place(height: int, width: int, seed: int) -> None:
     numbers = np.random.default_rng(seed).integers(0, 65536, (height, width), np.uint16)
     memory = np.zeros(SparseNumbers.bytes_for((height, width)), np.uint8)
     sparse = SparseNumbers(memory, (height, width))

@@ -141,7 +141,7 @@ def test_a_link_out_of_the_folder(copy: Path) -> None:
         (lambda s: s.update(format="x"), "scene.json is invalid at format"),
         (lambda s: s.update(extra=1), "scene.json is invalid at extra"),
         (lambda s: s.pop("instances"), "scene.json is invalid at instances"),
-        (lambda s: s.update(name="other"), "Rename the folder to the name of its scene"),
+        (lambda s: s.update(name="other"), "Rename the folder to the scene's name"),
         (lambda s: s.update(home_preset="nowhere"), "the home preset is 'nowhere', which does not exist"),
         (lambda s: s["presets"][0].update(viewpoint="cellar"), "preset 'yard' names the viewpoint 'cellar'"),
         (lambda s: s["texts"][0].update(parent="ghost"), "text 'board-text' names the instance 'ghost'"),

@@ -1,4 +1,4 @@
-"""Decoded pictures on disk: the same pixels without decoding, and nothing kept where that is not safe."""
+"""Decoded pictures on disk: the same pixels without decoding, and nothing cached where that is unsafe."""
 
 from __future__ import annotations
 
@@ -103,7 +103,9 @@ def test_a_limit_on_memory_keeps_no_colour(copy: Path, tmp_path: Path, pictures:
 
 
 @pytest.mark.parametrize("hindrance", ["a file in the way", "no room", "no locks"])
-def test_without_a_place_nothing_is_kept(hindrance: str, copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_cached_in_an_unusable_folder(
+    hindrance: str, copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "pictures"
     if hindrance == "a file in the way":
         folder.write_text("")
@@ -115,7 +117,7 @@ def test_without_a_place_nothing_is_kept(hindrance: str, copy: Path, tmp_path: P
     assert not folder.is_dir() or not list(folder.iterdir())
 
 
-def test_what_is_not_complete_is_filled_again(copy: Path, tmp_path: Path, pictures: PictureCache) -> None:
+def test_incomplete_pictures_are_filled_again(copy: Path, tmp_path: Path, pictures: PictureCache) -> None:
     wanted = seen(Scene(copy, picture_cache=pictures))
     for listed in (tmp_path / "pictures").glob("*.list"):
         listed.write_text("")
@@ -129,25 +131,25 @@ def test_what_is_not_complete_is_filled_again(copy: Path, tmp_path: Path, pictur
 def test_a_sheet_of_another_size_loses_its_list(pictures: PictureCache, tmp_path: Path) -> None:
     sheet = pictures.sheet("a", SHAPE, np.uint8)
     assert sheet is not None
-    with sheet.filling():
+    with sheet.lock_for_filling():
         sheet.array[...] = 7
-        sheet.completed(0, 2)
+        sheet.mark_complete(0, 2)
     again = pictures.sheet("a", SHAPE, np.uint8)
     assert again is not None
-    assert again.complete() == {(0, 2)}
+    assert again.complete_pictures() == {(0, 2)}
     assert (again.array == 7).all()
     other = pictures.sheet("a", (SHAPE[0] * 2, SHAPE[1]), np.uint8)
     assert other is not None
-    assert other.complete() == set()
+    assert other.complete_pictures() == set()
 
 
 def test_the_oldest_files_are_removed_first(pictures: PictureCache, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for age, name in enumerate(("new", "old", "older")):
         sheet = pictures.sheet(name, SHAPE, np.uint8)
         assert sheet is not None
-        with sheet.filling():
+        with sheet.lock_for_filling():
             sheet.array[...] = 1
-            sheet.completed(0, 0)
+            sheet.mark_complete(0, 0)
         os.utime(tmp_path / "pictures" / f"{name}.sheet", (1e9 - age, 1e9 - age))
     used = (tmp_path / "pictures" / "new.sheet").stat().st_blocks * 512
     monkeypatch.setattr(picture_cache, "MAX_BYTES", used)

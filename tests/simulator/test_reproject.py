@@ -160,7 +160,7 @@ def test_no_gap_at_the_seam(analytic_scene: Scene, pan: float) -> None:
 
 
 @pytest.mark.parametrize("left", [-180.0, -60.0, 0.0, 123.0])
-def test_panoramas_start_where_they_say(analytic_scene: Scene, left: float) -> None:
+def test_panoramas_start_at_their_left_pan(analytic_scene: Scene, left: float) -> None:
     panorama = Equirectangular(left, 360.0, 40.0, -70.0, 720, 220)
     _, perfect, _ = perfect_view("mast", panorama, coloured=False)
     assert (id_view(analytic_scene.viewpoint("mast"), panorama) != perfect).mean() < 0.002

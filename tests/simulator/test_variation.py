@@ -25,13 +25,13 @@ def state_of(scene: Scene) -> str:
 
 
 def test_a_number_defines_a_world(analytic_folder: Path, analytic_scene: Scene) -> None:
-    told = [state_of(analytic_scene.varied(n)) for n in NUMBERS]
+    told = [state_of(analytic_scene.create_variation(n)) for n in NUMBERS]
     assert told == [state_of(load_scene(f"analytic-yard-v{n}", [analytic_folder.parent])) for n in NUMBERS]
     assert len(set(told)) == len(told)
 
 
 def test_presets_have_other_poses_at_the_same_viewpoints(analytic_scene: Scene) -> None:
-    file = analytic_scene.varied(3).file
+    file = analytic_scene.create_variation(3).file
     assert [p.viewpoint for p in file.presets] == [p.viewpoint for p in analytic_scene.file.presets]
     assert not {p.name for p in file.presets} & {p.name for p in analytic_scene.file.presets}
     assert len({p.name for p in file.presets}) == len(file.presets)
@@ -39,7 +39,7 @@ def test_presets_have_other_poses_at_the_same_viewpoints(analytic_scene: Scene) 
 
 
 def test_actors_can_be_changed_in_every_way(analytic_scene: Scene) -> None:
-    worlds = [analytic_scene.varied(n) for n in NUMBERS]
+    worlds = [analytic_scene.create_variation(n) for n in NUMBERS]
     assert {(len(w.file.actors), len(w.held)) for w in worlds} == {(1, 0), (0, 1), (0, 0)}
     assert all(w.file.actors[0].delay_s > 1 for w in worlds if w.file.actors)
     # What is held is a thing like any other.
@@ -48,8 +48,8 @@ def test_actors_can_be_changed_in_every_way(analytic_scene: Scene) -> None:
 
 @pytest.mark.parametrize("number", [n for n in NUMBERS if n < 9])
 def test_changes_of_the_picture_agree_with_ground_truth(analytic_scene: Scene, number: int) -> None:
-    world = analytic_scene.varied(number)
-    still = analytic_scene.varied(number)
+    world = analytic_scene.create_variation(number)
+    still = analytic_scene.create_variation(number)
     still.file, still.held = still.file.model_copy(update={"actors": []}), ()
     seen = 0
     for time_s in (world.file.start_s, world.file.start_s + 4, world.file.start_s + 9):
@@ -69,7 +69,7 @@ def test_changes_of_the_picture_agree_with_ground_truth(analytic_scene: Scene, n
 
 @pytest.mark.anyio
 async def test_a_camera_reports_its_variation(analytic_scene: Scene) -> None:
-    world = analytic_scene.varied(2)
+    world = analytic_scene.create_variation(2)
     camera = SimulatedCamera(world, width=64, height=36)
     frame = await camera.frame()
     assert frame.origin is not None and frame.origin.scene == "analytic-yard-v2"

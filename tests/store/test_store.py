@@ -188,7 +188,7 @@ def test_words_that_occur_in_many_runs_are_found(
     copies(3)
     store.index()
     expected = {text: ids(store, text=text) for text in ("ball", "balls see", "pan", "colour", "nothing")}
-    monkeypatch.setattr("scope_ptz.store.queries._COMMON", 1)
+    monkeypatch.setattr("scope_ptz.store.queries._COMMON_WORD_RUNS", 1)
     assert {text: ids(store, text=text) for text in expected} == expected
     assert len(expected["ball"]) >= 4
 

@@ -21,14 +21,14 @@ WIDTH, HEIGHT = 320, 180
 
 
 def colour_of(directions: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """A smooth colour for every direction (..., 3)."""
+    """Return a smooth colour for every direction (..., 3)."""
     waves = np.stack([np.sin(5 * directions[..., 0]), np.cos(7 * directions[..., 1]), np.sin(6 * directions[..., 2] + 1)], axis=-1)
     return np.asarray(127.5 + 120 * waves).round().astype(np.uint8)
 
 
 @dataclass
 class StepClock:
-    """Time that only moves and waiting advance."""
+    """A clock that is advanced only by moves and waits."""
 
     time_s: float = 0.0
     held: bool = False
@@ -42,6 +42,8 @@ class StepClock:
 
 @dataclass
 class AnalyticCamera(Camera):
+    """A camera that moves instantly and draws the colour field."""
+
     start: Pose = field(default_factory=Pose)
     limits: Limits = field(default_factory=Limits)
     move_s: float = 0.1
@@ -85,12 +87,12 @@ class AnalyticCamera(Camera):
         return Frame(image, self.now, hfov, self.clock.now_s(), view)
 
     async def stop(self) -> None:
-        """Moves are instant here."""
+        """Do nothing, because moves are instant."""
 
 
 @dataclass(frozen=True)
 class Thing:
-    """An object as a cloud of directions (n, 3), drifting by ``rate`` degrees of pan and tilt a second."""
+    """An object as a cloud of directions (n, 3) that drifts by ``rate`` degrees of pan and tilt per second."""
 
     name: str
     cloud: NDArray[np.float64]
@@ -109,7 +111,7 @@ class Thing:
 def solid(
     name: str, pan_deg: float, tilt_deg: float, size_m: tuple[float, float, float], distance_m: float, spin_deg: float = 0
 ) -> Thing:
-    """An upright box-shaped thing in 3-D, seen from the origin: its corners and points along its edges."""
+    """Return an upright box, seen from the origin, as the directions of points along its edges."""
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
     pairs = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.sum(signs[a] != signs[b]) == 1]
     t = np.linspace(0, 1, 7)[:, None]
@@ -122,6 +124,8 @@ def solid(
 
 @dataclass
 class AnalyticPerception(Perception):
+    """Perception that finds the things whose name equals the description."""
+
     things: list[Thing]
     name: str = "analytic"
     fail: bool = False
@@ -158,7 +162,7 @@ class AnalyticPerception(Perception):
 
 
 class MemoryStore:
-    """An image store that only remembers."""
+    """An image store in memory."""
 
     def __init__(self) -> None:
         self.frames: list[Frame] = []
@@ -173,5 +177,5 @@ class MemoryStore:
 
 
 def moving_object(name: str, pan_deg: float, tilt_deg: float, rate: tuple[float, float]) -> Thing:
-    """A small solid that drifts."""
+    """Return a small solid that drifts."""
     return replace(solid(name, pan_deg, tilt_deg, (1.0, 1.0, 2.0), 20.0), rate=rate)

@@ -1,4 +1,4 @@
-"""A small world that can be ray-cast exactly: ground, sky, balls, blocks, a lettered board. The yardstick for everything stored."""
+"""A small world that can be ray-cast exactly: ground, sky, balls and blocks. It is the reference for all stored layers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Ball:
     colour: tuple[float, float, float]
 
     def hit(self, origin: Floats, rays: Floats) -> Floats:
-        """Distance along unit rays (n, 3), infinite where they miss."""
+        """Return the distances along unit rays (n, 3), infinite for misses."""
         offset = origin - np.array(self.centre)
         b = rays @ offset
         root = b**2 - (offset @ offset - self.radius**2)
@@ -31,7 +31,7 @@ class Ball:
         return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
 
     def outline(self, origin: Floats) -> Floats:
-        """Points (n, 3) whose convex hull is the silhouette."""
+        """Return points (n, 3) whose convex hull is the silhouette."""
         return _ring(np.array(self.centre) - origin, self.radius) + origin
 
 
@@ -66,9 +66,9 @@ Window = tuple[slice, slice]
 def cast(
     origin: Floats, rays: Floats, solids: list[tuple[Solid, Window]], *, coloured: bool = True
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16], Floats]:
-    """Colours (h, w, 3), instance numbers (h, w) and distances (h, w) along unit rays (h, w, 3) from a point, all in world axes.
+    """Return colours (h, w, 3), instance numbers (h, w) and distances (h, w) along unit rays (h, w, 3), all in world axes.
 
-    Each solid comes with the part of the picture outside of which it cannot be.
+    Each solid comes with the window of the picture that contains it.
     """
     with np.errstate(divide="ignore"):
         best = np.where(rays[..., 2] < -1e-9, -origin[2] / rays[..., 2], np.inf)
@@ -92,7 +92,7 @@ def cast(
 
 
 def _texture(points: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(n, 1) brightness 0..1 of the ground, fading to grey far away as a real one does."""
+    """Return the brightness of the ground (n, 1), from 0 to 1. It fades to grey with distance."""
     waves = [(1.3, 0.4, 0.25), (-0.5, 1.1, 0.25), (0.31, 0.22, 0.3), (-0.12, 0.17, 0.2)]
     away = np.linalg.norm(points, axis=-1)
     value = sum(a * np.sin(points[:, 0] * u + points[:, 1] * v) / (1 + (away * np.hypot(u, v) / 12) ** 2) for u, v, a in waves)
@@ -110,7 +110,7 @@ def _ring(towards: Floats, radius: float) -> Floats:
     side = np.cross(ahead, [0.0, 0.0, 1.0])
     side /= np.linalg.norm(side)
     top = np.cross(side, ahead)
-    # The circle in which the tangents from the eye touch the ball.
+    # The circle in which the tangents from the viewpoint touch the ball.
     forward, out = distance - radius**2 / distance, radius * np.sqrt(1 - (radius / distance) ** 2)
     turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)[:, None]
     return np.asarray(ahead * forward + out * (np.cos(turn) * side + np.sin(turn) * top))

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from scope_ptz.simulator.pack import Scene
-from tests.support.shared import made_once, root_of_all_workers
+from tests.support.shared import create_once, root_of_all_workers
 from tests.support.synthetic_pack import write_scene
 
 
 @pytest.fixture(scope="session")
 def analytic_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A scene folder of the analytic world. Tests must not write to it."""
-    return next(made_once(tmp_path_factory, "scenes", write_scene).iterdir())
+    """Return a scene folder of the analytic world. Tests must not write to it."""
+    return next(create_once(tmp_path_factory, "scenes", write_scene).iterdir())
 
 
 @pytest.fixture(scope="session")
@@ -31,7 +31,7 @@ def anyio_backend() -> str:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def one_search_for_packages() -> Iterator[None]:
+def package_search_cache() -> Iterator[None]:
     """Cache the search for the installed package of a task, so that each evaluation does not repeat it.
 
     In a checkout, the search reads the file lists of all installed packages. In an installed wheel, it is fast.
@@ -41,10 +41,10 @@ def one_search_for_packages() -> Iterator[None]:
 
     cache = dict[object, Any]()
 
-    def cached_search(searched: Any) -> Any:
-        module = getattr(searched, "__module__", None)
+    def cached_search(target: Any) -> Any:
+        module = getattr(target, "__module__", None)
         if module not in cache:
-            cache[module] = search(searched)
+            cache[module] = search(target)
         return cache[module]
 
     with pytest.MonkeyPatch.context() as patch:
@@ -54,7 +54,7 @@ def one_search_for_packages() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def pictures_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The cache folder of decoded pictures. The tests of all workers and the programs that they start share it."""
+    """Return the cache folder of decoded pictures, which the tests of all workers and the programs that they start share."""
     folder = root_of_all_workers(tmp_path_factory) / "pictures"
     before = os.environ.get("SCOPE_PICTURES_DIR")
     os.environ["SCOPE_PICTURES_DIR"] = str(folder)

@@ -1,4 +1,4 @@
-"""The machinery of a loopback HTTP server, and addresses that are no servers. What is answered is said elsewhere."""
+"""A loopback HTTP server with scripted behaviours, and addresses without a working server."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ JSON_TYPE = "application/json"
 
 @dataclass(frozen=True)
 class Request:
-    """What came in. ``data`` is the JSON body, {} when there is none."""
+    """A received request. ``data`` is the JSON body, or ``{}``."""
 
     method: str
     path: str
@@ -47,7 +47,7 @@ class Exchange:
     async def head(
         self, code: int = 200, content_type: str = JSON_TYPE, length: int | None = None, headers: Mapping[str, str] | None = None
     ) -> None:
-        """Status and headers. Without a length the body comes in chunks."""
+        """Send the status and the headers. Without a length, the body is sent in chunks."""
         lines = [f"HTTP/1.1 {code} {'OK' if code == 200 else 'Whatever'}"]
         if content_type:
             lines.append(f"Content-Type: {content_type}")
@@ -68,7 +68,7 @@ class Exchange:
         await self.chunk(f"data: {data if isinstance(data, str) else json.dumps(data)}\n\n".encode())
 
     def hang_up(self) -> None:
-        """Break the connection off at once, with a reset rather than a farewell."""
+        """Close the connection immediately, with a TCP reset."""
         self.keep_open = False
         raw = self.writer.get_extra_info("socket")
         with suppress(OSError):
@@ -81,23 +81,26 @@ Behaviour = Callable[[Exchange], Awaitable[None]]
 
 @dataclass
 class Loopback:
-    """The server. It runs in a thread of its own with a loop of its own; a context manager.
+    """The server, used as a context manager. It runs in its own thread with its own event loop.
 
-    ``requests``: what came in, in order; ``connections``: how many were opened; ``most_at_once``: requests answered together.
+    Attributes:
+        requests: All requests in order of arrival.
+        connections: Number of accepted connections.
+        max_concurrent: Largest number of requests that were answered at the same time.
     """
 
     script: Iterable[Behaviour]
     then: Behaviour
     requests: list[Request] = field(default_factory=list)
     connections: int = 0
-    most_at_once: int = 0
+    max_concurrent: int = 0
 
     def __post_init__(self) -> None:
         self._next = iter(self.script)
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._ready = threading.Event()
         self._open: set[asyncio.Task[None]] = set()
-        self._at_once = 0
+        self._concurrent = 0
         self.port = 0
 
     @property
@@ -152,12 +155,12 @@ class Loopback:
             return False
         self.requests.append(request)
         exchange = Exchange(request, writer)
-        self._at_once += 1
-        self.most_at_once = max(self.most_at_once, self._at_once)
+        self._concurrent += 1
+        self.max_concurrent = max(self.max_concurrent, self._concurrent)
         try:
             await next(self._next, self.then)(exchange)
         finally:
-            self._at_once -= 1
+            self._concurrent -= 1
         return exchange.keep_open
 
 
@@ -182,15 +185,15 @@ async def _read(reader: asyncio.StreamReader) -> Request | None:
 
 @contextmanager
 def nobody_listens() -> Iterator[str]:
-    """An address at which connections are refused: the port is held, and not listened to."""
-    with socket.socket() as held:
-        held.bind(("127.0.0.1", 0))
-        yield f"http://127.0.0.1:{held.getsockname()[1]}/v1"
+    """Yield an address that refuses connections: its port is bound, but nothing listens."""
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        yield f"http://127.0.0.1:{bound.getsockname()[1]}/v1"
 
 
 @contextmanager
 def speaks_no_tls() -> Iterator[str]:
-    """An https address behind which something greets first, and not in TLS."""
+    """Yield an https address whose server sends a greeting without TLS."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
@@ -212,7 +215,7 @@ def speaks_no_tls() -> Iterator[str]:
 
 @contextmanager
 def never_accepts() -> Iterator[str]:
-    """An address at which connections are neither taken nor refused: the queue of the listener is full."""
+    """Yield an address that neither accepts nor refuses connections, because the queue of the listener is full."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen(0)

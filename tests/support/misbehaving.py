@@ -3,7 +3,7 @@
     with Misbehaving([status(503), good()]) as server:
         Endpoint(url=server.url)
 
-Each request takes the next behaviour of the script; when it is spent, ``then`` answers the rest (a good reply by default).
+Each request takes the next behaviour of the script. After the script, ``then`` answers (by default, with a valid reply).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.support.loopback import (
     nobody_listens,
     speaks_no_tls,
 )
-from tests.support.model_wire import MODEL, MOONDREAM, Mind, Say, completion, pieces, response
+from tests.support.model_wire import MODEL, MOONDREAM, Responder, Say, completion, pieces, response
 
 __all__ = [
     "JSON_TYPE",
@@ -33,9 +33,9 @@ __all__ = [
     "MOONDREAM",
     "Behaviour",
     "Exchange",
-    "Mind",
     "Misbehaving",
     "Request",
+    "Responder",
     "Say",
     "body",
     "completion",
@@ -66,35 +66,35 @@ __all__ = [
 
 EVENTS_TYPE = "text/event-stream"
 ALL_DONE = Say()
-LONG = Say("The answer is long.")
+LONG_REPLY = Say("The answer is long.")
 
 
-def good(mind: Mind | Say = ALL_DONE, moondream: Mapping[str, dict[str, Any]] = MOONDREAM) -> Behaviour:
-    """Answers as it should: chat, streaming or not; responses, not streaming; Moondream's paths; the list of models."""
+def good(reply: Responder | Say = ALL_DONE, moondream: Mapping[str, dict[str, Any]] = MOONDREAM) -> Behaviour:
+    """Answer correctly: chat (also streamed), responses (not streamed), Moondream's paths, and the list of models."""
 
     async def behave(x: Exchange) -> None:
         request = x.request
         if request.chat:
-            say = mind(request) if callable(mind) else mind
+            say = reply(request) if callable(reply) else reply
             await _stream(x, pieces(say)) if request.streaming else await x.whole(json.dumps(completion(say)).encode())
         elif request.path.endswith("/responses"):
-            await x.whole(json.dumps(response(mind(request) if callable(mind) else mind)).encode())
+            await x.whole(json.dumps(response(reply(request) if callable(reply) else reply)).encode())
         elif request.path.endswith("/models"):
             await x.whole(json.dumps({"object": "list", "data": [{"id": MODEL, "object": "model"}]}).encode())
-        elif (asked := request.path.rpartition("/")[2]) in moondream:
-            await x.whole(json.dumps(moondream[asked]).encode())
+        elif (skill := request.path.rpartition("/")[2]) in moondream:
+            await x.whole(json.dumps(moondream[skill]).encode())
         else:
             await x.whole(b'{"error":{"message":"no such path"}}', 404)
 
     return behave
 
 
-async def _stream(x: Exchange, events: Iterable[dict[str, Any]], *, pause_s: float = 0.0, done: bool = True) -> None:
+async def _stream(x: Exchange, events: Iterable[dict[str, Any]], *, pause_s: float = 0.0, send_done: bool = True) -> None:
     await x.head(content_type=EVENTS_TYPE)
     for data in events:
         await x.event(data)
         await asyncio.sleep(pause_s)
-    if done:
+    if send_done:
         await x.event("[DONE]")
         await x.send(b"0\r\n\r\n")
 
@@ -104,12 +104,12 @@ def say(
     *calls: tuple[str, Any],
     reasoning: str = "",
 ) -> Behaviour:
-    """The model says this, or calls these tools."""
+    """Answer with a text, tool calls or reasoning."""
     return good(Say(text=text, tool_calls=calls, reasoning=reasoning))
 
 
 def status(code: int, message: Any = "the server's own words", headers: Mapping[str, str] | None = None) -> Behaviour:
-    """An error status with an OpenAI-style error body (or any JSON)."""
+    """Answer with an error status and an OpenAI-style error body (or any JSON)."""
     body = {"error": {"message": message, "type": "Whatever", "code": code}} if isinstance(message, str) else message
 
     async def behave(x: Exchange) -> None:
@@ -121,7 +121,7 @@ def status(code: int, message: Any = "the server's own words", headers: Mapping[
 def body(
     content: bytes | str, content_type: str = JSON_TYPE, code: int = 200, headers: Mapping[str, str] | None = None
 ) -> Behaviour:
-    """Any body, exactly as given."""
+    """Answer with exactly this body."""
 
     async def behave(x: Exchange) -> None:
         await x.whole(content.encode() if isinstance(content, str) else content, code, content_type, headers)
@@ -130,7 +130,7 @@ def body(
 
 
 def error_in_success(message: str = "CUDA out of memory") -> Behaviour:
-    """HTTP 200 with an error inside; in the midst of a stream where one is wanted."""
+    """Answer with HTTP 200 and an error in the body or in the stream."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
@@ -142,7 +142,7 @@ def error_in_success(message: str = "CUDA out of memory") -> Behaviour:
 
 
 def reset() -> Behaviour:
-    """The connection is broken before anything is said."""
+    """Reset the connection before the reply."""
 
     async def behave(x: Exchange) -> None:
         x.hang_up()
@@ -150,37 +150,37 @@ def reset() -> Behaviour:
     return behave
 
 
-def cut_off(mind: Say = LONG) -> Behaviour:
-    """The connection is broken in the midst of the answer."""
+def cut_off(reply: Say = LONG_REPLY) -> Behaviour:
+    """Reset the connection in the middle of the reply."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
-            await _stream(x, list(pieces(mind))[:2], done=False)
+            await _stream(x, list(pieces(reply))[:2], send_done=False)
         else:
             await x.head(length=1000)
             await x.send(b'{"choices":[{"message":')
-        await asyncio.sleep(0.02)  # what was said shall arrive before the reset
+        await asyncio.sleep(0.02)  # let the data arrive before the reset
         x.hang_up()
 
     return behave
 
 
-def ends_early(mind: Say = LONG) -> Behaviour:
-    """The answer ends politely, and too soon: a stream without its end, or half of a JSON."""
+def ends_early(reply: Say = LONG_REPLY) -> Behaviour:
+    """End the reply cleanly but too early: a stream without its end, or half of the JSON."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
-            await _stream(x, list(pieces(mind))[:2], done=False)
+            await _stream(x, list(pieces(reply))[:2], send_done=False)
             await x.send(b"0\r\n\r\n")
         else:
-            whole = json.dumps(completion(mind) if x.request.chat else MOONDREAM["detect"]).encode()
-            await x.whole(whole[: len(whole) // 2])
+            data = json.dumps(completion(reply) if x.request.chat else MOONDREAM["detect"]).encode()
+            await x.whole(data[: len(data) // 2])
 
     return behave
 
 
 def slow_first_byte(seconds: float = 30.0) -> Behaviour:
-    """Takes the request and is silent."""
+    """Accept the request, and send nothing."""
 
     async def behave(x: Exchange) -> None:
         await asyncio.sleep(seconds)
@@ -189,7 +189,7 @@ def slow_first_byte(seconds: float = 30.0) -> Behaviour:
 
 
 def slow_after_head(seconds: float = 30.0) -> Behaviour:
-    """Sends the headers of success at once, and is silent then."""
+    """Send the headers of a success, and then nothing."""
 
     async def behave(x: Exchange) -> None:
         await x.head(content_type=EVENTS_TYPE if x.request.streaming else JSON_TYPE)
@@ -199,7 +199,7 @@ def slow_after_head(seconds: float = 30.0) -> Behaviour:
 
 
 def trickle(pause_s: float = 0.05) -> Behaviour:
-    """Never silent for long, and never done."""
+    """Send small pieces without end."""
 
     async def behave(x: Exchange) -> None:
         await x.head(content_type=EVENTS_TYPE if x.request.streaming else JSON_TYPE)
@@ -211,7 +211,7 @@ def trickle(pause_s: float = 0.05) -> Behaviour:
 
 
 def stalls(seconds: float = 30.0) -> Behaviour:
-    """Begins to answer, and is silent then."""
+    """Begin the reply, and then send nothing."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
@@ -226,7 +226,7 @@ def stalls(seconds: float = 30.0) -> Behaviour:
 
 
 def empty_choices() -> Behaviour:
-    """A reply with nothing in it."""
+    """Answer with a reply without choices."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
@@ -238,12 +238,12 @@ def empty_choices() -> Behaviour:
 
 
 def wrong_type() -> Behaviour:
-    """A web page, with success."""
+    """Answer with a web page and status 200."""
     return body("<!doctype html><html><body>Welcome to the router</body></html>", "text/html; charset=utf-8")
 
 
 def malformed() -> Behaviour:
-    """JSON that is none, in a stream where one is wanted."""
+    """Answer with invalid JSON, also in a stream."""
 
     async def behave(x: Exchange) -> None:
         if x.request.streaming:
@@ -258,7 +258,7 @@ def malformed() -> Behaviour:
 
 
 def huge(size: int = 12 * 2**20, *, stated: bool = False) -> Behaviour:
-    """A valid reply of many megabytes; ``stated``: with its length told beforehand."""
+    """Answer with a valid reply of many megabytes. With ``stated``, the headers contain its length."""
 
     async def behave(x: Exchange) -> None:
         text = "a" * size
@@ -279,17 +279,17 @@ def huge(size: int = 12 * 2**20, *, stated: bool = False) -> Behaviour:
 
 
 def echo_key() -> Behaviour:
-    """A careless server: its error repeats the credentials that it was given."""
+    """Answer with an error that repeats the credentials of the request."""
 
     async def behave(x: Exchange) -> None:
-        given = [value for name, value in x.request.headers.items() if "auth" in name]
-        await x.whole(json.dumps({"error": {"message": f"Invalid credentials: {given}"}}).encode(), 401)
+        credentials = [value for name, value in x.request.headers.items() if "auth" in name]
+        await x.whole(json.dumps({"error": {"message": f"Invalid credentials: {credentials}"}}).encode(), 401)
 
     return behave
 
 
 def not_http() -> Behaviour:
-    """Another protocol altogether."""
+    """Answer in another protocol."""
 
     async def behave(x: Exchange) -> None:
         await x.send(b"SSH-2.0-OpenSSH_9.6\r\n")
@@ -299,12 +299,13 @@ def not_http() -> Behaviour:
 
 
 def redirect(location: str) -> Behaviour:
+    """Answer with a redirect."""
     return body("", code=307, headers={"Location": location})
 
 
 @dataclass
 class Misbehaving(Loopback):
-    """A server that behaves unless told otherwise."""
+    """A server that answers correctly, except for the behaviours of its script."""
 
     script: Iterable[Behaviour] = ()
     then: Behaviour = field(default_factory=good)

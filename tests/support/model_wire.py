@@ -1,4 +1,4 @@
-"""What a well-behaved model server says: OpenAI chat completions (whole, in pieces) and responses, and Moondream's four replies."""
+"""Valid replies of model servers: OpenAI chat completions (whole and streamed) and responses, and Moondream's four replies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MODEL = "loopback-model"
 
 @dataclass(frozen=True)
 class Say:
-    """What the model on the server says."""
+    """The reply of the model on the server."""
 
     text: str = "All done."
     reasoning: str = ""
@@ -26,9 +26,9 @@ class Say:
             {
                 "id": f"call-{index}",
                 "type": "function",
-                "function": {"name": name, "arguments": given if isinstance(given, str) else json.dumps(given)},
+                "function": {"name": name, "arguments": arguments if isinstance(arguments, str) else json.dumps(arguments)},
             }
-            for index, (name, given) in enumerate(self.tool_calls)
+            for index, (name, arguments) in enumerate(self.tool_calls)
         ]
 
     @property
@@ -36,11 +36,11 @@ class Say:
         return self.finish_reason or ("tool_calls" if self.tool_calls else "stop")
 
 
-Mind = Callable[[Request], Say]
+Responder = Callable[[Request], Say]
 
 
 def completion(say: Say) -> dict[str, Any]:
-    """A chat completion as vLLM words it."""
+    """Return a chat completion in the format of vLLM."""
     message: dict[str, Any] = {"role": "assistant", "content": say.text or None, "tool_calls": say.calls()}
     if say.reasoning:
         message["reasoning_content"] = say.reasoning
@@ -55,7 +55,7 @@ def completion(say: Say) -> dict[str, Any]:
 
 
 def response(say: Say) -> dict[str, Any]:
-    """The same as a reply of the responses API, whole."""
+    """Return the reply in the format of the responses API."""
     output: list[dict[str, Any]] = []
     if say.text:
         content = [{"type": "output_text", "text": say.text, "annotations": []}]
@@ -77,7 +77,7 @@ def response(say: Say) -> dict[str, Any]:
 
 
 def pieces(say: Say) -> Iterator[dict[str, Any]]:
-    """The same as the chunks of a stream: text and arguments in halves."""
+    """Yield the reply as the chunks of a stream, with text and arguments in halves."""
 
     def chunk(delta: dict[str, Any], ending: str | None = None) -> dict[str, Any]:
         choice = {"index": 0, "delta": delta, "finish_reason": ending}

@@ -1,4 +1,4 @@
-"""A deliberate fake of a bad network: a TCP proxy that drops, delays, and breaks what it forwards. A camera stands behind it."""
+"""A simulated bad network: a TCP proxy in front of a camera that drops data, delays it and cuts connections."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from types import TracebackType
 from typing import Literal, Self
 
 Fate = Literal["forward", "drop", "refuse", "one_way"]
-"""What happens to bytes and connections: ``drop`` is a partition (connections open and stay silent), ``refuse`` resets new
-connections, ``one_way`` lets requests through and loses the replies."""
+"""Handling of data and connections: ``drop`` is a partition (connections open but stay silent), ``refuse`` resets new
+connections, and ``one_way`` forwards requests but drops replies."""
 
 
 class BadNetwork:
-    """Forwards connections to a port of this machine. It runs in a thread of its own; a context manager.
+    """Forwards connections to a port on this machine. Use it as a context manager; it runs in its own thread.
 
-    Set the attributes at any time. Each byte sees what they are when it passes.
+    The attributes can be changed at any time, and apply to data that passes afterwards.
 
     Args:
-        port: The port behind.
+        port: The port of the camera.
 
     Attributes:
-        fate: What happens to bytes and to new connections.
-        delay_s: Seconds by which replies are late.
-        cut_after: Connections are reset when so many bytes of replies have passed; None for never.
-        connections: How many connections were opened.
-        port: The port in front.
+        fate: Handling of data and of new connections.
+        delay_s: Delay of replies, in seconds.
+        cut_after: Number of reply bytes after which a connection is reset, or None.
+        connections: Number of accepted connections.
+        port: The port of the proxy.
     """
 
     def __init__(self, port: int) -> None:
@@ -54,15 +54,15 @@ class BadNetwork:
 
     def cut(self) -> None:
         """Reset all connections that are open now."""
-        done = threading.Event()
+        finished = threading.Event()
 
         def reset() -> None:
             for writer in list(self._open):
                 _reset(writer)
-            done.set()
+            finished.set()
 
         self._loop.call_soon_threadsafe(reset)
-        assert done.wait(10)
+        assert finished.wait(10)
 
     async def _main(self) -> None:
         self._loop, self._stop = asyncio.get_running_loop(), asyncio.Event()
@@ -104,7 +104,7 @@ class BadNetwork:
             if self.fate in ("forward", "one_way"):
                 writer.write(data)
                 await writer.drain()
-        raise ConnectionError("the client has gone")
+        raise ConnectionError("the client has disconnected")
 
     async def _replies(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, camera: asyncio.StreamWriter) -> None:
         passed = 0
@@ -119,16 +119,16 @@ class BadNetwork:
             await writer.drain()
             passed += len(data)
             if self.cut_after is not None and passed >= self.cut_after:
-                await asyncio.sleep(0.01)  # what was written has to leave before the reset
+                await asyncio.sleep(0.01)  # let the data leave before the reset
                 _reset(writer)
                 _reset(camera)
         if self.fate == "forward":
-            raise ConnectionError("the camera has gone")
-        await asyncio.Event().wait()  # in a partition, nobody hears that the camera has closed the connection
+            raise ConnectionError("the camera has disconnected")
+        await asyncio.Event().wait()  # in a partition, the client does not notice that the camera has closed the connection
 
 
 def _reset(writer: asyncio.StreamWriter) -> None:
-    """Close a connection by a reset, without a farewell."""
+    """Close a connection with a TCP reset."""
     raw = writer.get_extra_info("socket")
     with suppress(OSError):
         raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))

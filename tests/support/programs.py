@@ -9,8 +9,8 @@ from typing import Any
 
 
 @contextmanager
-def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
-    """Start a program whose pipes carry text, and kill it at the end if it still runs.
+def start_program(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
+    """Start a program with text pipes, and kill it at the end if it is still running.
 
     ``subprocess.Popen`` as a context waits for its program, so a failed assertion inside it would wait for a server forever.
     """

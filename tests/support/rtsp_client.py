@@ -1,4 +1,4 @@
-"""An RTSP client in plain Python, written from the standards, which shows tests what ready clients hide."""
+"""An RTSP client in plain Python, written from the standards. It exposes details that other clients hide."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NTP_EPOCH_S = 2_208_988_800
 
 @dataclass(frozen=True)
 class Answer:
-    """A reply of the server. ``headers`` are lower case; of a repeated one all values are kept."""
+    """A reply of the server. ``headers`` maps lower-case names to all their values."""
 
     status: int
     headers: dict[str, list[str]]
@@ -33,7 +33,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class RtpPacket:
-    """An RTP packet, taken apart."""
+    """A parsed RTP packet."""
 
     marker: bool
     sequence: int
@@ -72,13 +72,13 @@ class SenderReport:
 
 @dataclass
 class Depacketizer:
-    """Puts pictures together from packets (RFC 6184)."""
+    """Assembles pictures from packets (RFC 6184)."""
 
     nals: list[bytes] = field(default_factory=list)
     _fragments: bytearray = field(default_factory=bytearray)
 
     def add(self, packet: RtpPacket) -> list[bytes] | None:
-        """Take a packet. Return the NAL units of a picture with its last one."""
+        """Add a packet. Return the NAL units of a picture if the packet completes it."""
         kind = packet.payload[0] & 0x1F
         assert kind in {1, 5, 7, 8, 28}, kind
         if kind == 28:
@@ -101,8 +101,8 @@ class RtspClient:
 
     Args:
         port: Port on this machine.
-        user: Account; requests are signed if the server asks for it.
-        password: Its password.
+        user: Account. Requests are signed if the server requires it.
+        password: Password of the account.
         path: Path and options of the stream.
     """
 
@@ -123,16 +123,16 @@ class RtspClient:
             await self._writer.wait_closed()
 
     def vanish(self) -> None:
-        """Leave without a word."""
+        """Abort the connection."""
         self._writer.transport.abort()
 
     async def send(self, content: bytes) -> None:
-        """Send bytes as they are."""
+        """Send raw bytes."""
         self._writer.write(content)
         await self._writer.drain()
 
     async def request(self, method: str, uri: str = "", body: bytes = b"", **headers: str) -> Answer:
-        """Send a request and return the answer, after signing in if that is asked for."""
+        """Send a request and return the answer. Sign the request if the server requires it."""
         answer = await self._once(method, uri or self.url, body, headers)
         if answer.status == 401 and self._user and not headers.get("Authorization"):
             challenge = next(each for each in answer.headers["www-authenticate"] if "MD5" in each)
@@ -142,20 +142,20 @@ class RtspClient:
 
     async def play(self, transport: str = "RTP/AVP/TCP;unicast;interleaved=0-1") -> Answer:
         """Describe, set up and play. Return the answer to PLAY."""
-        described = await self.request("DESCRIBE", Accept="application/sdp")
-        assert described.status == 200, described
-        track = [line for line in described.body.decode().splitlines() if line.startswith("a=control:")][-1].partition(":")[2]
+        description = await self.request("DESCRIBE", Accept="application/sdp")
+        assert description.status == 200, description
+        track = [line for line in description.body.decode().splitlines() if line.startswith("a=control:")][-1].partition(":")[2]
         self.set_up = await self.request("SETUP", track, Transport=transport)
         assert self.set_up.status == 200, self.set_up
-        played = await self.request("PLAY", described["content-base"], Session=self.set_up.session)
-        assert played.status == 200, played
-        return played
+        answer = await self.request("PLAY", description["content-base"], Session=self.set_up.session)
+        assert answer.status == 200, answer
+        return answer
 
     async def packet(self, channel: int) -> bytes:
         """Return the next packet on a channel."""
         while True:
-            for k, (on, data) in enumerate(self._packets):
-                if on == channel:
+            for k, (packet_channel, data) in enumerate(self._packets):
+                if packet_channel == channel:
                     del self._packets[k]
                     return data
             assert await self._read() is None
@@ -168,8 +168,8 @@ class RtspClient:
 
     async def _once(self, method: str, uri: str, body: bytes, headers: dict[str, str]) -> Answer:
         self._count += 1
-        signed = {"Authorization": self.signature(method, uri)} if self._challenge else {}
-        lines = {"CSeq": str(self._count), **signed, **headers, **({"Content-Length": str(len(body))} if body else {})}
+        authorization = {"Authorization": self.signature(method, uri)} if self._challenge else {}
+        lines = {"CSeq": str(self._count), **authorization, **headers, **({"Content-Length": str(len(body))} if body else {})}
         head = "".join(f"{name}: {value}\r\n" for name, value in lines.items())
         await self.send(f"{method} {uri} RTSP/1.0\r\n{head}\r\n".encode() + body)
         answer = await self.answer()

@@ -17,7 +17,7 @@ def root_of_all_workers(factory: pytest.TempPathFactory) -> Path:
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
-def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+def create_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
     """Return the shared folder ``name``. ``make`` fills it on first use in a test run. Tests must not write to it."""
     folder = root_of_all_workers(factory) / "shared" / name
     folder.parent.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Writes a pack of the analytic world, and answers what a perfect camera would see in it."""
+"""Write a pack of the analytic world, and render the views of a perfect camera in it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from scope_ptz.simulator.models import (
 from tests.support.analytic_world import Ball, Block, Floats, Solid, cast
 
 WIDTH, HEIGHT = 480, 270
-"""Frame size of the tests: the stored layers are as dense for it as a real pack's are for 1280x720."""
+"""Frame size of the tests. The stored layers have the same density for it as those of a real pack for 1280x720."""
 
 NEAR_M, FAR_M = 0.5, 1000.0
 BAND = Band(top_tilt_deg=56.0, bottom_tilt_deg=-90.0)
@@ -55,14 +55,14 @@ PERIOD_S = 10.0
 
 VIEWPOINTS = {"mast": ((0.0, 0.0, 4.0), 0.0), "roof": ((-6.0, -6.0, 7.0), 40.0)}
 BASE_WIDTH = {"mast": 2304, "roof": 1152}
-"""The mast is as fine as a real pack; the roof is there to be a second place."""
+"""Panorama widths in pixels. The mast has the density of a real pack; the roof is only a second viewpoint."""
 
 TILE_SIZE = 600, 338
 TILES = {
     "mast": [(-16.0, 1.0, 16.0), (-4.0, -2.0, 16.0), (10.0, -6.0, 16.0), (18.5, -3.0, 15.0), (14.0, -4.0, 44.0)],
     "roof": [(-36.0, -5.0, 16.0)],
 }
-"""Pan, tilt and width of sharper pictures; the last of the mast is a wider one around sharp ones."""
+"""Pan, tilt and field of view of tiles, in degrees. The last tile of the mast is wider and surrounds sharper ones."""
 
 TEXT = SceneText(
     id="board-text",
@@ -78,7 +78,7 @@ TEXT = SceneText(
 
 
 def actor_ball(time_s: float) -> Ball | None:
-    """The moving ball as it really is at a time."""
+    """Return the moving ball at a time, or None while it is absent."""
     t = time_s % PERIOD_S
     (t0, x0, y0, z0), (t1, x1, _, _) = WAYPOINTS
     if not t0 <= t <= t1:
@@ -95,7 +95,7 @@ def perfect_view(
     smooth: int = 1,
     coloured: bool = True,
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16], Floats]:
-    """Colour, instance numbers and distances, ray-cast. ``time_s``: with the actor; ``smooth`` ** 2 rays a pixel."""
+    """Return ray-cast colours, instance numbers and distances. ``time_s`` adds the actor; a pixel has ``smooth`` squared rays."""
     position, bearing = VIEWPOINTS[viewpoint]
     solids = list(SOLIDS if only is None else only)
     if time_s is not None and (ball := actor_ball(time_s)) is not None:
@@ -181,10 +181,10 @@ def _write_viewpoint(folder: Path, name: str) -> None:
     (folder / "tiles").mkdir(parents=True)
     (folder / "actors").mkdir()
     position, bearing = VIEWPOINTS[name]
-    fine = BASE_WIDTH[name]
-    base, _, _ = perfect_view(name, _sphere(fine))
-    _, ids, _ = perfect_view(name, _sphere(fine * 4 // 3), coloured=False)
-    _, _, depth = perfect_view(name, _sphere(fine * 2 // 3), coloured=False)
+    width = BASE_WIDTH[name]
+    base, _, _ = perfect_view(name, _sphere(width))
+    _, ids, _ = perfect_view(name, _sphere(width * 4 // 3), coloured=False)
+    _, _, depth = perfect_view(name, _sphere(width * 2 // 3), coloured=False)
     codes = layers.encode_depth(depth, NEAR_M, FAR_M)
     tiles = [_write_tile(folder, name, index, *aim) for index, aim in enumerate(TILES[name])]
     manifest = Manifest(
@@ -240,7 +240,7 @@ def _extent(name: str, solid: Solid) -> Extent:
 
 
 def _closeup(name: str, solid: Solid, size: int) -> Perspective:
-    """A square view that just holds a solid."""
+    """Return a square view that just contains a solid."""
     position, bearing = VIEWPOINTS[name]
     origin = np.array(position)
     rays = (solid.outline(origin) - origin) @ _camera_to_world(bearing)
@@ -291,6 +291,6 @@ def _write(folder: Path, name: str, picture: NDArray[np.uint8] | NDArray[np.uint
 
 
 def _camera_to_world(bearing_deg: float) -> Floats:
-    """(3, 3): camera-frame vectors as columns times this, turned clockwise by the bearing."""
+    """Return the (3, 3) matrix that rotates camera-frame vectors clockwise by the bearing into world axes."""
     b = math.radians(bearing_deg)
     return np.array([[math.cos(b), math.sin(b), 0.0], [-math.sin(b), math.cos(b), 0.0], [0.0, 0.0, 1.0]])

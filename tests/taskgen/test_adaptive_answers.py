@@ -1,4 +1,4 @@
-"""Answers that adapt to the form of a question: the forms, the agents, and the limit of what they may win."""
+"""Answers that adapt to the form of a question: the forms, the agents, and the limit on the tasks that they may pass."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.splits import load_split
-from scope_ptz.taskgen.validation.adaptive import NONE, adaptive_attempts, common_by_form, form_of
+from scope_ptz.taskgen.validation.adaptive import NONE, adaptive_attempts, common_answers_by_form, question_form
 from scope_ptz.taskgen.validation.dataset_checks import MAX_ADAPTIVE_SHARE, check_adaptive
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
@@ -28,24 +28,24 @@ CORE = load_split("core")
     ],
 )
 def test_the_form_of_a_question(instruction: str, form: str) -> None:
-    assert form_of(instruction) == form
+    assert question_form(instruction) == form
 
 
 def test_the_two_tasks_of_a_pair_have_the_same_form() -> None:
     """An agent that only sees the wording cannot tell them apart."""
     by_id = {task.id: task for task in CORE}
     pairs = [(task, by_id[task.pair]) for task in CORE if task.pair is not None]
-    same = sum(form_of(one.instruction) == form_of(other.instruction) for one, other in pairs)
+    same = sum(question_form(one.instruction) == question_form(other.instruction) for one, other in pairs)
     assert same >= 0.9 * len(pairs)
 
 
 def test_agents_answer_by_form() -> None:
-    common = common_by_form(CORE)
+    common = common_answers_by_form(CORE)
     assert common["exists"] == "Yes." and common["count"].isdigit()
     for task in CORE[::9]:
         attempts = {attempt.name: attempt.text for attempt in adaptive_attempts(task, common)}
         assert bool(attempts) == (not isinstance(task.expected, ActionOnly)), task.id
-        if attempts and form_of(task.instruction) in ("count", "exists", "colour", "place"):
+        if attempts and question_form(task.instruction) in ("count", "exists", "colour", "place"):
             assert attempts["adaptive: absence"] == NONE
 
 

@@ -12,13 +12,13 @@ from scope_ptz.bench.tasks.splits import published_folder, write_manifest, write
 from scope_ptz.bench.tasks.task import CANARY
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import load_scene
-from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, card
+from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, render_card
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
-from scope_ptz.taskgen.gold.gold_runs import gold_runs, write_gold
+from scope_ptz.taskgen.gold.gold_runs import create_gold_runs, write_gold
 from scope_ptz.taskgen.gold.mutations import FaultSetting
 from scope_ptz.taskgen.picture_audit import DRAW, QuestionDraw, draw_questions, score_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
-from tests.bench.making import EYES, PRESETS, samples
+from tests.bench.sample_runs import FRAME, PRESETS, samples
 
 SAMPLES = samples()
 TASKS = [task for task, _ in SAMPLES]
@@ -28,18 +28,18 @@ PAGE = Path(__file__).parents[2] / "docs" / "dataset.md"
 @pytest.fixture
 def dataset(tmp_path: Path) -> Path:
     folder = tmp_path / "data"
-    written = write_splits(TASKS, TASKS[:2], folder, seed=1)
+    paths = write_splits(TASKS, TASKS[:2], folder, seed=1)
     report = ValidationReport(tasks=len(TASKS))
     report.tried["reference"] = report.passed["reference"] = len(TASKS)
     report.tried["stay"] = 7
     (folder / PROOF).write_text(json.dumps({"published": report.as_dict(), "unseen": ValidationReport().as_dict()}))
-    write_gold(gold_runs(SAMPLES, {"test": FaultSetting(PRESETS, EYES)}, seed=1, per_mode=3), folder / GOLD)
-    write_manifest(folder, [*written, folder / PROOF, folder / GOLD], [load_scene("highway-works")], seed=1, unseen=[7])
+    write_gold(create_gold_runs(SAMPLES, {"test": FaultSetting(PRESETS, FRAME)}, seed=1, per_mode=3), folder / GOLD)
+    write_manifest(folder, [*paths, folder / PROOF, folder / GOLD], [load_scene("highway-works")], seed=1, unseen=[7])
     return folder
 
 
 def test_card_contains_counts_validation_gold_runs_and_canary(dataset: Path) -> None:
-    text = card(Dataset.read(dataset))
+    text = render_card(Dataset.read(dataset))
     assert f"| core | {len(TASKS)} |" in text
     assert f"| descriptor | {sum(t.category == 'descriptor' for t in TASKS)} |" in text
     assert f"| reference | correct | {len(TASKS)} of {len(TASKS)} |" in text and "| stay | adversarial | 0 of 7 |" in text
@@ -58,16 +58,16 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
     (audit / "answers.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows[:-1]))
     (audit / "findings.jsonl").write_text(json.dumps({"q": rows[0]["q"], "finding": "Too small to see."}))
     result = score_answers(audit, TASKS)
-    assert result.share() == (4, 5)  # the sixth question has no answer
+    assert result.agreement_counts() == (4, 5)  # the sixth question has no answer
     (dataset / AUDIT).write_text(json.dumps(result.as_dict()))
-    text = card(Dataset.read(dataset))
+    text = render_card(Dataset.read(dataset))
     assert "4 of 5 answers agree with the expected value (80.0%). Sampled tasks without an answer: 1." in text
     line = next(line for line in text.splitlines() if wrong.id in line)
     assert "I cannot tell." in line and "disagrees" in line and line.endswith("Too small to see. |")
     assert "not answered" in text and "(corrected)" not in text
 
     (dataset / AUDIT).write_text(json.dumps(result.as_dict()).replace(result.rows[0].digest, "0" * 16))
-    assert "Too small to see. (corrected)" in card(Dataset.read(dataset))
+    assert "Too small to see. (corrected)" in render_card(Dataset.read(dataset))
 
 
 def test_answers_to_unknown_questions_are_rejected(tmp_path: Path) -> None:
@@ -90,4 +90,4 @@ def test_a_folder_without_a_dataset_has_no_card(tmp_path: Path) -> None:
 def test_documentation_page_is_the_card_of_the_published_dataset() -> None:
     published = (published_folder() / "manifest.json").is_file()
     assert PAGE.is_file() == published, "scope bench card --out docs/dataset.md"
-    assert not published or PAGE.read_text("utf-8") == card(Dataset.read(published_folder()))
+    assert not published or PAGE.read_text("utf-8") == render_card(Dataset.read(published_folder()))

@@ -32,7 +32,7 @@ async def connected(device: VirtualDevice, user: str = "root", password: str = "
 
 async def arrive(device: VirtualDevice) -> Pose:
     """Wait until the motors stand still."""
-    while device.moving():  # noqa: ASYNC110 - the device has no event for it
+    while device.is_moving():  # noqa: ASYNC110 - the device has no event for it
         await anyio.sleep(0.002)
     return device.pose()
 
@@ -78,7 +78,7 @@ async def test_moves(served_device: VirtualDevice) -> None:
         assert await arrive(device) == device.home
         await ptz.control(continuous_pantilt_move=(20, 0), continuous_zoom_move=0)
         await anyio.sleep(0.01)
-        assert device.moving()
+        assert device.is_moving()
         await ptz.control(continuous_pantilt_move=(0, 0))
         stopped = await arrive(device)
         assert stopped.pan_deg > device.home.pan_deg
@@ -124,7 +124,7 @@ async def test_a_wrong_password(served_device: VirtualDevice, user: str, passwor
         with pytest.raises(axis.errors.Unauthorized):
             await client.vapix.ptz.control(pan=10)
         assert not await client.vapix.api_discovery.update()
-    assert not served_device.moving()
+    assert not served_device.is_moving()
 
 
 async def test_a_viewer_cannot_move_the_camera(served_device: VirtualDevice) -> None:

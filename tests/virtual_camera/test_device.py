@@ -41,12 +41,12 @@ def device(analytic_scene: Scene, time: HandClock) -> VirtualDevice:
 def test_a_move_takes_the_time_of_the_motors(device: VirtualDevice, time: HandClock) -> None:
     start = device.pose()
     device.move(Pose(start.pan_deg + 50, start.tilt_deg, start.zoom))
-    assert device.moving()
+    assert device.is_moving()
     time.now += 0.4
     assert start.pan_deg < device.pose().pan_deg < start.pan_deg + 50
     time.now += 5.0
     assert device.pose().pan_deg == start.pan_deg + 50
-    assert not device.moving()
+    assert not device.is_moving()
 
 
 def test_motors_can_run_faster_than_real_time(analytic_scene: Scene, time: HandClock) -> None:
@@ -74,7 +74,7 @@ def test_a_drive_ends_at_its_timeout_or_with_a_stop(device: VirtualDevice, time:
     stopped = device.pose()
     time.now += 10
     assert device.pose() == stopped
-    assert not device.moving()
+    assert not device.is_moving()
 
 
 def test_a_continuous_move_sent_before_the_last_stop_is_dropped(device: VirtualDevice, time: HandClock) -> None:
@@ -82,9 +82,9 @@ def test_a_continuous_move_sent_before_the_last_stop_is_dropped(device: VirtualD
     device.stop(sent_s=1001.0)
     time.now += 1
     assert not device.drive(Velocity(pan_dps=20.0), sent_s=1000.5)
-    assert not device.moving()
+    assert not device.is_moving()
     assert device.drive(Velocity(pan_dps=20.0), sent_s=1001.5)
-    assert device.moving()
+    assert device.is_moving()
 
 
 def test_presets_keep_their_numbers(device: VirtualDevice) -> None:
@@ -155,7 +155,7 @@ def test_the_move_status_can_be_wrong_or_missing(device: VirtualDevice) -> None:
     assert device.reported_moving() is True
     device.faults = Faults(move_status="lying")
     assert device.reported_moving() is False
-    assert device.moving()
+    assert device.is_moving()
     device.faults = Faults(move_status="missing")
     assert device.reported_moving() is None
 

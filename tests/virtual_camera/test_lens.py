@@ -47,7 +47,7 @@ def test_an_automatic_lens_leaves_the_picture_as_it_is(lens: VirtualLens) -> Non
 
 def test_the_focus_takes_time_and_can_be_stopped(lens: VirtualLens, clock: Clock) -> None:
     lens.move_focus(0.0)
-    assert lens.focusing
+    assert lens.is_focusing
     assert not lens.autofocus
     clock.now_s = 0.3
     assert lens.focus == pytest.approx(SHARP_FOCUS - 0.3 / TRAVEL_S)
@@ -57,7 +57,7 @@ def test_the_focus_takes_time_and_can_be_stopped(lens: VirtualLens, clock: Clock
     assert lens.focus == held
     lens.set_autofocus(on=True)
     clock.now_s = 20.0
-    assert (lens.focus, lens.focusing) == (SHARP_FOCUS, False)
+    assert (lens.focus, lens.is_focusing) == (SHARP_FOCUS, False)
 
 
 def test_a_driven_focus_ends_at_the_end_of_its_range(lens: VirtualLens, clock: Clock) -> None:

@@ -116,7 +116,7 @@ def test_the_ends_of_the_speed_scale() -> None:
 @given(pan=st.floats(-170, 170), tilt=st.floats(-55, 25), zoom=st.integers(1, 9999))
 def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixUnit, pan: float, tilt: float, zoom: int) -> None:
     assert send(shared_unit, pan=str(pan), tilt=str(tilt), zoom=str(zoom)).status == 204
-    while shared_unit.device.moving():
+    while shared_unit.device.is_moving():
         pass
     read = position(shared_unit)
     assert [float(read["pan"]), float(read["tilt"])] == pytest.approx([pan, tilt], abs=1e-4)
@@ -130,14 +130,14 @@ def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixUnit, pan: f
         ({"pan": "nan"}, "pan: expected a number"),
         ({"pan": "inf"}, "pan: expected a number"),
         ({"pan": ""}, "pan: expected a number"),
-        ({"continuouspantiltmove": "10"}, "2 numbers"),
+        ({"continuouspantiltmove": "10"}, "2 comma-separated numbers"),
         ({"areazoom": "10,10,0"}, "areazoom"),
         ({"move": "sideways"}, "move: unknown value: sideways"),
         ({"query": "weather"}, "query: unknown value: weather"),
         ({"query": "attributes", "group": "focus"}, "group: unknown value"),
         ({"gotoserverpresetname": "nowhere"}, "no preset 'nowhere'"),
         ({"gotoserverpresetno": "99"}, "99"),
-        ({"camera": "2", "pan": "1"}, "only camera 1"),
+        ({"camera": "2", "pan": "1"}, "only camera is 1"),
         ({"brightness": "100"}, "not supported"),
         ({"focus": "near"}, "focus: expected a number"),
         ({"autofocus": "maybe"}, "autofocus: unknown value"),
@@ -151,7 +151,7 @@ def test_errors_are_successes_of_http(unit: VapixUnit, arguments: dict[str, str]
     assert reply.body.startswith("Error: ")
     assert problem in reply.body
     assert reply.body.count("\n") == 1
-    assert not unit.device.moving()
+    assert not unit.device.is_moving()
 
 
 def test_values_beyond_a_limit_are_clamped(unit: VapixUnit, time: HandClock) -> None:
@@ -201,20 +201,20 @@ def test_a_stop_ends_a_continuous_move(unit: VapixUnit, time: HandClock) -> None
     time.now += 1
     stopped = unit.device.pose()
     assert arrive(unit, time) == stopped
-    assert not unit.device.moving()
+    assert not unit.device.is_moving()
 
 
 @given(x=st.integers(0, 320), y=st.integers(0, 180), zoom=st.integers(1, 9999))
 def test_a_centred_pixel_is_in_the_centre(shared_unit: VapixUnit, x: int, y: int, zoom: int) -> None:
     unit, device = shared_unit, shared_unit.device
     send(unit, pan="20", tilt="-15", zoom=str(zoom))
-    while device.moving():
+    while device.is_moving():
         pass
     before = device.pose()
     view = Perspective(before.pan_deg, before.tilt_deg, device.optics.hfov_deg(before.zoom), 320, 180)
     aimed_at = view.directions((x / 320, y / 180))
     assert send(unit, center=f"{x * 4},{y * 4}", imagewidth="1280", imageheight="720").status == 204
-    while device.moving():
+    while device.is_moving():
         pass
     after = device.pose()
     assert direction(after.pan_deg, after.tilt_deg) == pytest.approx(aimed_at, abs=1e-6)
@@ -339,7 +339,7 @@ def test_the_control_queue_is_off_until_it_is_switched_on(unit: VapixUnit) -> No
     switch = Arguments({"action": "update", "root.PTZ.Various.V1.CtlQueueing": "true"})
     assert param(unit, switch, GUARD).status == 403
     assert param(unit, switch, ROOT).body == "OK\n"
-    assert "nobody has control" in send(unit, GUARD, rpan="1").body
+    assert "no client has control" in send(unit, GUARD, rpan="1").body
     assert ptz_queue(unit, Arguments({"control": "request"}), GUARD).body == (
         '<a name="1"></a><a name="60"></a><a name="20"></a>\n'
     )

@@ -1,1 +1,1 @@
-"""Connections to a SCOPE server. Nothing here imports ``bpy``, so it can be tested without Blender."""
+"""Connections to a SCOPE server. This package does not import ``bpy``, so it can be tested without Blender."""

@@ -49,7 +49,7 @@ def parse_address(url: str, token: str = "") -> Address:
         raise AddOnError("Remove the password from the server's address, and enter the token in its own field.")
     address = Address(parts.scheme, parts.hostname, port or (443 if parts.scheme == "https" else 80), token.strip())
     if any(not 33 <= ord(character) <= 126 for character in address.token):
-        raise AddOnError("The token contains characters that no token has. Copy it again.")
+        raise AddOnError("The token contains invalid characters. Copy it again.")
     if address.token and address.scheme == "http" and not address.is_local:
         raise AddOnError("The token would cross the network unencrypted. Use https, or an SSH tunnel to this machine.")
     return address

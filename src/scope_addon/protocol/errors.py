@@ -1,4 +1,4 @@
-"""The errors of the add-on. The sidebar shows their messages, which state what is wrong and what to do."""
+"""Errors of the add-on. The sidebar shows their messages, which state what is wrong and what to do."""
 
 from __future__ import annotations
 

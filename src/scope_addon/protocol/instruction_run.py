@@ -1,4 +1,4 @@
-"""Run an instruction on the server, and follow the run in a thread."""
+"""Run an instruction on the server, and receive the events of the run in a thread."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _PICTURE = re.compile(r"(?:frames|pictures)/[A-Za-z0-9._-]{1,60}")
 
 
 class StepStarted(NamedTuple):
-    """The planner decides on its next step. ``step`` is the number of that step."""
+    """The planner has started a step. ``step`` is the number of the step."""
 
     step: int
 
@@ -29,7 +29,7 @@ class PictureStored(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """The run cannot be started or followed."""
+    """The run could not be started, followed or cancelled."""
 
     text: str
 
@@ -44,7 +44,7 @@ class InstructionRun:
         address: The server.
         client: The name of this client.
         camera: The name of the camera on the server.
-        instruction: What the user typed.
+        instruction: The instruction, as the user typed it.
         pair: The name of the pair of models.
         folder: The folder for the pictures of the run.
     """
@@ -52,13 +52,13 @@ class InstructionRun:
     def __init__(self, address: Address, client: str, camera: str, instruction: str, pair: str, folder: Path) -> None:
         self._address, self._client, self._folder = address, client, folder
         self._body = {"camera": camera, "instruction": instruction, **({"pair": pair} if pair else {})}
-        self._run = ""
+        self._run_id = ""
         self._cancelled = threading.Event()
         self._stream = ServerClient(address, client)
-        self._thread = threading.Thread(target=self._work, name="scope-run", daemon=True)
+        self._thread = threading.Thread(target=self._run_and_follow, name="scope-run", daemon=True)
         self.instruction = instruction
         self.events: queue.SimpleQueue[RunEvent] = queue.SimpleQueue()
-        """The events of the run, for the main thread. The last one is an ``End`` or a ``Problem``."""
+        """The events of the run, for the main thread, which stops reading at the first ``End`` or ``Problem``."""
 
     def start(self) -> None:
         """Start the run, in the background."""
@@ -78,24 +78,24 @@ class InstructionRun:
         if self._thread.is_alive():
             self._thread.join(timeout_s)
 
-    def _work(self) -> None:
+    def _run_and_follow(self) -> None:
         client = ServerClient(self._address, self._client)
         try:
-            self._run = str(client.request("POST", "/runs", self._body)["id"])
+            self._run_id = str(client.request("POST", "/runs", self._body)["id"])
             if self._cancelled.is_set():
                 self._cancel()
             if not self._follow(client):
-                self.events.put(Problem("The server ended the connection before the run was over."))
+                self.events.put(Problem("The server ended the connection before the run had ended."))
         except AddOnError as error:
             self.events.put(Problem(str(error)))
-        except Exception as error:  # a thread that fails silently would leave the sidebar at "working"
+        except Exception as error:  # a thread that fails silently would leave the sidebar showing "working"
             self.events.put(Problem(f"The run cannot be followed: {type(error).__name__}."))
         finally:
             client.close()
 
     def _follow(self, client: ServerClient) -> bool:
-        """Pass on the records of the run. Return whether it has ended."""
-        for event in self._stream.events(f"/runs/{quote_part(self._run)}/events"):
+        """Add the run's events to ``events``. Return whether the run has ended."""
+        for event in self._stream.events(f"/runs/{quote_part(self._run_id)}/events"):
             if event is None:
                 continue
             if event.name == "decision":
@@ -110,26 +110,26 @@ class InstructionRun:
         return False
 
     def _fetch(self, client: ServerClient, picture: str) -> None:
-        """Download a picture with its marks. A picture that is not available is not shown."""
+        """Download a picture with its detections marked. Ignore a picture that is not available."""
         if not _PICTURE.fullmatch(picture):
             return
         try:
-            data = client.request_bytes("GET", f"/runs/{quote_part(self._run)}/pictures/{picture}?marks=true")
+            data = client.request_bytes("GET", f"/runs/{quote_part(self._run_id)}/pictures/{picture}?marks=true")
         except AddOnError:
             return
         # The name is fixed, so that nothing from the server becomes part of a path.
         path = self._folder / "scope-frame.jpg"
-        fresh = path.with_suffix(".new")
-        fresh.write_bytes(data)
-        fresh.replace(path)
+        temporary = path.with_suffix(".new")
+        temporary.write_bytes(data)
+        temporary.replace(path)
         self.events.put(PictureStored(path))
 
     def _cancel(self) -> None:
-        if not self._run:
+        if not self._run_id:
             return
         client = ServerClient(self._address, self._client)
         try:
-            client.request("POST", f"/runs/{quote_part(self._run)}/cancel")
+            client.request("POST", f"/runs/{quote_part(self._run_id)}/cancel")
         except AddOnError as error:
             self.events.put(Problem(f"The run could not be cancelled: {error}"))
         finally:

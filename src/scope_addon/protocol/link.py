@@ -1,4 +1,4 @@
-"""The camera's connection to the server. Threads only pass on requests and replies. The main thread carries out requests."""
+"""The camera's connection to the server. Threads only transfer requests and replies; the main thread carries out requests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Description = dict[str, Any]
 
 
 class Request(NamedTuple):
-    """A request of the server."""
+    """A request from the server."""
 
     number: int
     operation: str
@@ -33,9 +33,9 @@ Reply = dict[str, Any] | Picture | AddOnError
 
 
 class CameraLink:
-    """Connects the open scene to a server as a camera.
+    """A connection that makes the open scene a camera of a server.
 
-    ``requests`` and ``problem`` can be read, and ``reply`` and ``update`` called, from the main thread without waiting.
+    The main thread can read ``requests`` and ``problem``, and call ``reply`` and ``update``, without waiting.
 
     Args:
         address: The server.
@@ -57,7 +57,7 @@ class CameraLink:
         self.connected = False
         self.ended = False
         self.problem = ""
-        """Why the connection failed or was lost; empty while it works, and after ``stop``."""
+        """Why the connection failed or was lost; empty while it is open, and after ``stop``."""
         self._threads = [
             threading.Thread(target=self._read, name="scope-camera-requests", daemon=True),
             threading.Thread(target=self._write, name="scope-camera-replies", daemon=True),
@@ -110,7 +110,7 @@ class CameraLink:
             self._fail("The server ended the connection.")
         except AddOnError as error:
             self._fail(str(error))
-        except Exception as error:  # a thread that fails silently would leave the sidebar at "connecting"
+        except Exception as error:  # a thread that fails silently would leave the sidebar showing "connecting"
             self._fail(f"The connection failed unexpectedly: {type(error).__name__}.")
         finally:
             self.connected, self.ended = False, True

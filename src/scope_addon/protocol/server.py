@@ -1,4 +1,4 @@
-"""A ``scope`` server that the add-on starts and ends."""
+"""A ``scope`` server that the add-on starts and stops."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .errors import AddOnError
 CAMERA = "blender-window"
 """The name of the camera on a server that the add-on starts."""
 
-QUIT_S = 10.0
-"""Seconds that the server may take to end. After that, it is killed."""
+EXIT_TIMEOUT_S = 10.0
+"""Seconds that the server has to exit before it is killed."""
 
 
 class ServerProcess:
-    """A server on this machine, on a free port, that ends with Blender.
+    """A server on a free port of this machine. It stops when Blender exits.
 
     Args:
         program: The ``scope`` program: its name or path.
@@ -35,19 +35,19 @@ class ServerProcess:
         found = shutil.which(str(Path(program).expanduser()))
         if found is None:
             raise AddOnError(
-                f"There is no program '{program}'. Install it with pip install 'scope-ptz[serve]', and set its path in the "
+                f"The program '{program}' was not found. Install it with pip install 'scope-ptz[serve]', and set its path in the "
                 "preferences of the add-on."
             )
         command = [found, "serve", "--camera", CAMERA, "--port", "0", "--json", "--until-eof", "--runs-dir", str(runs_dir)]
         for pair in pairs:
             command += ["--pair", pair]
-        # Blender's own Python settings must not reach the program, which has another Python.
+        # Blender's own Python settings must not reach the program, which runs another Python.
         environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
         self._errors: list[str] = []
         self.url = ""
         """The address; empty until the server is ready."""
         self.problem = ""
-        """Why the server ended; empty while it runs."""
+        """Why the server stopped; empty while it runs."""
         try:
             self._process = subprocess.Popen(
                 command,
@@ -62,35 +62,35 @@ class ServerProcess:
         except OSError as error:
             raise AddOnError(f"The server cannot be started with {found}: {error.strerror}.") from error
         self._threads = [
-            threading.Thread(target=self._listen, name="scope-server", daemon=True),
-            threading.Thread(target=self._collect, name="scope-server-errors", daemon=True),
+            threading.Thread(target=self._read_output, name="scope-server", daemon=True),
+            threading.Thread(target=self._read_errors, name="scope-server-errors", daemon=True),
         ]
         for thread in reversed(self._threads):  # the first one waits for the second
             thread.start()
 
     @property
     def running(self) -> bool:
-        """Whether the process runs."""
+        """Whether the process is running."""
         return self._process.poll() is None
 
     def stop(self) -> None:
-        """Ask the server to end. It ends when its input is closed, so it also ends if Blender crashes."""
+        """Stop the server by closing its input. It therefore also stops if Blender crashes."""
         self.problem = self.problem or "stopped"
         if self._process.stdin is not None:
             with suppress(OSError):
                 self._process.stdin.close()
 
     def wait(self) -> None:
-        """Wait until the server has ended; kill it if it does not."""
+        """Wait until the server has exited; kill it after ``EXIT_TIMEOUT_S`` seconds."""
         try:
-            self._process.wait(QUIT_S)
+            self._process.wait(EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
         for thread in self._threads:
-            thread.join(QUIT_S)
+            thread.join(EXIT_TIMEOUT_S)
 
-    def _listen(self) -> None:
+    def _read_output(self) -> None:
         assert self._process.stdout is not None
         with self._process.stdout as output:
             for line in output:
@@ -99,12 +99,12 @@ class ServerProcess:
                 except (ValueError, KeyError, TypeError):
                     continue
         self._process.wait()
-        self._threads[1].join(QUIT_S)
+        self._threads[1].join(EXIT_TIMEOUT_S)
         texts = [line.strip(" │╭╮╰╯─\r\n") for line in self._errors]
         last = next((text for text in reversed(texts) if text), "")
         self.problem = self.problem or f"The server ended. {last[:400]}".strip()
 
-    def _collect(self) -> None:
+    def _read_errors(self) -> None:
         assert self._process.stderr is not None
         with self._process.stderr as errors:
             for line in errors:

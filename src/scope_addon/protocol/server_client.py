@@ -1,4 +1,4 @@
-"""HTTP requests to a server, and server-sent events, with the standard library only."""
+"""An HTTP client with server-sent events that uses only the standard library."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TIMEOUT_S = 60.0
 """Seconds after which a request without a reply fails."""
 
 SILENCE_S = 40.0
-"""Seconds without data after which a stream counts as lost. Servers send a heartbeat at least every 15 s."""
+"""Seconds without data after which a stream is considered lost. Servers send a heartbeat at least every 15 s."""
 
 MAX_REPLY_BYTES = 64 * 1024 * 1024
 
@@ -35,7 +35,7 @@ class ServerClient:
 
     Args:
         address: The server.
-        client: The name of this client, by which the server distinguishes Blender instances with the same token.
+        client: The name of this client. The server uses it to distinguish Blender instances with the same token.
     """
 
     def __init__(self, address: Address, client: str) -> None:
@@ -48,7 +48,7 @@ class ServerClient:
         if connection is not None:
             opened = connection.sock
             if opened is not None:
-                with suppress(OSError):  # closing alone would not wake a thread that reads
+                with suppress(OSError):  # close() alone does not wake a thread that is reading
                     opened.shutdown(socket.SHUT_RDWR)
             connection.close()
 
@@ -57,7 +57,7 @@ class ServerClient:
 
         Raises:
             ServerRefusedError: The server refused the request.
-            AddOnError: The server did not answer, or its reply is not JSON.
+            AddOnError: The server did not respond, or its reply is not JSON.
         """
         content = None if body is None else json.dumps(body).encode()
         return _parse_json(self.request_bytes(method, path, content, "application/json"))
@@ -68,7 +68,7 @@ class ServerClient:
         """Send a request, and return the body of the reply. Raises the same errors as ``request``."""
         fresh = self._connection is None
         try:
-            return self._once(method, path, body, media_type)
+            return self._send(method, path, body, media_type)
         except (http.client.RemoteDisconnected, BrokenPipeError, ConnectionResetError) as error:
             self.close()
             if fresh:
@@ -76,8 +76,8 @@ class ServerClient:
         except (OSError, http.client.HTTPException) as error:
             self.close()
             raise self._unreachable(error) from error
-        try:  # a server closes idle connections; such a request never reached it
-            return self._once(method, path, body, media_type)
+        try:  # the server had closed the idle connection, so the request did not reach it
+            return self._send(method, path, body, media_type)
         except (OSError, http.client.HTTPException) as error:
             self.close()
             raise self._unreachable(error) from error
@@ -101,18 +101,18 @@ class ServerClient:
             yield from _events(reply)
         except (OSError, http.client.HTTPException, ValueError) as error:
             raise self._unreachable(error) from error
-        except AttributeError as error:  # http.client meets its own closed socket when `close` is called by another thread
+        except AttributeError as error:  # another thread called `close`, which leaves http.client without a socket
             raise self._unreachable(error) from error
         finally:
             self.close()
 
-    def _once(self, method: str, path: str, body: bytes | None, media_type: str) -> bytes:
+    def _send(self, method: str, path: str, body: bytes | None, media_type: str) -> bytes:
         connection = self._connection or self._open()
         headers = {**self._headers(), **({"Content-Type": media_type} if body is not None else {})}
         connection.request(method, self._path(path), body=body, headers=headers)
         reply = connection.getresponse()
         data = reply.read(MAX_REPLY_BYTES)
-        if reply.length:  # reading at most N bytes does not notice by itself that a reply was cut off
+        if reply.length:  # a read with a size limit does not report a reply that was cut off
             raise http.client.IncompleteRead(data, reply.length)
         if not 200 <= reply.status < 300:
             raise _refusal(reply.status, data)
@@ -136,16 +136,16 @@ class ServerClient:
 
     def _unreachable(self, error: Exception) -> AddOnError:
         if isinstance(error, ssl.SSLError):
-            return AddOnError(f"The server at {self._address.url} has no certificate that this machine trusts.")
+            return AddOnError(f"The server at {self._address.url} does not have a certificate that this machine trusts.")
         if isinstance(error, ConnectionRefusedError):
-            return AddOnError(f"No server answers at {self._address.url}. Start it, or check the address.")
+            return AddOnError(f"No server is running at {self._address.url}. Start one, or check the address.")
         if isinstance(error, TimeoutError):
-            return AddOnError(f"The server at {self._address.url} does not answer.")
+            return AddOnError(f"The server at {self._address.url} does not respond.")
         return AddOnError(f"The connection to the server at {self._address.url} was lost.")
 
 
 def quote_part(name: str) -> str:
-    """Return a name, quoted as one part of a path."""
+    """Return a name, percent-encoded as one segment of a path."""
     return quote(name, safe="")
 
 
@@ -172,12 +172,12 @@ def _parse_json(content: bytes) -> Any:
     try:
         return json.loads(content)
     except ValueError:
-        raise AddOnError("The server's reply is not JSON. Check that the address is that of a SCOPE server.") from None
+        raise AddOnError("The server's reply is not JSON. Check that the address belongs to a SCOPE server.") from None
 
 
 def _refusal(status: int, content: bytes) -> ServerRefusedError:
     try:
         message = str(json.loads(content)["error"]["message"])
     except (ValueError, KeyError, TypeError):
-        message = f"The server replied with status {status}. Check that the address is that of a SCOPE server."
+        message = f"The server replied with status {status}. Check that the address belongs to a SCOPE server."
     return ServerRefusedError(status, message[:500])

@@ -1,10 +1,10 @@
-"""What the sidebar shows of a run, from the records that the server streams."""
+"""The steps and the end of a run as the sidebar shows them, parsed from the records that the server streams."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-MAX_TEXT = 300  # characters of a text in the sidebar
+MAX_TEXT_CHARS = 300  # longer texts are truncated in the sidebar
 
 OUTCOMES = {
     "answered": "Answered",
@@ -36,7 +36,7 @@ class Timing(NamedTuple):
 
 
 class End(NamedTuple):
-    """The end of a run: its outcome, the answer, and how long each part took."""
+    """The end of a run: the outcome, the answer, and the duration of each part."""
 
     outcome: str
     text: str
@@ -44,16 +44,16 @@ class End(NamedTuple):
 
 
 def parse_step(record: dict[str, Any]) -> Step:
-    """Return the step of a ``call`` record."""
+    """Parse a ``call`` record."""
     outcome = record["outcome"]
     call, result = outcome["call"], outcome.get("result") or {}
-    arguments = ", ".join(f"{name}={_short(value)}" for name, value in call["arguments"].items() if value is not None)
+    arguments = ", ".join(f"{name}={_format_value(value)}" for name, value in call["arguments"].items() if value is not None)
     error = outcome.get("error")
     text = str(error) if error else str(result.get("message", "done"))
     pictures = result.get("frames") or ([record["frame"]] if record.get("frame") else [])
     return Step(
-        f"{call['name']}({arguments})"[:MAX_TEXT],
-        text[:MAX_TEXT],
+        f"{call['name']}({arguments})"[:MAX_TEXT_CHARS],
+        text[:MAX_TEXT_CHARS],
         bool(error),
         float(record["timings"]["total_s"]),
         str(pictures[-1]) if pictures else "",
@@ -61,7 +61,7 @@ def parse_step(record: dict[str, Any]) -> Step:
 
 
 def parse_end(record: dict[str, Any]) -> End:
-    """Return the end of an ``end`` record."""
+    """Parse an ``end`` record."""
     timings = record["timings"]
     parts = [
         Timing(label, float(timings[name]))
@@ -77,7 +77,7 @@ def parse_end(record: dict[str, Any]) -> End:
     return End(OUTCOMES.get(outcome, outcome), str(record["text"])[:4000], (*parts, Timing("total", float(timings["total_s"]))))
 
 
-def _short(value: object) -> str:
+def _format_value(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     return repr(value) if isinstance(value, str) else str(value)

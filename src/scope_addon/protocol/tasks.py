@@ -1,4 +1,4 @@
-"""Short requests to the server in the background, whose results the main thread collects."""
+"""Send short requests to the server in the background. The main thread collects the results."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .errors import AddOnError
 from .server_client import ServerClient
 
 Callback = Callable[[Any, str], None]
-"""Receives the result, and the reason for a failure, which is empty on success. The main thread calls it."""
+"""A function that the main thread calls with the result and the error message, which is empty on success."""
 
 
 class Tasks:
-    """Sends requests one after the other in a thread.
+    """A thread that sends requests one after another.
 
     Args:
         address: The server.
@@ -31,11 +31,11 @@ class Tasks:
         self._thread.start()
 
     def add(self, task: Callable[[ServerClient], Any], done: Callback) -> None:
-        """Carry out a task in the background. ``collect`` calls ``done`` when it has finished."""
+        """Run a task in the background. After it has finished, ``collect`` calls ``done``."""
         self._queue.put((task, done))
 
     def collect(self) -> None:
-        """Call the functions of finished tasks. Only the main thread calls this."""
+        """Call the callbacks of finished tasks. Only the main thread may call this."""
         while not self._finished.empty():
             self._finished.get()()
 
@@ -57,6 +57,6 @@ class Tasks:
             except AddOnError as error:
                 problem = str(error)
             except (KeyError, TypeError, ValueError):
-                problem = "The server's reply has an unknown form. Update the add-on."
+                problem = "The server's reply has an unknown format. Update the add-on."
             self._finished.put(lambda done=done, result=result, problem=problem: done(result, problem))  # type: ignore[misc]
         client.close()

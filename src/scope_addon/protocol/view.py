@@ -1,4 +1,4 @@
-"""A view in the scene's coordinates, and validation of the arguments of requests."""
+"""Views in scene coordinates, and validation of request arguments."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Vector = tuple[float, float, float]
 
 
 class View(NamedTuple):
-    """A view: the position, the direction and the horizontal field of view.
+    """A camera view in scene coordinates.
 
     Attributes:
-        viewpoint: The name of the camera whose optical centre the view shares.
-        position_m: The position in the scene.
-        bearing_deg: The direction, clockwise from above, from the scene's y axis.
+        viewpoint: The name of the camera with the same optical centre.
+        position_m: The position.
+        bearing_deg: The direction as an angle from the scene's y axis, clockwise from above.
         tilt_deg: The tilt; positive is up.
         hfov_deg: The horizontal field of view.
     """
@@ -29,13 +29,13 @@ class View(NamedTuple):
     hfov_deg: float
 
     def axes(self) -> tuple[Vector, Vector, Vector]:
-        """Return the directions to the right, up and forward, as unit vectors in the scene."""
+        """Return the right, up and forward directions as unit vectors."""
         p, t = math.radians(self.bearing_deg), math.radians(self.tilt_deg)
         sp, cp, st, ct = math.sin(p), math.cos(p), math.sin(t), math.cos(t)
         return (cp, -sp, 0.0), (-sp * st, -cp * st, ct), (sp * ct, cp * ct, st)
 
     def interpolate(self, end: View, fraction: float) -> View:
-        """Return a view between this one and another, along the shorter turn. Fraction 1 is exactly the other view."""
+        """Interpolate between this view and ``end``, along the shorter turn. A fraction of 1 returns exactly ``end``."""
         if fraction >= 1.0 or end.viewpoint != self.viewpoint:
             return end
         turn = (end.bearing_deg - self.bearing_deg + 180.0) % 360.0 - 180.0
@@ -51,7 +51,7 @@ class View(NamedTuple):
 
 
 def bearing_tilt_deg(direction: Vector, up: Vector) -> tuple[float, float]:
-    """Return the bearing and tilt of a view, from its direction and, if that is almost vertical, from its up vector."""
+    """Return the bearing and tilt of a direction. The up vector determines the bearing if the direction is almost vertical."""
     x, y, z = direction
     tilt = math.degrees(math.atan2(z, math.hypot(x, y)))
     if abs(tilt) > 89.9:
@@ -81,7 +81,7 @@ def parse_size(arguments: Mapping[str, Any]) -> tuple[int, int]:
     """Return the width and height in the arguments of a request.
 
     Raises:
-        AddOnError: They are missing or out of range.
+        AddOnError: The width or height is missing or out of range.
     """
     width, height = arguments.get("width"), arguments.get("height")
     if not isinstance(width, int) or not isinstance(height, int) or not (16 <= width <= 3840 and 16 <= height <= 2160):

@@ -1,4 +1,4 @@
-"""Describe the cameras of the open scene, and save presets as cameras."""
+"""Describe the cameras of the open scene, and store presets as cameras."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ PRESET, DESCRIPTION, VIEWPOINT, VIEW_CAMERA = "scope_preset", "scope_description
 """Custom properties: of presets that were saved through SCOPE, and of the camera that SCOPE moves."""
 
 COLLECTION = "SCOPE presets"
-OTHER_PROJECTION_HFOV_DEG = 60.0  # of orthographic and panoramic cameras, whose views SCOPE shows in perspective
-VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that has moved further from its camera gets a viewpoint of its own
+OTHER_PROJECTION_HFOV_DEG = 60.0  # used for orthographic and panoramic cameras, which SCOPE shows in perspective
+VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that is further away from its camera gets its own viewpoint
 
 
 def describe(scene: Any) -> dict[str, Any]:
-    """Describe a scene for the server: its cameras, the active one, and the size of a picture.
+    """Describe a scene for the server: its cameras, the active camera, and the picture size.
 
     Raises:
         AddOnError: The scene has no camera.
     """
     objects = sorted((o for o in scene.objects if o.type == "CAMERA" and VIEW_CAMERA not in o), key=lambda o: o.name)
-    plain = [o for o in objects if PRESET not in o]
-    if not plain:
+    own_cameras = [o for o in objects if PRESET not in o]
+    if not own_cameras:
         raise AddOnError("The scene has no camera. Add one with Add > Camera, and press Connect again.")
-    saved = {str(o[PRESET]): o for o in objects if PRESET in o}
-    names = _kebab_names([o.name for o in plain], set(saved))
-    places = {name: o.matrix_world.translation for name, o in zip(names, plain, strict=True)}
-    places.update((name, o.matrix_world.translation) for name, o in saved.items() if VIEWPOINT not in o)
+    presets = {str(o[PRESET]): o for o in objects if PRESET in o}
+    names = _kebab_names([o.name for o in own_cameras], set(presets))
+    positions = {name: o.matrix_world.translation for name, o in zip(names, own_cameras, strict=True)}
+    positions.update((name, o.matrix_world.translation) for name, o in presets.items() if VIEWPOINT not in o)
     active = previous_camera(scene)
-    cameras = [_describe_camera(scene, o, name, o.name, None) for name, o in zip(names, plain, strict=True)]
-    for name, o in saved.items():
+    cameras = [_describe_camera(scene, o, name, o.name, None) for name, o in zip(names, own_cameras, strict=True)]
+    for name, o in presets.items():
         viewpoint = o.get(VIEWPOINT)
-        if viewpoint not in places or (places[viewpoint] - o.matrix_world.translation).length > VIEWPOINT_TOLERANCE_M:
+        if viewpoint not in positions or (positions[viewpoint] - o.matrix_world.translation).length > VIEWPOINT_TOLERANCE_M:
             viewpoint = None
         cameras.append({**_describe_camera(scene, o, name, str(o.get(DESCRIPTION, "")), viewpoint), "saved": True})
     settings = scene.scope
@@ -48,7 +48,7 @@ def describe(scene: Any) -> dict[str, Any]:
         "name": _kebab(Path(bpy.data.filepath).stem) if bpy.data.filepath else "unsaved",
         "title": Path(bpy.data.filepath).name[:200] if bpy.data.filepath else "an unsaved file",
         "blender_version": bpy.app.version_string,
-        "active": names[plain.index(active)] if active in plain else names[0],
+        "active": names[own_cameras.index(active)] if active in own_cameras else names[0],
         "cameras": cameras,
         "width": settings.width,
         "height": settings.height,
@@ -69,18 +69,18 @@ def add_preset(scene: Any, name: str, view: View, description: str = "", viewpoi
         name: The name of the preset.
         view: The view of the preset.
         description: A description; may be empty.
-        viewpoint: The name of the camera whose optical centre the view shares; empty if the view has its own.
+        viewpoint: The name of the camera with the same optical centre; empty if there is none.
     """
-    place = find_preset(scene, name)
-    if place is None:
-        place = bpy.data.objects.new(name, bpy.data.cameras.new(name))
-        _collection(scene).objects.link(place)
-    place[PRESET], place[DESCRIPTION] = name, description
+    camera = find_preset(scene, name)
+    if camera is None:
+        camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
+        _collection(scene).objects.link(camera)
+    camera[PRESET], camera[DESCRIPTION] = name, description
     if viewpoint:
-        place[VIEWPOINT] = viewpoint
-    elif VIEWPOINT in place:
-        del place[VIEWPOINT]
-    aim(place, view)
+        camera[VIEWPOINT] = viewpoint
+    elif VIEWPOINT in camera:
+        del camera[VIEWPOINT]
+    aim(camera, view)
     bpy.context.view_layer.update()
 
 
@@ -90,11 +90,11 @@ def remove_preset(scene: Any, name: str) -> None:
     Raises:
         AddOnError: There is no such preset.
     """
-    place = find_preset(scene, name)
-    if place is None:
+    camera = find_preset(scene, name)
+    if camera is None:
         raise AddOnError(f"The scene has no preset '{name}' that was saved through SCOPE.")
-    data = place.data
-    bpy.data.objects.remove(place)
+    data = camera.data
+    bpy.data.objects.remove(camera)
     if data.users == 0:
         bpy.data.cameras.remove(data)
 
@@ -105,7 +105,7 @@ def find_preset(scene: Any, name: str) -> Any:
 
 
 def aim(camera: Any, view: View) -> None:
-    """Point a camera object."""
+    """Move a camera object to a view, in perspective."""
     right, up, ahead = view.axes()
     axes = Matrix((right, up, tuple(-value for value in ahead))).transposed()
     camera.matrix_world = Matrix.Translation(view.position_m) @ axes.to_4x4()
@@ -161,7 +161,7 @@ def _direction(matrix: Any) -> tuple[float, float]:
 
 
 def _hfov_deg(data: Any, render: Any) -> float:
-    """Return the horizontal field of view at the aspect ratio of the render settings, as `blender:FILE.blend` does."""
+    """Return the horizontal field of view at the aspect ratio of the render settings, as for `blender:FILE.blend` cameras."""
     if data.type != "PERSP":
         return OTHER_PROJECTION_HFOV_DEG
     width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
@@ -184,7 +184,7 @@ def _kebab(text: str) -> str:
 
 
 def _kebab_names(texts: list[str], taken: set[str]) -> list[str]:
-    """Return a kebab-case name for each text, as `blender:FILE.blend` does. Duplicate names get a number."""
+    """Return a kebab-case name for each text, as for `blender:FILE.blend` cameras. Duplicate names get a number."""
     names: list[str] = []
     for text in texts:
         name, number = _kebab(text), 2

@@ -1,4 +1,4 @@
-"""Detect changes of the scene, so that a picture of an unchanged scene is not taken again."""
+"""Detect changes of the scene, so that pictures of an unchanged scene can be reused."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from bpy.app.handlers import persistent
 
 from . import cameras
 
-_NUMBERS = itertools.count(1)
-_state = {"version": next(_NUMBERS), "own": 0}
+_VERSIONS = itertools.count(1)
+_state = {"version": next(_VERSIONS), "own": 0}
 
 
 def version() -> int:
@@ -23,12 +23,12 @@ def version() -> int:
 
 def record_change() -> None:
     """Record a change."""
-    _state["version"] = next(_NUMBERS)
+    _state["version"] = next(_VERSIONS)
 
 
 @contextmanager
 def own_change() -> Iterator[None]:
-    """Return a context in which changes of the scene are SCOPE's own and do not count."""
+    """Return a context in which changes of the scene are not counted, because SCOPE makes them."""
     _state["own"] += 1
     try:
         yield

@@ -1,4 +1,4 @@
-"""Carry out the server's requests on the main thread, a little at a time."""
+"""Carry out the server's requests on the main thread, in short steps."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from . import cameras, changes, pictures
 from .view_camera import ViewCamera
 
 MAX_PAUSE_S = 0.5
-"""Maximum pause in seconds after a picture. A pause lasts half as long as its picture took, so that Blender's window responds."""
+"""Maximum pause in seconds after a picture. A pause of half the picture's duration keeps Blender's window responsive."""
 
 DESCRIBE_INTERVAL_S = 1.0
 """Interval in seconds at which the cameras of the scene are checked for changes by the user."""
 
 
 class Executor:
-    """The camera of one connection.
+    """Executor of the requests of one connection.
 
     Args:
         link: The connection to the server.
@@ -35,31 +35,31 @@ class Executor:
         self._pictures: deque[Request] = deque()
         self._pause_until_s = self._next_description_s = 0.0
         self.picture_s = 0.0
-        """Seconds that the last picture took."""
+        """Duration of the last picture in seconds."""
         self.pictures = 0
         """Number of pictures so far."""
         with changes.own_change():
             self.camera = ViewCamera(bpy.context.scene)
 
     def tick(self) -> bool:
-        """Carry out the requests that have arrived, with at most one picture. Return whether something visible has changed."""
-        seen = False
+        """Carry out the requests that have arrived, with at most one picture. Return whether the sidebar must be redrawn."""
+        redraw = False
         while not self._link.requests.empty():
             request = self._link.requests.get()
             if request.operation == "frame":
                 self._pictures.append(request)
             else:
-                self._link.reply(request, self._attempt(request))
-                seen = True
+                self._link.reply(request, self._reply_to(request))
+                redraw = True
         if self._pictures and time.monotonic() >= self._pause_until_s:
             request = self._pictures.popleft()
-            self._link.reply(request, self._attempt(request))
+            self._link.reply(request, self._reply_to(request))
         if self.camera.gliding:
             with changes.own_change():
                 self.camera.tick()
-            seen = True
+            redraw = True
         self._describe_if_due()
-        return seen
+        return redraw
 
     def close(self) -> None:
         """Restore the scene's own camera."""
@@ -81,7 +81,7 @@ class Executor:
             self._description = description
             self._link.update(description)
 
-    def _attempt(self, request: Request) -> Reply:
+    def _reply_to(self, request: Request) -> Reply:
         """Carry out a request. Any failure becomes its reply, because an exception would end the timer."""
         try:
             return self._carry_out(request)

@@ -1,4 +1,4 @@
-"""Take a picture through a camera, as the 3D viewport draws it or with the render engine of the scene."""
+"""Take pictures through a camera, with the 3D viewport or with the scene's render engine."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _IMAGE_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth", "co
 
 
 def take(scene: Any, camera: Any, size: tuple[int, int], source: str) -> Callable[[], bytes]:
-    """Take a picture. The returned function encodes it as a PNG file, and can be called in a thread.
+    """Take a picture. Return a function that encodes it as a PNG file, which can be called in a thread.
 
     Args:
         scene: The scene.
@@ -35,7 +35,9 @@ def take(scene: Any, camera: Any, size: tuple[int, int], source: str) -> Callabl
     if source == "VIEWPORT" and not bpy.app.background:
         found = viewport()
         if found is None:
-            raise AddOnError("There is no 3D viewport to take pictures with. Open one, or set Pictures to Render in the SCOPE tab.")
+            raise AddOnError(
+                "No 3D viewport is open, so no picture can be taken. Open one, or set Pictures to Render in the SCOPE tab."
+            )
         return _draw_viewport(scene, camera, size, *found)
     return _render(scene, size)
 
@@ -86,7 +88,7 @@ def _render(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
     folder = tempfile.TemporaryDirectory(prefix="scope-", ignore_cleanup_errors=True)
     path = Path(folder.name) / "frame.png"
     try:
-        with _settings(scene, size, path):
+        with _render_settings(scene, size, path):
             bpy.ops.render.render(write_still=True, scene=scene.name)
     except RuntimeError as error:
         folder.cleanup()
@@ -102,7 +104,7 @@ def _render(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
 
 
 @contextmanager
-def _settings(scene: Any, size: tuple[int, int], path: Path) -> Iterator[None]:
+def _render_settings(scene: Any, size: tuple[int, int], path: Path) -> Iterator[None]:
     """Return a context in which the scene renders a PNG file of the given size. On exit, the user's settings are restored."""
     render, image = scene.render, scene.render.image_settings
     before = {name: getattr(render, name) for name in _RENDER_SETTINGS}

@@ -1,4 +1,4 @@
-"""The camera object that SCOPE moves. The cameras of the user stay where they are."""
+"""The camera object that SCOPE moves. The user's cameras remain unchanged."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import cameras
 
 NAME = "SCOPE camera"
 GLIDE_S = 0.35
-"""Duration in seconds of the camera's animated move to a new pose on the screen. Pictures never wait for it."""
+"""Duration in seconds of the camera's animated move on the screen. Pictures do not wait for it."""
 
 
 class ViewCamera:
@@ -24,9 +24,9 @@ class ViewCamera:
 
     def __init__(self, scene: Any) -> None:
         self._scene_name = scene.name
-        self._from: View | None = None
-        self._to: View | None = None
-        self._since_s = 0.0
+        self._start_view: View | None = None
+        self._end_view: View | None = None
+        self._glide_start_s = 0.0
         before = cameras.previous_camera(scene)
         self._previous = before.name if before is not None else ""
         if before is not None:
@@ -36,8 +36,8 @@ class ViewCamera:
 
     @property
     def view(self) -> View | None:
-        """The view that the camera has, or reaches at the end of a glide; None before the first view is set."""
-        return self._to
+        """The current view, or the final view of a glide; None before the first view is set."""
+        return self._end_view
 
     def object(self) -> Any:
         """Return the camera object. It is created again if the user has deleted it."""
@@ -53,41 +53,41 @@ class ViewCamera:
 
     def look(self, view: View, *, glide: bool) -> None:
         """Go to a view. With ``glide``, the object moves there on the screen over the next ticks."""
-        moving = glide and self._to is not None
-        self._from = self._displayed_view() if moving else view
-        self._to, self._since_s = view, time.monotonic()
+        moving = glide and self._end_view is not None
+        self._start_view = self._displayed_view() if moving else view
+        self._end_view, self._glide_start_s = view, time.monotonic()
         if not moving:
             self._aim(view)
 
     def settle(self, view: View) -> Any:
-        """Go to a view at once, and return the object."""
-        if self._to != view or self._from != view:
-            self._from = self._to = view
+        """Go to a view immediately, and return the camera object."""
+        if self._end_view != view or self._start_view != view:
+            self._start_view = self._end_view = view
         return self._aim(view)
 
     @property
     def gliding(self) -> bool:
-        """Whether the object is still on its way to the view."""
-        return self._to is not None and self._from != self._to
+        """Whether the camera is still moving to the view."""
+        return self._end_view is not None and self._start_view != self._end_view
 
     def tick(self) -> None:
         """Continue a glide."""
         if self.gliding:
             shown = self._displayed_view()
             self._aim(shown)
-            if shown == self._to:
-                self._from = self._to
+            if shown == self._end_view:
+                self._start_view = self._end_view
 
     def remove(self) -> None:
-        """Remove the object, and make the camera active that was active before."""
+        """Remove the camera object, and reactivate the previous camera."""
         for scene in bpy.data.scenes:
             restore(scene)
 
     def _displayed_view(self) -> View:
-        assert self._from is not None
-        assert self._to is not None
-        fraction = min(1.0, (time.monotonic() - self._since_s) / GLIDE_S)
-        return self._from.interpolate(self._to, fraction * fraction * (3.0 - 2.0 * fraction))
+        assert self._start_view is not None
+        assert self._end_view is not None
+        fraction = min(1.0, (time.monotonic() - self._glide_start_s) / GLIDE_S)
+        return self._start_view.interpolate(self._end_view, fraction * fraction * (3.0 - 2.0 * fraction))
 
     def _aim(self, view: View) -> Any:
         camera = self.object()
@@ -99,7 +99,7 @@ class ViewCamera:
 
 
 def restore(scene: Any) -> None:
-    """Remove SCOPE's camera from a scene, if it is there, and make the earlier camera active."""
+    """Remove SCOPE's camera from a scene, if present, and reactivate the previous camera."""
     for camera in [o for o in scene.objects if o.type == "CAMERA" and cameras.VIEW_CAMERA in o]:
         previous = scene.objects.get(str(camera[cameras.VIEW_CAMERA]))
         if scene.camera == camera:

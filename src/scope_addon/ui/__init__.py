@@ -1,1 +1,1 @@
-"""What the user sees in Blender: preferences, the banner and the sidebar, operators, and the picture of a run."""
+"""The user interface in Blender: preferences, banner, sidebar, operators, and the picture of a run."""

@@ -11,7 +11,7 @@ from .session import session, tag_redraw, wake
 
 
 class _Operator(bpy.types.Operator):
-    """Base class: errors are shown in the sidebar and in Blender's status bar."""
+    """Base class of the operators. It shows errors in the sidebar and in Blender's status bar."""
 
     bl_options = {"INTERNAL"}  # noqa: RUF012 - Blender requires a set
 
@@ -30,7 +30,7 @@ class _Operator(bpy.types.Operator):
 
 
 class SCOPE_OT_connect(_Operator):
-    """Connect the open scene to a server, which is started first if the preferences say so"""
+    """Connect the open scene to a server. If the preferences request it, start the server first"""
 
     bl_idname, bl_label = "scope.connect", "Connect"
 
@@ -43,7 +43,7 @@ class SCOPE_OT_connect(_Operator):
 
 
 class SCOPE_OT_disconnect(_Operator):
-    """Disconnect, restore the scene's camera, and end the server if it was started from here"""
+    """Disconnect, restore the scene's camera, and stop the server if the add-on started it"""
 
     bl_idname, bl_label = "scope.disconnect", "Disconnect"
 

@@ -1,4 +1,4 @@
-"""A line of text at the bottom of the 3D viewport: what the camera is doing, or the answer."""
+"""A text at the bottom of the 3D viewport that shows the current step of a run or its answer."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import bpy
 
 from .session import session
 
-_INK, _ACCENT, _SHADE = (1.0, 1.0, 1.0, 1.0), (0.298, 0.765, 0.969, 1.0), (0.05, 0.07, 0.1, 0.82)
+_TEXT, _ACCENT, _BACKGROUND = (1.0, 1.0, 1.0, 1.0), (0.298, 0.765, 0.969, 1.0), (0.05, 0.07, 0.1, 0.82)
 _handles: list[object] = []
 
 
@@ -27,7 +27,7 @@ def remove() -> None:
 
 
 def text() -> tuple[str, str]:
-    """Return the heading and the text; both empty if there is nothing to say."""
+    """Return the heading and the text; both are empty if nothing is shown."""
     if session.run is not None:
         last = session.steps[-1].text if session.steps else session.activity
         return session.run.instruction, last
@@ -45,14 +45,14 @@ def _draw() -> None:
     size, margin = 15 * scale, 14 * scale
     _set_size(size)
     start, end = _free_range(region)
-    letters = max(20, int((0.8 * (end - start) - 2 * margin) / (size * 0.55)))
-    lines = [heading[:letters], *textwrap.wrap(body, letters)[:4]]
+    columns = max(20, int((0.8 * (end - start) - 2 * margin) / (size * 0.55)))
+    lines = [heading[:columns], *textwrap.wrap(body, columns)[:4]]
     width = max(blf.dimensions(0, line)[0] for line in lines)
     height = len(lines) * size * 1.45
     left, bottom = (start + end - width) / 2, 24 * scale
     _rectangle(left - margin, bottom - margin, width + 2 * margin, height + 1.6 * margin)
     for number, line in enumerate(lines):
-        blf.color(0, *(_ACCENT if number == 0 else _INK))
+        blf.color(0, *(_ACCENT if number == 0 else _TEXT))
         blf.position(0, left, bottom + height - (number + 1) * size * 1.45 + size * 0.4, 0)
         blf.draw(0, line)
 
@@ -84,6 +84,6 @@ def _rectangle(left: float, bottom: float, width: float, height: float) -> None:
     batch = batch_for_shader(shader, "TRI_FAN", {"pos": ((left, bottom), (right, bottom), (right, top), (left, top))})
     gpu.state.blend_set("ALPHA")
     shader.bind()
-    shader.uniform_float("color", _SHADE)
+    shader.uniform_float("color", _BACKGROUND)
     batch.draw(shader)
     gpu.state.blend_set("NONE")

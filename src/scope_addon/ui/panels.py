@@ -16,7 +16,7 @@ STATES = {
     "connecting": ("Connecting", "SORTTIME"),
     "connected": ("Connected", "LINKED"),
 }
-PIXELS_PER_LETTER = 6.3  # of Blender's interface font at scale 1, on average
+PIXELS_PER_CHARACTER = 6.3  # average for Blender's interface font at scale 1
 
 
 def draw_banner(header: Any, context: Any) -> None:
@@ -148,9 +148,9 @@ class SCOPE_PT_pictures(_Panel, bpy.types.Panel):
 
 
 def _draw_lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:
-    """Draw a text in as many lines as it needs."""
+    """Draw a text, wrapped to the width of the panel."""
     scale = context.preferences.system.ui_scale
-    width = max(20, int((context.region.width - 60 * scale) / (PIXELS_PER_LETTER * scale)))
+    width = max(20, int((context.region.width - 60 * scale) / (PIXELS_PER_CHARACTER * scale)))
     column = layout.column(align=True)
     for number, line in enumerate(textwrap.wrap(text, width) or [""]):
         column.label(text=line, icon=icon if number == 0 else ("BLANK1" if icon != "NONE" else "NONE"))

@@ -11,7 +11,7 @@ IMAGE = "SCOPE frame"
 
 
 def show(path: Path) -> None:
-    """Load a picture, and show it in the image editors that show no other image."""
+    """Load a picture, and show it in image editors that do not show another image."""
     image = bpy.data.images.get(IMAGE)
     if image is None:
         image = bpy.data.images.load(str(path))

@@ -4,10 +4,10 @@
 import bpy
 
 PACKAGE = __package__.rpartition(".")[0]
-"""The name of the add-on's package, which an extension has under ``bl_ext``."""
+"""The name of the add-on's package. In an extension, it begins with ``bl_ext``."""
 
 
-_secrets = {"token": ""}  # kept in memory only: Blender would write a stored property to its preferences file, in plain text
+_secrets = {"token": ""}  # in memory only, because Blender stores preferences in plain text
 
 
 def _token(_self: object) -> str:
@@ -19,14 +19,14 @@ def _set_token(_self: object, value: str) -> None:
 
 
 class ScopePreferences(bpy.types.AddonPreferences):
-    """How to reach a server."""
+    """Settings for the connection to a server."""
 
     bl_idname = PACKAGE
 
     use_own: bpy.props.EnumProperty(
         name="Server",
         items=(
-            ("START", "Start a server", "Start the scope program on this machine, and end it with Blender"),
+            ("START", "Start a server", "Start the scope program on this machine, and stop it when Blender exits"),
             ("ADDRESS", "Use a running server", "Connect to a server that was started with `scope serve --camera blender-window`"),
         ),
         default="START",
@@ -36,13 +36,13 @@ class ScopePreferences(bpy.types.AddonPreferences):
     )
     pairs: bpy.props.StringProperty(
         name="Pairs",
-        description="Planner and perception pairs that the server offers, separated by spaces, the default first; "
+        description="Pairs of planner and perception that the server offers, separated by spaces, with the default first; "
         "empty for the built-in planner without perception. `scope models pairs` lists them",
     )
     address: bpy.props.StringProperty(name="Address", description="Address of the server", default="http://127.0.0.1:8000")
     token: bpy.props.StringProperty(
         name="Token",
-        description="Token of a server that needs one, with the operator role. It is not stored",
+        description="Token with the operator role, if the server requires one. It is not stored",
         subtype="PASSWORD",
         get=_token,
         set=_set_token,

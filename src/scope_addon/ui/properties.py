@@ -1,13 +1,13 @@
-"""The settings that are stored in a scene, and those of the window."""
+"""The settings of a scene, and those of the window, which are not saved."""
 # No `from __future__ import annotations` here: Blender reads the annotations of these classes as properties.
 
 import bpy
 
-_pair_items: list = []  # Blender needs the texts of dynamic menus to stay in memory
+_pair_items: list = []  # Blender requires that the texts of dynamic menus stay in memory
 
 
 def set_pairs(names: list) -> None:
-    """Set the pairs of the menu."""
+    """Set the pairs that the menu offers."""
     _pair_items[:] = [(name, name, f"Use {name}") for name in names]
 
 
@@ -16,7 +16,7 @@ def _pairs(_self: object, _context: object) -> list:
 
 
 class ScopeSceneSettings(bpy.types.PropertyGroup):
-    """How pictures of a scene are taken."""
+    """Settings for the pictures of a scene."""
 
     source: bpy.props.EnumProperty(
         name="Pictures",
@@ -32,7 +32,7 @@ class ScopeSceneSettings(bpy.types.PropertyGroup):
 
 
 class ScopeWindowSettings(bpy.types.PropertyGroup):
-    """What the user types and chooses."""
+    """The user's inputs in the sidebar."""
 
     question: bpy.props.StringProperty(
         name="",

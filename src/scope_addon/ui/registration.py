@@ -1,4 +1,4 @@
-"""Add everything to Blender, and remove it."""
+"""Registration of the add-on's classes, settings and handlers in Blender."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _CLASSES = (
 
 def register() -> None:
     """Add the classes, settings and handlers."""
-    for each in _CLASSES:
-        bpy.utils.register_class(each)
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
     bpy.types.Scene.scope = bpy.props.PointerProperty(type=properties.ScopeSceneSettings)
     bpy.types.WindowManager.scope = bpy.props.PointerProperty(type=properties.ScopeWindowSettings)
     bpy.types.VIEW3D_HT_tool_header.append(panels.draw_banner)
@@ -51,8 +51,8 @@ def unregister() -> None:
     bpy.types.VIEW3D_HT_tool_header.remove(panels.draw_banner)
     del bpy.types.WindowManager.scope
     del bpy.types.Scene.scope
-    for each in reversed(_CLASSES):
-        bpy.utils.unregister_class(each)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
 
 
 @persistent

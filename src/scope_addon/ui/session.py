@@ -1,4 +1,4 @@
-"""The state of the add-on: its server, its connection, the current run, and the timer that works on the main thread."""
+"""The state of the add-on: the server, the connection, the current run, and the timer on the main thread."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from ..scene import cameras
 from ..scene.executor import Executor
 from . import picture_view, properties
 
-ACTIVE_S, WAITING_S = 0.02, 0.1
-"""Seconds between two calls of the timer, while connected and while the server starts."""
+CONNECTED_INTERVAL_S, STARTING_INTERVAL_S = 0.02, 0.1
+"""Interval of the timer in seconds: while connected, and while the server starts."""
 
-MAX_STEPS = 60
-START_S = 60.0  # time limit for the start of a server
+MAX_STEPS = 60  # older steps of a run are no longer shown
+START_TIMEOUT_S = 60.0
 
 
 class Session:
     """One use of the add-on, from Connect to Disconnect.
 
-    All methods are called on the main thread and return at once. ``tick`` must be called repeatedly.
+    All methods must be called on the main thread, and return immediately. ``tick`` must be called repeatedly.
     """
 
     def __init__(self) -> None:
@@ -75,7 +75,7 @@ class Session:
         """
         self.disconnect()
         self.problem = ""
-        cameras.describe(bpy.context.scene)  # report a scene without a camera before anything is started
+        cameras.describe(bpy.context.scene)  # raises an error for a scene without a camera before the server starts
         runs = Path(bpy.utils.user_resource("DATAFILES", path="scope_runs", create=True))
         self._server, self._server_since_s, self.camera = ServerProcess(program, pairs, runs), time.monotonic(), CAMERA
 
@@ -94,7 +94,7 @@ class Session:
         self._open(address)
 
     def disconnect(self) -> None:
-        """Disconnect, and end the server if the add-on started it."""
+        """Disconnect, and stop the server if the add-on started it."""
         if self.run is not None:
             self.run.abandon()
         if self._tasks is not None:
@@ -150,7 +150,7 @@ class Session:
         self._task("DELETE", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}")
 
     def scene_changed(self) -> None:
-        """Send the description of the scene, after the add-on itself has changed its cameras."""
+        """Send the description of the scene after the add-on has changed its cameras."""
         if self.executor is not None:
             self.executor.describe_now()
 
@@ -166,7 +166,7 @@ class Session:
                 self.problem = str(error)
 
     def tick(self) -> float | None:
-        """Process everything that has arrived. Return the seconds until the next call; None if there is nothing left to do."""
+        """Process new events. Return the seconds until the next call; None if no more calls are needed."""
         redraw = self._watch_server()
         if self._link is not None:
             redraw |= self._watch_link(self._link)
@@ -176,15 +176,15 @@ class Session:
             redraw |= self._watch_run(self.run)
         if redraw:
             tag_redraw()
-        return ACTIVE_S if self._link is not None else WAITING_S if self._server is not None else None
+        return CONNECTED_INTERVAL_S if self._link is not None else STARTING_INTERVAL_S if self._server is not None else None
 
     def _watch_server(self) -> bool:
         server = self._server
         if server is None or self._link is not None:
             return False
         problem = server.problem
-        if not problem and time.monotonic() - self._server_since_s > START_S:
-            problem = f"The server did not start within {START_S:g} s."
+        if not problem and time.monotonic() - self._server_since_s > START_TIMEOUT_S:
+            problem = f"The server did not start within {START_TIMEOUT_S:g} s."
         if problem:
             self.disconnect()
             self.problem = problem
@@ -220,15 +220,15 @@ class Session:
             self._task("GET", "/pairs", done=self._set_pairs)
             self._refresh_presets()
             return True
-        if link.updates != self._updates:  # the server knows the new cameras of the scene
+        if link.updates != self._updates:  # the server has received the scene's new cameras
             self._updates = link.updates
             self._refresh_presets()
         return self.executor is not None and self.executor.tick()
 
     def _watch_run(self, run: InstructionRun) -> bool:
-        seen = False
+        redraw = False
         while not run.events.empty():
-            event, seen = run.events.get(), True
+            event, redraw = run.events.get(), True
             if isinstance(event, Step):
                 self.steps = [*self.steps, event][-MAX_STEPS:]
                 self.activity = f"Planning step {len(self.steps) + 1}"
@@ -243,13 +243,13 @@ class Session:
                     self.problem = event.text
                 self.run, self.activity = None, ""
                 self._refresh_presets()
-        return seen
+        return redraw
 
     def _refresh_presets(self) -> None:
         self._task("GET", f"/cameras/{quote_part(self.camera)}/presets", done=self._set_presets)
 
     def _set_presets(self, reply: Any) -> None:
-        self.presets = [str(each["name"]) for each in reply]
+        self.presets = [str(preset["name"]) for preset in reply]
 
     def _set_pairs(self, reply: Any) -> None:
         properties.set_pairs([str(name) for name in reply])
@@ -284,11 +284,11 @@ session = Session()
 
 
 def on_timer() -> float | None:
-    """Call ``tick``; registered with ``bpy.app.timers`` while there is something to do."""
+    """Call ``tick``. Registered with ``bpy.app.timers`` while connected or connecting."""
     return session.tick()
 
 
 def wake() -> None:
-    """Make sure that the timer runs."""
+    """Register the timer if it is not registered."""
     if not bpy.app.timers.is_registered(on_timer):
         bpy.app.timers.register(on_timer, first_interval=0.0, persistent=True)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from PIL import Image
 
-from scope_ptz.agent.drawing import EDGE_COLOUR, PANEL_COLOUR, TEXT_COLOUR, Canvas, printable, shorten
+from scope_ptz.agent.drawing import EDGE_COLOUR, PANEL_COLOUR, TEXT_COLOUR, Canvas, shorten, to_printable
 
-_WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE = 1600, 32, 20, 44, 64  # picture pixels; the last two are heights
+_WIDTH, _MARGIN, _GAP, _CAPTION_HEIGHT, _TITLE_HEIGHT = 1600, 32, 20, 44, 64  # picture pixels
 _COLUMNS = 3  # pictures per row
 
 
@@ -25,12 +25,14 @@ def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Im
     width = (_WIDTH - 2 * _MARGIN - _GAP * (_COLUMNS - 1)) / _COLUMNS
     height = width * pictures[0][1].height / pictures[0][1].width
     rows = -(-len(pictures) // _COLUMNS)
-    canvas = Canvas(_WIDTH, _TITLE + rows * (height + _CAPTION + _GAP) + _MARGIN)
+    canvas = Canvas(_WIDTH, _TITLE_HEIGHT + rows * (height + _CAPTION_HEIGHT + _GAP) + _MARGIN)
     canvas.text(_MARGIN, 46, title, 26, bold=True)
     for number, (caption, image) in enumerate(pictures):
         row, column = divmod(number, _COLUMNS)
-        x, y = _MARGIN + column * (width + _GAP), _TITLE + row * (height + _CAPTION + _GAP)
-        canvas.panel(x, y, width, height + _CAPTION, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
+        x, y = _MARGIN + column * (width + _GAP), _TITLE_HEIGHT + row * (height + _CAPTION_HEIGHT + _GAP)
+        canvas.panel(x, y, width, height + _CAPTION_HEIGHT, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
         canvas.picture(image, x + 1, y + 1, width - 2, height - 1, radius=11)
-        canvas.text(x + 16, y + height + _CAPTION / 2, shorten(printable(caption), 18, width - 32), 18, TEXT_COLOUR, anchor="lm")
+        canvas.text(
+            x + 16, y + height + _CAPTION_HEIGHT / 2, shorten(to_printable(caption), 18, width - 32), 18, TEXT_COLOUR, anchor="lm"
+        )
     return canvas.finish()

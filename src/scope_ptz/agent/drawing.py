@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-SCALE = 2  # drawing pixels per pixel of the picture
+SCALE = 2  # drawing pixels per picture pixel
 
 BACKGROUND = "#0E131A"
 PANEL_COLOUR = "#18202B"
@@ -23,18 +23,18 @@ AMBER = "#FFC94A"
 RED = "#FF7B6E"
 
 _REPLACEMENTS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
-_BOLD = 0.28  # stroke width in picture pixels that makes the built-in font look bold at size 16
+_BOLD_STROKE = 0.28  # stroke width in picture pixels that makes the built-in font look bold at size 16
 
 
-def printable(text: str) -> str:
+def to_printable(text: str) -> str:
     """Return the text on one line, limited to characters of the built-in font.
 
     Accents are dropped, and other unsupported characters become "?".
     """
-    return "".join(_printable(c) for c in " ".join(text.translate(_REPLACEMENTS).split()))
+    return "".join(_to_printable_character(c) for c in " ".join(text.translate(_REPLACEMENTS).split()))
 
 
-def _printable(character: str) -> str:
+def _to_printable_character(character: str) -> str:
     if (character.isascii() and character.isprintable()) or character in "°·…“”‘’›±":
         return character
     base = unicodedata.normalize("NFKD", character)[0]
@@ -53,7 +53,7 @@ def width_of(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, width: float) -> str:
-    """Shorten a text to ``width`` picture pixels. A shortened text ends with an ellipsis."""
+    """Shorten text to ``width`` picture pixels. Shortened text ends with an ellipsis."""
     if width_of(text, size) <= width:
         return text
     kept = bisect_left(range(len(text)), True, key=lambda end: width_of(f"{text[: end + 1]}…", size) > width)
@@ -61,8 +61,8 @@ def shorten(text: str, size: float, width: float) -> str:
 
 
 def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
-    """Wrap a text into at most ``max_lines`` lines of ``width`` picture pixels. The last line of a longer text is shortened."""
-    lines, words = [""], printable(text).split()
+    """Wrap text into at most ``max_lines`` lines of ``width`` picture pixels. If it is longer, the last line is shortened."""
+    lines, words = [""], to_printable(text).split()
     for word in words:
         longer = f"{lines[-1]} {word}".strip()
         if width_of(longer, size) <= width or not lines[-1]:
@@ -74,8 +74,8 @@ def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
     return [shorten(line, size, width) for line in lines]
 
 
-def _resized(image: Image.Image, size: tuple[int, int]) -> Image.Image:
-    """Return an image at another size. OpenCV is used because it is five times as fast as Pillow."""
+def _resize(image: Image.Image, size: tuple[int, int]) -> Image.Image:
+    """Resize an image. OpenCV is used because it is five times as fast as Pillow."""
     interpolation = cv2.INTER_AREA if size[0] < image.width else cv2.INTER_CUBIC
     return Image.fromarray(np.asarray(cv2.resize(np.asarray(image.convert("RGB")), size, interpolation=interpolation)))
 
@@ -99,10 +99,10 @@ class Canvas:
         self, x: float, y: float, text: str, size: float, fill: str = TEXT_COLOUR, *, bold: bool = False, anchor: str = "ls"
     ) -> None:
         """Draw a line of text. ``anchor`` is Pillow's text anchor ("ls": left end of the baseline)."""
-        stroke_width = _BOLD * SCALE * size / 16 if bold else 0
+        stroke_width = _BOLD_STROKE * SCALE * size / 16 if bold else 0
         self._draw.text(
             (x * SCALE, y * SCALE),
-            printable(text),
+            to_printable(text),
             font=_font(size),
             fill=fill,
             anchor=anchor,
@@ -115,7 +115,7 @@ class Canvas:
         size = (round(width * SCALE), round(height * SCALE))
         mask = Image.new("L", size, 0)
         ImageDraw.Draw(mask).rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), round(radius * SCALE), fill=255)
-        self._image.paste(_resized(image, size), (round(x * SCALE), round(y * SCALE)), mask)
+        self._image.paste(_resize(image, size), (round(x * SCALE), round(y * SCALE)), mask)
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
         """Draw a thin box that is visible on light and dark backgrounds."""
@@ -127,7 +127,7 @@ class Canvas:
     def tag(
         self, x: float, y: float, text: str, size: float, *, fill: str, text_colour: str, padding: float = 7, anchor: str = "l"
     ) -> float:
-        """Draw a text on a rounded background and return its width.
+        """Draw text on a rounded background and return its width.
 
         Args:
             x: Position of the left end, right end or middle, depending on ``anchor``.
@@ -135,11 +135,11 @@ class Canvas:
             text: The text.
             size: Font size.
             fill: Background colour.
-            text_colour: Colour of the text.
+            text_colour: Text colour.
             padding: Space on each side of the text.
             anchor: "l", "r" or "m".
         """
-        text = printable(text)
+        text = to_printable(text)
         width, height = max(width_of(text, size) + 2 * padding, size * 1.55), size * 1.55
         left = {"l": x, "r": x - width, "m": x - width / 2}[anchor]
         self.panel(left, y - height / 2, width, height, fill, radius=height / 2)

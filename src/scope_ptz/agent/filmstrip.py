@@ -20,8 +20,8 @@ from scope_ptz.agent.drawing import (
     SECONDARY_TEXT_COLOUR,
     TEXT_COLOUR,
     Canvas,
-    printable,
     shorten,
+    to_printable,
     width_of,
     wrap,
 )
@@ -33,10 +33,10 @@ from scope_ptz.errors import OutputError, TraceError
 WIDTH = 1600
 MARGIN = 32
 GAP = 20
-CAPTION = 60  # height of a caption
+CAPTION_HEIGHT = 60  # height of a caption
 
 MAX_PANELS = 12  # in runs with more panels, the middle ones are omitted
-COMPRESSION = 3  # zlib.Z_RLE: takes a third of the time of the default compression, for files that are 5% larger
+COMPRESSION = 3  # zlib.Z_RLE: three times as fast as the default compression, with 5% larger files
 MAX_NUMBERED_BOXES = 40  # with more boxes in a panel, the numbers would cover the picture
 
 _BOX_MARGIN = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
@@ -123,7 +123,7 @@ class _Banner:
     def __init__(self, label: str, colour: str, text: str) -> None:
         self._label, self._colour = label, colour
         width = WIDTH - 2 * MARGIN - 56
-        self._size = 30 if width_of(printable(text), 30) <= 2 * width else 24
+        self._size = 30 if width_of(to_printable(text), 30) <= 2 * width else 24
         self._lines = wrap(text, self._size, width, 3)
         self.height = 52 + len(self._lines) * self._size * 1.3
 
@@ -136,7 +136,7 @@ class _Banner:
 
 
 def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = None) -> Image.Image:
-    """Open a picture of a run.
+    """Open a picture from a run.
 
     Args:
         name: Name of the picture in the trace.
@@ -197,7 +197,7 @@ def _picture_height(row: list[_Tile]) -> float:
 
 
 def _row_height(row: list[_Tile]) -> float:
-    return _picture_height(row) + CAPTION
+    return _picture_height(row) + CAPTION_HEIGHT
 
 
 def _draw_row(canvas: Canvas, row: list[_Tile], y: float) -> None:
@@ -212,7 +212,7 @@ def _draw_row(canvas: Canvas, row: list[_Tile], y: float) -> None:
 
 def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, height: float) -> None:
     panel = tile.panel
-    canvas.panel(x, y, width, height + CAPTION, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
+    canvas.panel(x, y, width, height + CAPTION_HEIGHT, PANEL_COLOUR, radius=12, edge=EDGE_COLOUR)
     canvas.picture(tile.image, x + 1, y + 1, width - 2, height - 1, radius=11)
     _draw_boxes(canvas, panel, x, y, width, height)
     pose = panel.pose.as_dict()
@@ -222,7 +222,7 @@ def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, he
     if panel.badge:
         fill, text_colour = (AMBER, BACKGROUND) if panel.boxes else ("#0E131AC8", TEXT_COLOUR)
         canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=fill, text_colour=text_colour, padding=13, anchor="r")
-    _draw_caption(canvas, panel, x + 16, y + height + CAPTION / 2, width - 32)
+    _draw_caption(canvas, panel, x + 16, y + height + CAPTION_HEIGHT / 2, width - 32)
 
 
 def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, height: float) -> None:
@@ -244,7 +244,7 @@ def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float
         canvas.tag(x, y, str(panel.number), 17, fill=CYAN, text_colour=BACKGROUND, padding=7) + 12 if panel.number else 0.0
     )
     left, available, colour = x + number_width, width - number_width, RED if panel.failed else AMBER
-    action, finding = printable(panel.action), printable(panel.finding)
+    action, finding = to_printable(panel.action), to_printable(panel.finding)
     if width_of(action, 20) + 36 + width_of(finding, 20) <= available or not finding:
         shortened = shorten(action, 20, available)
         canvas.text(left, y, shortened, 20, TEXT_COLOUR, anchor="lm")

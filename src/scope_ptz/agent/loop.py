@@ -12,9 +12,9 @@ from datetime import UTC, datetime
 
 import anyio
 
-from scope_ptz.agent.planner_views import newest_view
+from scope_ptz.agent.planner_views import picture_of_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
-from scope_ptz.agent.timing import Stopwatch, failed_usage, failures_of
+from scope_ptz.agent.timing import Stopwatch, failures_of, usage_of_failures
 from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, error_text
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
@@ -38,12 +38,12 @@ from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__
 
 STOP_TIMEOUT_S = 5.0  # seconds allowed for stopping the camera and reading its pose at the end of a run
-MAX_CALLS_PER_STEP = 32  # calls beyond this number in one decision are dropped, and an error tells the planner so
+MAX_CALLS_PER_STEP = 32  # further calls in a decision are dropped, and the planner receives an error
 MAX_REPEATED_BAD_CALLS = 5  # a run ends with a planner error after this many consecutive steps with the same wrong call
 
 
 class Agent:
-    """A planner, a camera and a perception backend that carry out instructions. An agent keeps no state between runs."""
+    """An agent: a planner, a camera and a perception backend. It carries out instructions and keeps no state between runs."""
 
     def __init__(
         self,
@@ -66,14 +66,14 @@ class Agent:
             camera: Carries out the moves and takes the frames.
             perception: Answers questions about frames.
             images: Stores the pictures of the run.
-            budgets: Limits on steps, time and tokens; None selects the defaults of ``Budgets``.
-            labels: Facts about the run that the trace records but the loop does not know.
+            budgets: Limits on steps, time and tokens; the default is ``Budgets()``.
+            labels: Information for the trace that the loop itself cannot determine.
             snapshots: Whether to store the first view and the view after each move. Frames that perception receives are always
                 stored.
             tools: The tools that the planner can call.
             run_tool: A function that runs the calls instead of ``tools.run``, for example a wrapper that observes them.
-            guarded: Whether to end the run of a planner that repeats the same wrong call, and to limit the calls of a step. False
-                for replays, because traces of older versions may contain such steps.
+            guarded: Whether to end the run when the planner keeps repeating a wrong call, and to limit the calls in a step. False
+                for replays, because traces from older versions may contain such steps.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
@@ -85,7 +85,7 @@ class Agent:
         """Carry out an instruction.
 
         Args:
-            instruction: What the camera should do, in plain language.
+            instruction: The instruction in plain language.
             conversation: Earlier turns that the instruction may refer to.
             listener: Receives each record of the run as it is created.
 
@@ -141,7 +141,7 @@ class _Episode:
             await self._finish(RunEnd("cancelled", "The run was cancelled."))
             raise
         except (PackError, OutputError) as error:
-            # The agent cannot recover from damaged scenes and full disks, so the error is recorded and raised.
+            # The agent cannot recover from a damaged scene or a full disk, so the error is recorded and raised.
             with suppress(OutputError):
                 await self._finish(RunEnd("camera_error", str(error)))
             raise
@@ -200,7 +200,7 @@ class _Episode:
                 return RunEnd("camera_error", str(error))
             except PlannerError as error:
                 self.calls.events.update(failures_of(error))
-                self.usage += failed_usage(error.attempts)
+                self.usage += usage_of_failures(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
             except Exception as error:  # any failure of a planner is an outcome of the run
                 return RunEnd("planner_error", f"The planner failed: {error_text(error)}", traceback.format_exc())
@@ -221,7 +221,7 @@ class _Episode:
         if planner.sees:
             frame = await self.camera.frame()
             view_name = await self.agent.images.save_frame(frame) if self.agent.snapshots else None
-            state = state.model_copy(update={"view": await newest_view(frame)})
+            state = state.model_copy(update={"view": await picture_of_view(frame)})
         before = self.watch.read()
         with self.watch.measure("planner"):
             decision = await planner.step(state)
@@ -232,7 +232,7 @@ class _Episode:
         self.usage += decision.usage
         if decision.served is not None:
             self.calls.events.update(count_failures(decision.served.attempts))
-            self.usage += failed_usage(decision.served.attempts)
+            self.usage += usage_of_failures(decision.served.attempts)
             self.watch.add_first_token_wait(decision.served.first_token_s or 0.0)
         self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=view_name))
         return decision

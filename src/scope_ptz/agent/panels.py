@@ -23,7 +23,7 @@ class Panel:
 
     Attributes:
         number: Number of the panel; 0 for the view at the start.
-        action: What was done; the first half of the caption.
+        action: The action; the first half of the caption.
         file: Name of the picture in the run folder.
         finding: The result; the second half of the caption.
         badge: A count in words ("4 cones"), drawn in a corner.
@@ -53,22 +53,22 @@ def panels_of(trace: Trace) -> list[Panel]:
         panel = _panel(call)
         reads_view = name not in _MOVES and call.outcome.error is None and not panel.is_panorama and name != "zoom_to_object"
         if mergeable and reads_view:
-            panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1], panel))
+            panels[-1] = replace(panel, number=panels[-1].number, action=_join_actions(panels[-1], panel))
         else:
             panels.append(replace(panel, number=len(panels) + 1))
         mergeable = name in _MOVES and call.outcome.error is None
     if not panels:
         panels.append(Panel(0, "start", trace.started.pose.pose(), trace.started.frame))
-    return _with_pictures(panels, trace.started.frame)
+    return _fill_missing_pictures(panels, trace.started.frame)
 
 
-def _joined(move: Panel, call: Panel) -> str:
+def _join_actions(move: Panel, call: Panel) -> str:
     action = f"{move.action} ({move.finding})" if move.finding else move.action
     return action if call.badge else f"{action}, {call.action}"
 
 
-def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
-    """Return the panels. A panel without a picture, such as that of a failed call, gets the previous view."""
+def _fill_missing_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
+    """Give each panel without a picture, such as that of a failed call, the previous view."""
     shown, last = [], first
     for panel in panels:
         shown.append(panel if panel.file else replace(panel, file=last))
@@ -122,12 +122,12 @@ def _finding(name: str, result: dict[str, Any]) -> str:
 
 
 def action_of(outcome: ToolOutcome) -> str:
-    """Describe a call in a few words."""
+    """Return a short description of a call."""
     name, arguments = outcome.call.name, outcome.call.arguments
     full = "sweep, " if arguments.get("view") == "full" else ""
     match name:
         case "adjust_ptz":
-            return ", ".join(_turns(arguments)) or "stay"
+            return ", ".join(_adjustments(arguments)) or "stay"
         case "go_to_preset":
             return f"go to {arguments.get('name', '?')}"
         case "go_home":
@@ -145,7 +145,7 @@ def action_of(outcome: ToolOutcome) -> str:
     return name.replace("_", " ")
 
 
-def _turns(arguments: dict[str, Any]) -> list[str]:
+def _adjustments(arguments: dict[str, Any]) -> list[str]:
     parts = []
     for key, negative, positive in (("pan_deg", "pan left", "pan right"), ("tilt_deg", "tilt down", "tilt up")):
         angle = arguments.get(key)

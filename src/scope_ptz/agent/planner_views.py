@@ -6,7 +6,7 @@ import anyio
 
 from scope_ptz.agent.timing import Stopwatch, TimedCamera
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.perception.models.encoding import Size, picture_of
+from scope_ptz.perception.models.encoding import Size, encode_frame
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 
@@ -14,19 +14,19 @@ MAX_SIDE_PX = 1280  # larger frames are scaled down, as vision models would do a
 
 
 def fitting_size(width: int, height: int) -> Size:
-    """Return the width and height of a picture for a planner: the given size, scaled down to at most ``MAX_SIDE_PX`` pixels."""
+    """Return the width and height of a planner's picture of a frame. No side is longer than ``MAX_SIDE_PX`` pixels."""
     scale = min(1.0, MAX_SIDE_PX / max(width, height))
     return round(width * scale), round(height * scale)
 
 
 async def picture(frame: Frame, caption: str) -> Picture:
     """Return a frame as a captioned JPEG for a planner, at most ``MAX_SIDE_PX`` pixels wide and high."""
-    encoded = await picture_of(frame, fitting_size(frame.width, frame.height))
+    encoded = await encode_frame(frame, fitting_size(frame.width, frame.height))
     return Picture(data_url=encoded.data_url, caption=caption)
 
 
-async def newest_view(frame: Frame) -> Picture:
-    """Return the current view with its pose in the caption."""
+async def picture_of_view(frame: Frame) -> Picture:
+    """Return the current view as a picture with the pose in its caption."""
     pose = frame.pose.as_dict()
     return await picture(
         frame, f"The camera's view now, at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}:"
@@ -34,7 +34,7 @@ async def newest_view(frame: Frame) -> Picture:
 
 
 class PictureStore:
-    """An image store that keeps the last picture of ``take_image``, so that it can be shown to the planner."""
+    """An image store that keeps the last picture from ``take_image``, so that it can be shown to the planner."""
 
     def __init__(self, images: ImageStore) -> None:
         self._images = images
@@ -49,7 +49,7 @@ class PictureStore:
         return name
 
     async def last_picture(self) -> Picture | None:
-        """Return the last picture of ``take_image`` for the planner; None if there is none."""
+        """Return the last picture from ``take_image``, prepared for the planner; None if there is none."""
         if self.last is None:
             return None
         name, frame = self.last

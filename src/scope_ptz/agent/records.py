@@ -24,7 +24,7 @@ CallFault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
 - ``bad_call``: the name or the arguments were invalid.
 - ``perception``: a perception call failed.
 - ``camera``: the camera failed.
-- ``skipped``: an earlier call of the same step failed.
+- ``skipped``: an earlier call in the same step failed.
 - ``cancelled``: the run was cancelled or ran out of time during the call.
 """
 
@@ -59,7 +59,7 @@ class Budgets(_Record):
 
 
 class RunLabels(_Record):
-    """Facts about a run that the loop cannot know and that its trace stores.
+    """Information about a run that its trace stores but the loop cannot determine.
 
     Attributes:
         perception_note: A sentence about the perception backend, shown with the answer.

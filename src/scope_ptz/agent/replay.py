@@ -1,4 +1,4 @@
-"""Replay a run without models: the recorded decisions and perception replies drive a fresh simulated camera.
+"""Replay a run without models: the recorded decisions and perception replies drive a new simulated camera.
 
 A replay matches its recording if every call gives the same result (poses, counts, answers, clamped axes) or the same error.
 """
@@ -30,7 +30,7 @@ _TOLERANCE = 0.011  # largest difference between numbers that are considered equ
 
 @dataclass(frozen=True, slots=True)
 class CallComparison:
-    """A recorded call, and how the replayed one differs from it. ``difference`` is empty if they agree."""
+    """The comparison of a recorded call with its replay. ``difference`` is empty if they agree."""
 
     recorded: Called
     difference: str
@@ -63,8 +63,8 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         TraceError: The run used a real camera and cannot be replayed.
     """
     if not trace.started.simulated:
-        raise TraceError("This run was made with a real camera, so it cannot be repeated.")
-    # Calls that failed for a reason outside the simulation would not fail again, so they are left out.
+        raise TraceError("This run used a real camera, so it cannot be replayed.")
+    # Calls that failed for a reason outside the simulation would not fail again, so they are omitted.
     calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
     script = _Script(replace(trace, calls=calls), camera)
     agent = Agent(
@@ -145,7 +145,7 @@ class RecordedPerception(Perception):
     """A perception backend that returns the recorded replies.
 
     Args:
-        replies: The recorded replies, each with its step, in order. Replies that were returned are removed.
+        replies: The recorded replies, each with its step, in order. Each reply is removed when it is returned.
     """
 
     name = "recorded"
@@ -154,19 +154,19 @@ class RecordedPerception(Perception):
         self._replies = replies
 
     async def caption(self, frame: Frame) -> Caption:
-        return self._next(frame, "caption", "", Caption)
+        return self._next_reply(frame, "caption", "", Caption)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        return self._next(frame, "query", question, Answer)
+        return self._next_reply(frame, "query", question, Answer)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        return self._next(frame, "detect", description, Detections)
+        return self._next_reply(frame, "detect", description, Detections)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        return self._next(frame, "point", description, Points)
+        return self._next_reply(frame, "point", description, Points)
 
-    def _next(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
-        # Concurrent calls may arrive in a different order than recorded, but they all belong to one step.
+    def _next_reply(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
+        # Concurrent calls may arrive in an order that differs from the recorded one, but they all belong to one step.
         step = self._replies[0][0] if self._replies else 0
         matches = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
         index = next(matches, None)
@@ -191,7 +191,7 @@ class _PacedCamera(TimedCamera):
 
 
 def _difference(recorded: Called, repeated_call: Called | None) -> str:
-    """Describe how the replayed call differs from the recorded one; empty if they agree."""
+    """Describe how the replayed call differs from the recorded one. The description is empty if they agree."""
     if repeated_call is None:
         return "not reached"
     before, now = recorded.outcome, repeated_call.outcome
@@ -199,17 +199,17 @@ def _difference(recorded: Called, repeated_call: Called | None) -> str:
         return f"error was {before.error!r}, now {now.error!r}"
     recorded_result, replayed_result = before.result or {}, now.result or {}
     keys = [key for key in sorted(recorded_result.keys() | replayed_result.keys()) if key not in _FILE_NAME_FIELDS]
-    changed = [key for key in keys if not _same(recorded_result.get(key), replayed_result.get(key))]
+    changed = [key for key in keys if not _is_equal(recorded_result.get(key), replayed_result.get(key))]
     # The message repeats the other fields, so it is not compared separately.
     named = [key for key in changed if key != "message"]
     return "; ".join(f"{key} was {recorded_result.get(key)}, now {replayed_result.get(key)}" for key in named[:3])
 
 
-def _same(a: Any, b: Any) -> bool:
+def _is_equal(a: Any, b: Any) -> bool:
     if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
+        return a.keys() == b.keys() and all(_is_equal(a[key], b[key]) for key in a)
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
-        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
+        return len(a) == len(b) and all(_is_equal(x, y) for x, y in zip(a, b, strict=True))
     if isinstance(a, float | int) and isinstance(b, float | int) and not isinstance(a, bool) and not isinstance(b, bool):
         return abs(a - b) <= _TOLERANCE
     return bool(a == b)

@@ -1,7 +1,8 @@
-"""Make the calls of a recorded run again with a simulated camera, and compare every record exactly.
+"""Repeat the calls of a recorded run with a simulated camera, and compare the records.
 
-``agent.replay`` shows that a run can be repeated, with the tolerance of rounded results. Here nothing but measured times may
-differ: poses, scene times, perception replies, results and errors must come out as recorded.
+``agent.replay`` compares results within their rounding. This module is stricter: poses, scene times, perception replies, results
+and errors must equal the recorded ones, and numbers may differ only by ``NUMBER_TOLERANCE``. Measured times, retries and picture
+names are not compared.
 """
 
 from __future__ import annotations
@@ -24,21 +25,21 @@ from scope_ptz.tools.context import ImageStore
 from scope_ptz.version import __version__
 
 NUMBER_TOLERANCE = 1e-6
-"""Tolerance for numbers, which allows for other processors and mathematics libraries: poses in degrees, boxes in image widths."""
-_MEASURED = frozenset({"latency_s", "attempts", "wall_s", "server_events"})
-"""Fields of perception replies that are measured, so they differ when a call is repeated."""
-_FILE_NAMES = frozenset({"frames", "file"})
-"""Fields of results with names of pictures. The pictures themselves are compared, not their names."""
+"""Tolerance for rounding differences between processors and math libraries: degrees for poses, fractions of the frame for boxes."""
+_MEASURED_FIELDS = frozenset({"latency_s", "attempts", "wall_s", "server_events"})
+"""Fields of perception replies that are measured, such as times and retries. They differ whenever a call is repeated."""
+_FILE_NAME_FIELDS = frozenset({"frames", "file"})
+"""Result fields that contain picture names. The pictures are compared instead of their names."""
 _START_FIELDS = ("camera", "simulated", "frame_width", "frame_height", "scene", "viewpoint", "scene_time_s", "pose", "presets")
 
 
 @dataclass(frozen=True, slots=True)
 class Resimulation:
-    """A repeated run.
+    """The result of repeating a run.
 
     Attributes:
         repeated: The trace of the repeated run.
-        differences: What differs from the recorded run, as sentences without a final full stop; empty if the runs agree.
+        differences: The differences from the recorded run, as sentences without a final full stop; empty if the runs agree.
     """
 
     repeated: Trace
@@ -62,7 +63,7 @@ async def resimulate(
     repeatable = replace(trace, calls=calls)
     sees = any(decided.view is not None for decided in trace.decisions)
     agent = Agent(
-        _DecidedPlanner(complete_decisions(repeatable), trace.ended.text if trace.ended else "", sees=sees),
+        _RecordedPlanner(complete_decisions(repeatable), trace.ended.text if trace.ended else "", sees=sees),
         camera,
         perception or RecordedPerception(recorded_replies(repeatable)),
         images,
@@ -81,8 +82,8 @@ async def resimulate(
     return Resimulation(repeated, tuple(differences))
 
 
-class _DecidedPlanner(Planner):
-    """A planner that repeats recorded decisions, and then fails with the recorded text."""
+class _RecordedPlanner(Planner):
+    """A planner that returns the recorded decisions in order and then fails with the recorded text."""
 
     name = "recorded"
 
@@ -97,8 +98,8 @@ class _DecidedPlanner(Planner):
 
 def _start_differences(recorded: Started, repeated: Started) -> Iterator[str]:
     for name in _START_FIELDS:
-        before, now = _plain(getattr(recorded, name)), _plain(getattr(repeated, name))
-        if not same(before, now):
+        before, now = _to_plain(getattr(recorded, name)), _to_plain(getattr(repeated, name))
+        if not is_equal(before, now):
             yield f"the run began with {name} {before}, but the simulator gives {now}"
 
 
@@ -108,38 +109,38 @@ def _call_differences(recorded: tuple[Called, ...], repeated: tuple[Called, ...]
         if (before.step, before.index) != (now.step, now.index):
             yield f"{where} was made in a different order"
             return
-        yield from (f"{where}: {difference}" for difference in _one_call(before, now, messages=messages))
+        yield from (f"{where}: {difference}" for difference in _differences_in_call(before, now, messages=messages))
     for call in recorded[len(repeated) :]:
         yield f"call {call.index + 1} of step {call.step} ({call.outcome.call.name}) was recorded, but not made in the repeated run"
     for call in repeated[len(recorded) :]:
         yield f"call {call.index + 1} of step {call.step} ({call.outcome.call.name}) was made in the repeated run, but not recorded"
 
 
-def _one_call(before: Called, now: Called, *, messages: bool) -> Iterator[str]:
-    if not _same_pose(before.pose, now.pose):
-        yield f"the pose was recorded as {_plain(before.pose)}, but is {_plain(now.pose)}"
-    if not same(before.scene_time_s, now.scene_time_s):
+def _differences_in_call(before: Called, now: Called, *, messages: bool) -> Iterator[str]:
+    if not _is_same_pose(before.pose, now.pose):
+        yield f"the pose was recorded as {_to_plain(before.pose)}, but is {_to_plain(now.pose)}"
+    if not is_equal(before.scene_time_s, now.scene_time_s):
         yield f"the scene time was recorded as {before.scene_time_s:g} s, but is {now.scene_time_s:g} s"
     if (before.outcome.error, before.fault) != (now.outcome.error, now.fault):
         yield f"the error was recorded as {before.outcome.error!r}, but is {now.outcome.error!r}"
-    omitted = _FILE_NAMES if messages else _FILE_NAMES | {"message"}
-    yield from _field_differences("result", _without(before.outcome.result, omitted), _without(now.outcome.result, omitted))
+    omitted = _FILE_NAME_FIELDS if messages else _FILE_NAME_FIELDS | {"message"}
+    yield from _field_differences("result", _drop_fields(before.outcome.result, omitted), _drop_fields(now.outcome.result, omitted))
     if len(before.replies) != len(now.replies):
         yield f"{len(before.replies)} perception replies were recorded, but {len(now.replies)} were given"
         return
     for recorded, given in zip(before.replies, now.replies, strict=True):
-        yield from _field_differences("perception reply", _reply(recorded), _reply(given))
+        yield from _field_differences("perception reply", _comparable_reply(recorded), _comparable_reply(given))
 
 
-def _reply(reply: PerceptionReply) -> dict[str, Any]:
-    content = _without(reply.model_dump(mode="json"), _MEASURED)
-    return {**content, "result": _without(content["result"], _MEASURED) if content["result"] is not None else None}
+def _comparable_reply(reply: PerceptionReply) -> dict[str, Any]:
+    content = _drop_fields(reply.model_dump(mode="json"), _MEASURED_FIELDS)
+    return {**content, "result": _drop_fields(content["result"], _MEASURED_FIELDS) if content["result"] is not None else None}
 
 
 def _field_differences(what: str, before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
     for name in sorted({*before, *now}):
-        if not same(before.get(name), now.get(name)):
-            yield f"{name} in the {what} was recorded as {_short(before.get(name))}, but is {_short(now.get(name))}"
+        if not is_equal(before.get(name), now.get(name)):
+            yield f"{name} in the {what} was recorded as {_abbreviate(before.get(name))}, but is {_abbreviate(now.get(name))}"
 
 
 def _end_differences(recorded: Ended, repeated: Ended) -> Iterator[str]:
@@ -148,17 +149,18 @@ def _end_differences(recorded: Ended, repeated: Ended) -> Iterator[str]:
     if recorded.outcome != repeated.outcome:
         yield f"the outcome was recorded as {recorded.outcome}, but is {repeated.outcome}"
     elif recorded.text != repeated.text:
-        yield f"the answer was recorded as {_short(recorded.text)}, but is {_short(repeated.text)}"
-    if not _same_pose(recorded.pose, repeated.pose):
-        yield f"the pose at the end was recorded as {_plain(recorded.pose)}, but is {_plain(repeated.pose)}"
-    if not same(recorded.scene_time_s, repeated.scene_time_s):
+        yield f"the answer was recorded as {_abbreviate(recorded.text)}, but is {_abbreviate(repeated.text)}"
+    if not _is_same_pose(recorded.pose, repeated.pose):
+        yield f"the pose at the end was recorded as {_to_plain(recorded.pose)}, but is {_to_plain(repeated.pose)}"
+    if not is_equal(recorded.scene_time_s, repeated.scene_time_s):
         yield f"the scene time at the end was recorded as {recorded.scene_time_s:g} s, but is {repeated.scene_time_s:g} s"
 
 
 def picture_pairs(recorded: Trace, repeated: Trace) -> Iterator[tuple[str, str, str]]:
-    """Yield the pictures of a run: where each was taken, its recorded name, and its name in the repeated run.
+    """Yield, for each picture in a recorded run, where it was taken, its name, and the name of its counterpart in the repeated run.
 
-    The names of concurrent calls can differ between the two, so pictures are matched by the call that took them.
+    Concurrent calls can store their pictures in a different order, and thus under different names. Pictures are therefore matched
+    by the call that took them. The counterpart's name is empty if the repeated run has no such picture.
     """
     if recorded.started.frame is not None:
         yield "at the start", recorded.started.frame, repeated.started.frame or ""
@@ -179,12 +181,12 @@ def _picture_names(call: Called) -> list[str]:
     return [name for name in names if isinstance(name, str) and name]
 
 
-def same(one: Any, other: Any) -> bool:
+def is_equal(one: Any, other: Any) -> bool:
     """Return whether two JSON values are equal. Numbers may differ by ``NUMBER_TOLERANCE``."""
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+        return one.keys() == other.keys() and all(is_equal(one[key], other[key]) for key in one)
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(same(a, b) for a, b in zip(one, other, strict=True))
+        return len(one) == len(other) and all(is_equal(a, b) for a, b in zip(one, other, strict=True))
     if isinstance(one, bool) or isinstance(other, bool):
         return one is other
     if isinstance(one, int | float) and isinstance(other, int | float):
@@ -192,18 +194,18 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def _same_pose(one: RecordedPose, other: RecordedPose) -> bool:
-    return same(one.model_dump(), other.model_dump())
+def _is_same_pose(one: RecordedPose, other: RecordedPose) -> bool:
+    return is_equal(one.model_dump(), other.model_dump())
 
 
-def _without(content: Mapping[str, Any] | None, names: frozenset[str]) -> dict[str, Any]:
+def _drop_fields(content: Mapping[str, Any] | None, names: frozenset[str]) -> dict[str, Any]:
     return {name: value for name, value in (content or {}).items() if name not in names}
 
 
-def _plain(value: Any) -> Any:
+def _to_plain(value: Any) -> Any:
     return value.model_dump() if isinstance(value, RecordedPose) else value
 
 
-def _short(value: Any) -> str:
+def _abbreviate(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= 120 else text[:117] + "..."

@@ -20,7 +20,7 @@ from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Perspective
 
 JPEG_QUALITY = 92
-_MAX_SLUG_CHARS = 40  # longer names of run folders are truncated at a word
+_MAX_SLUG_CHARS = 40  # longer run folder names are truncated at a word boundary
 
 
 def slug(text: str) -> str:
@@ -41,12 +41,12 @@ class PictureNames:
         self._frames = self._pictures = 0
 
     def frame(self, frame: Frame) -> str:
-        """Return the name for the next frame of the run."""
+        """Return the name for the next frame in the run."""
         self._frames += 1
         return f"frames/{self._frames:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
 
     def picture(self) -> str:
-        """Return the name for the next picture that the user requested."""
+        """Return the name for the next picture requested by the user."""
         self._pictures += 1
         return f"pictures/{self._pictures:03d}.png"
 
@@ -92,7 +92,7 @@ class EncodedImages(ABC):
 
 
 class MemoryImages(EncodedImages):
-    """An image store in memory. ``files`` maps the names of pictures to their encoded bytes."""
+    """An image store in memory. ``files`` maps picture names to encoded bytes."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -104,7 +104,7 @@ class MemoryImages(EncodedImages):
 
 
 class RunFolder(EncodedImages):
-    """A new folder for one run: its trace, frames, pictures and filmstrip."""
+    """A new folder that holds the trace, frames, pictures and filmstrip of one run."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -129,7 +129,7 @@ class RunFolder(EncodedImages):
                 return cls(path)
         except OSError as error:
             raise OutputError(
-                f"The runs folder {root} cannot be written: {error.strerror}. Choose another with --runs-dir."
+                f"The runs folder {root} cannot be written to: {error.strerror}. Choose another with --runs-dir."
             ) from error
 
     @property

@@ -25,14 +25,14 @@ _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Po
 
 
 class Timings(BaseModel):
-    """Wall-clock seconds by part of the system. The time of overlapping calls counts once.
+    """Wall-clock seconds spent in each part of the system. Overlapping calls to one part are counted once.
 
     Attributes:
-        planner_s: Time of the planner's decisions.
-        perception_s: Time of perception calls.
-        camera_s: Time of moves, and of frames of a real camera.
-        render_s: Time of frames of a simulated camera.
-        total_s: Time of the whole run, including the loop and the tools.
+        planner_s: Time spent on the planner's decisions.
+        perception_s: Time spent on perception calls.
+        camera_s: Time spent on moves, and on frames from a real camera.
+        render_s: Time spent on frames from a simulated camera.
+        total_s: Duration of the whole run, including the loop and the tools.
         first_token_s: The part of ``planner_s`` before the first token of each reply, if the planner's server streams.
     """
 
@@ -47,7 +47,7 @@ class Timings(BaseModel):
 
     @property
     def capture_s(self) -> float:
-        """Seconds of camera calls: moves and frames, including simulated frames."""
+        """Seconds spent on camera calls: moves and frames, including simulated frames."""
         return self.camera_s + self.render_s
 
     @property
@@ -57,7 +57,7 @@ class Timings(BaseModel):
 
     @property
     def tools_s(self) -> float:
-        """Seconds of the loop and the tools themselves, such as stitching a panorama and writing pictures."""
+        """Seconds spent in the loop and the tools themselves, for example to stitch a panorama or write pictures."""
         return self.own_s - self.planner_s - self.perception_s
 
     def __sub__(self, earlier: Timings) -> Timings:
@@ -65,7 +65,7 @@ class Timings(BaseModel):
 
 
 class Stopwatch:
-    """A stopwatch that adds up wall-clock time by part of the system. The time of overlapping calls to one part counts once."""
+    """A stopwatch that adds up wall-clock time for each part of the system. Overlapping calls to one part are counted once."""
 
     def __init__(self) -> None:
         self._began = perf_counter()
@@ -76,7 +76,7 @@ class Stopwatch:
 
     @contextmanager
     def measure(self, part: TimedPart) -> Iterator[None]:
-        """Add the time inside the ``with`` block to a part."""
+        """Add the time spent inside the ``with`` block to a part's total."""
         if not self._active[part]:
             self._part_starts_s[part] = perf_counter()
         self._active[part] += 1
@@ -92,7 +92,7 @@ class Stopwatch:
         self._first_tokens_s += seconds
 
     def read(self) -> Timings:
-        """Return the time so far, including measurements in progress."""
+        """Return the times so far, including measurements in progress."""
         now = perf_counter()
         stage_times = {
             f"{part}_s": round(seconds + (now - self._part_starts_s[part] if self._active[part] else 0.0), 6)
@@ -102,7 +102,7 @@ class Stopwatch:
 
 
 class TimedCamera(CameraWrapper):
-    """A camera whose calls are timed. Frames of a simulated camera count as rendering, everything else as camera time."""
+    """A camera whose calls are timed. Frames from a simulated camera count as rendering, everything else as camera time."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         super().__init__(camera)
@@ -252,8 +252,8 @@ class TimedPerception(Perception):
         return observation
 
 
-def failed_usage(attempts: Iterable[object]) -> Usage:
-    """Return the tokens that failed requests consumed."""
+def usage_of_failures(attempts: Iterable[object]) -> Usage:
+    """Return the token usage of failed requests to model servers."""
     server_attempts = [a for a in attempts if isinstance(a, Attempt)]
     return Usage(
         input_tokens=sum(a.input_tokens for a in server_attempts), output_tokens=sum(a.output_tokens for a in server_attempts)

@@ -1,4 +1,4 @@
-"""Run the tool calls of a step. Calls run in order; consecutive perception calls on the current view run concurrently."""
+"""Run the tool calls in a step. Calls run in order; consecutive perception calls on the current view run concurrently."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NOT_DONE = "Not done, because the call before it failed."
 
 
 class RunEnd(NamedTuple):
-    """The reason why a run ends. ``kind`` is the failure kind of the planner's model server, if it failed."""
+    """Why a run ends. ``kind`` is the failure kind of the planner's model server, if it failed."""
 
     outcome: Outcome
     text: str
@@ -53,8 +53,8 @@ class _FinishedCall:
 
     Attributes:
         time_s: Scene time at the start of the call.
-        end: The reason why the run ends, if the call ends it.
-        raised: An error that is raised to the caller of the run: a damaged scene, or a file that cannot be written.
+        end: Why the run ends, if the call ends it.
+        raised: An error that the run raises to its caller: a damaged scene, or a file that cannot be written.
     """
 
     outcome: ToolOutcome
@@ -93,7 +93,7 @@ class CallRunner:
         self.events: Counter[str] = Counter()
 
     async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
-        """Run the calls of a step in order and append them to the history.
+        """Run the calls in a step in order and append them to the history.
 
         After a failed call the remaining calls are skipped, because they were planned for a different state.
 
@@ -103,28 +103,31 @@ class CallRunner:
             history: The exchanges of the run; the step is appended, even if the run is cancelled between two calls.
 
         Returns:
-            The reason why the run ends, if a call ended it; otherwise None.
+            Why the run ends, if a call ended it; otherwise None.
         """
         results: dict[int, _FinishedCall] = {}
         try:
             for batch in batches(decision.calls, self._tools):
-                await self._batch(step, decision.calls, batch, results)
+                await self._run_batch(step, decision.calls, batch, results)
                 failed = [results[index] for index in batch if results[index].outcome.error is not None]
                 if failed:
                     self._skip(step, decision.calls, batch[-1] + 1, results)
-                    return next((d.end for d in failed if d.end is not None), None)
+                    return next((call.end for call in failed if call.end is not None), None)
         finally:
-            outcomes = tuple(d.outcome for _, d in sorted(results.items()) if d.fault != "cancelled")
+            outcomes = tuple(call.outcome for _, call in sorted(results.items()) if call.fault != "cancelled")
             history.append(Exchange(outcomes=outcomes, thought=decision.thought))
             self._count_repetition(results.values())
         return None
 
     def _count_repetition(self, results: Iterable[_FinishedCall]) -> None:
-        bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in results if d.fault == "bad_call"), None)
+        bad_calls = (result.outcome.call for result in results if result.fault == "bad_call")
+        bad = next(((call.name, call.arguments) for call in bad_calls), None)
         self.bad_call_repeats = 0 if bad is None else self.bad_call_repeats + 1 if bad == self._last_bad_call else 1
         self._last_bad_call = bad
 
-    async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], results: dict[int, _FinishedCall]) -> None:
+    async def _run_batch(
+        self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], results: dict[int, _FinishedCall]
+    ) -> None:
         finished: dict[int, _FinishedCall] = {}
         try:
             if len(batch) == 1:
@@ -152,7 +155,7 @@ class CallRunner:
         raised: Exception | None = None
         frame: str | None = None
         try:
-            result = await self._run(call, ToolContext(camera, perception, images))
+            result = await self._check_and_run(call, ToolContext(camera, perception, images))
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
                 frame = await self._images.save_frame(await camera.frame())
@@ -178,7 +181,7 @@ class CallRunner:
             end = RunEnd("camera_error", message, traceback.format_exc())
         finished[index] = _FinishedCall(outcome, fault, time_s, self._watch.read() - before, perception.drain(), frame, end, raised)
 
-    async def _run(self, call: ToolCall, context: ToolContext) -> Result:
+    async def _check_and_run(self, call: ToolCall, context: ToolContext) -> Result:
         if call.problem is not None:
             raise ToolCallError(call.problem)
         return await self._run_tool(context, call.name, call.arguments)
@@ -213,23 +216,23 @@ def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[
 
     Consecutive calls that only read the current view share a batch. Every other call is a separate batch.
     """
-    together: list[int] = []
+    batch: list[int] = []
     for index, call in enumerate(calls):
-        if _only_reads_view(call, tools):
-            together.append(index)
-            if len(together) == MAX_CONCURRENT_CALLS:
-                yield together
-                together = []
+        if _is_view_only(call, tools):
+            batch.append(index)
+            if len(batch) == MAX_CONCURRENT_CALLS:
+                yield batch
+                batch = []
             continue
-        if together:
-            yield together
-            together = []
+        if batch:
+            yield batch
+            batch = []
         yield [index]
-    if together:
-        yield together
+    if batch:
+        yield batch
 
 
-def _only_reads_view(call: ToolCall, tools: ToolRegistry) -> bool:
+def _is_view_only(call: ToolCall, tools: ToolRegistry) -> bool:
     if call.problem is not None:
         return False
     try:

@@ -1,4 +1,4 @@
-"""Read and write trace files: one JSON record per line. Each line is flushed immediately, so that a crash loses no record."""
+"""Read and write trace files: one JSON record per line. Each line is flushed immediately, so that a crash loses no records."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Trace:
     """A recorded run.
 
     Attributes:
-        folder: Folder of the run's pictures; ``Path()`` for a run that was kept in memory.
+        folder: The folder with the run's pictures; ``Path()`` for a run that was kept in memory.
         ended: The end of the run; None if the program was killed before the run ended.
     """
 
@@ -66,7 +66,7 @@ def picture_path(folder: Path, name: str) -> Path:
     """Return the path of a picture that a trace names.
 
     Raises:
-        TraceError: The name points outside the folder of the run.
+        TraceError: The name points outside the run folder.
     """
     path = (folder / name).resolve()
     if not path.is_relative_to(folder.resolve()):
@@ -75,7 +75,7 @@ def picture_path(folder: Path, name: str) -> Path:
 
 
 def picture_names(trace: Trace) -> dict[str, int | None]:
-    """Return the pictures that a trace names, in order, each with the position of its call; None for the view at the start."""
+    """Return the names of a trace's pictures in order, each with the position of its call, or None for the view at the start."""
     found: dict[str, int | None] = {} if trace.started.frame is None else {trace.started.frame: None}
     for position, call in enumerate(trace.calls):
         result = call.outcome.result or {}
@@ -117,11 +117,11 @@ def read_trace(run: Path) -> Trace:
 
 
 def trace_of(records: Sequence[Started | Decided | Called | Ended], folder: Path) -> Trace:
-    """Create a trace from the records of one run.
+    """Create a trace from one run's records.
 
     Args:
         records: The records in order. The first one is the header.
-        folder: Folder of the pictures; ``Path()`` for a run that was kept in memory.
+        folder: The folder with the pictures; ``Path()`` for a run that was kept in memory.
 
     Returns:
         The recorded run.

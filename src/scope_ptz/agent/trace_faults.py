@@ -1,6 +1,7 @@
 """Find contradictions inside a trace: records that cannot all come from one run of the agent loop.
 
-These checks need no camera and no scene. ``agent.resimulation`` makes the calls again, and finds what a consistent forgery hides.
+These checks need no camera and no scene. ``agent.resimulation`` repeats the calls and so detects
+forged traces that are internally consistent.
 """
 
 from __future__ import annotations
@@ -9,21 +10,21 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from scope_ptz.agent.records import Called, Decided, Ended, RecordedPose, Started
-from scope_ptz.agent.timing import failed_usage
+from scope_ptz.agent.timing import usage_of_failures
 from scope_ptz.agent.trace import Trace
 from scope_ptz.planner.base import CallTools, Finish, Usage
 
 POSE_TOLERANCE = 1e-6
 """Tolerance for poses that must be equal, in degrees and as a zoom factor."""
 CLOCK_SLACK_S = 0.05
-"""Seconds by which sums of measured times may exceed the time of the whole, because the clock is read several times."""
-INTERRUPTED = frozenset({"budget", "cancelled", "camera_error"})
-"""Outcomes of runs that ended in the middle of a step, so that calls of the last step may be missing."""
-_FINISHED = frozenset({"answered", "clarification", "refused"})
+"""Seconds by which a sum of measured times may exceed the total time, because the clock is read several times."""
+INTERRUPTED_OUTCOMES = frozenset({"budget", "cancelled", "camera_error"})
+"""Outcomes of runs that can end in the middle of a step, so that calls in the last step may be missing."""
+_FINISHED_OUTCOMES = frozenset({"answered", "clarification", "refused"})
 
 
 def record_faults(records: Sequence[Started | Decided | Called | Ended]) -> Iterator[str]:
-    """Yield faults in the order of records. A trace has one header, which comes first, and at most one end, which comes last."""
+    """Yield a fault for each misplaced record. A trace has one header, which comes first, and at most one end, which comes last."""
     if sum(isinstance(record, Started) for record in records) > 1:
         yield "the trace contains the headers of several runs"
     if any(isinstance(record, Ended) for record in records[:-1]):
@@ -40,13 +41,13 @@ def trace_faults(trace: Trace) -> Iterator[str]:
 
 
 def _step_faults(trace: Trace) -> Iterator[str]:
-    """Yield faults of decisions and their calls: every call belongs to a decision, and every decided call was carried out."""
+    """Yield a fault for each call without a decision, and for each decision whose calls were not carried out."""
     steps = [decided.step for decided in trace.decisions]
     if steps != list(range(1, len(steps) + 1)):
         yield "the decisions are not numbered from 1 without gaps"
         return
     if any(isinstance(decided.decision, Finish) for decided in trace.decisions[:-1]):
-        yield "the planner decides again after it finished"
+        yield "the planner made another decision after it finished"
     recorded: dict[int, list[Called]] = {}
     for called in trace.calls:
         recorded.setdefault(called.step, []).append(called)
@@ -77,8 +78,8 @@ def _call_faults(step: int, calls: Sequence[Called], expected: Sequence[object],
 
 
 def _is_complete(trace: Trace, step: int) -> bool:
-    """Return whether every call of a step must be recorded."""
-    return step < len(trace.decisions) or (trace.ended is not None and trace.ended.outcome not in INTERRUPTED)
+    """Return whether every call in a step must be recorded."""
+    return step < len(trace.decisions) or (trace.ended is not None and trace.ended.outcome not in INTERRUPTED_OUTCOMES)
 
 
 def _end_faults(trace: Trace, ended: Ended) -> Iterator[str]:
@@ -87,36 +88,36 @@ def _end_faults(trace: Trace, ended: Ended) -> Iterator[str]:
     if isinstance(last, Finish):
         if (ended.outcome, ended.text) != (last.kind, last.text):
             yield "the outcome or the answer at the end differs from the last decision of the planner"
-    elif ended.outcome in _FINISHED:
+    elif ended.outcome in _FINISHED_OUTCOMES:
         yield f"the run ended with the outcome {ended.outcome}, but the planner never decided to finish"
-    fewest = len(trace.decisions)
-    if not fewest <= ended.steps <= fewest + (ended.outcome not in (*_FINISHED, "step_limit")):
-        yield f"the end states {ended.steps} steps, but the trace contains {fewest} decisions"
+    decided_steps = len(trace.decisions)
+    if not decided_steps <= ended.steps <= decided_steps + (ended.outcome not in (*_FINISHED_OUTCOMES, "step_limit")):
+        yield f"the end states {ended.steps} steps, but the trace contains {decided_steps} decisions"
     if ended.steps > trace.started.budgets.max_steps:
         yield f"the run has {ended.steps} steps, but its limit is {trace.started.budgets.max_steps}"
-    if ended.outcome in _FINISHED and all(called.outcome.error is None for called in trace.calls):
+    if ended.outcome in _FINISHED_OUTCOMES and all(called.outcome.error is None for called in trace.calls):
         before = trace.calls[-1].pose if trace.calls else trace.started.pose
-        if not same_pose(before, ended.pose):
+        if not is_same_pose(before, ended.pose):
             yield "the pose at the end differs from the pose after the last call"
     for called in trace.calls:
         stated = (called.outcome.result or {}).get("pose")
-        if isinstance(stated, dict) and not _same_rounded(stated, called.pose):
+        if isinstance(stated, dict) and not _equals_rounded_pose(stated, called.pose):
             yield f"the pose in the result of call {called.index + 1} of step {called.step} differs from the pose of the camera"
 
 
-def same_pose(one: RecordedPose, other: RecordedPose) -> bool:
+def is_same_pose(one: RecordedPose, other: RecordedPose) -> bool:
     """Return whether two poses are equal within ``POSE_TOLERANCE``."""
     return all(abs(getattr(one, name) - getattr(other, name)) <= POSE_TOLERANCE for name in RecordedPose.model_fields)
 
 
-def _same_rounded(stated: dict[str, object], pose: RecordedPose) -> bool:
-    """Return whether a pose in a result, which is rounded to hundredths, is the pose of the camera."""
+def _equals_rounded_pose(stated: dict[str, object], pose: RecordedPose) -> bool:
+    """Return whether a pose in a result, which is rounded to hundredths, equals the camera's pose."""
     values = [(stated.get(name), getattr(pose, name)) for name in RecordedPose.model_fields]
-    return all(isinstance(a, int | float) and _apart(float(a), b) <= 0.011 for a, b in values)
+    return all(isinstance(a, int | float) and _angle_difference_deg(float(a), b) <= 0.011 for a, b in values)
 
 
-def _apart(one: float, other: float) -> float:
-    """Return the difference of two numbers, which may be angles that differ by a full turn."""
+def _angle_difference_deg(one: float, other: float) -> float:
+    """Return the absolute difference between two angles in degrees, or between two zoom factors. Full turns are ignored."""
     return min(abs(one - other), abs(abs(one - other) - 360.0))
 
 
@@ -132,11 +133,11 @@ def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
     for decided in trace.decisions:
         used += decided.decision.usage
         if decided.decision.served is not None:
-            used += failed_usage(decided.decision.served.attempts)
+            used += usage_of_failures(decided.decision.served.attempts)
     total = ended.usage
     missing = used.input_tokens > total.input_tokens or used.output_tokens > total.output_tokens
     if missing or (
-        ended.outcome in _FINISHED and (used.input_tokens, used.output_tokens) != (total.input_tokens, total.output_tokens)
+        ended.outcome in _FINISHED_OUTCOMES and (used.input_tokens, used.output_tokens) != (total.input_tokens, total.output_tokens)
     ):
         yield "the tokens at the end differ from those of the decisions"
 

@@ -1,4 +1,4 @@
-"""The asynchronous session, which the synchronous session wraps."""
+"""The asynchronous session, on which the synchronous session is based."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Decided, Ended, RunLabels, Started
 from scope_ptz.agent.store import MemoryImages, RunFolder
 from scope_ptz.agent.trace import TraceWriter, trace_of
-from scope_ptz.api.building import Parts, build
-from scope_ptz.api.function_calling import Arguments, SchemaForm, ToolOutput, output_of_call, schemas_in_form
+from scope_ptz.api.building import Parts, build_parts
+from scope_ptz.api.function_calling import Arguments, SchemaForm, ToolOutput, run_tool_call, schemas_in_form
 from scope_ptz.api.options import SessionOptions
 from scope_ptz.api.pictures import ToolCallImages
-from scope_ptz.api.run import Event, Run, event_of
+from scope_ptz.api.run import Event, Run, create_event
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.camera.guard.guarded_camera import GuardedCamera
 from scope_ptz.errors import InputError, ScopeError
@@ -72,13 +72,13 @@ class AsyncScope:
         self._runs: tuple[Run, ...] = ()
         self._conversation: tuple[PastTurn, ...] = ()
         self._images = ToolCallImages(options.runs_dir)
-        self._dispatching = anyio.Lock()
+        self._dispatch_lock = anyio.Lock()
 
     async def __aenter__(self) -> Self:
         if self._closed:
             raise InputError("This session is closed. Open another one with scope_ptz.open_async().")
         if self._parts is None:
-            self._parts = await build(self._options)
+            self._parts = await build_parts(self._options)
         return self
 
     def __await__(self) -> Generator[Any, None, Self]:
@@ -146,7 +146,7 @@ class AsyncScope:
                 yield event
             await work
         finally:
-            # A caller that stops reading events early cancels the run.
+            # If the caller stops reading events early, the run is cancelled.
             receive.close()
             work.cancel()
             with anyio.CancelScope(shield=True):
@@ -182,7 +182,7 @@ class AsyncScope:
 
     async def move_to(self, pan_deg: float | None = None, tilt_deg: float | None = None, zoom: float | None = None) -> Pose:
         """Move the camera to an absolute pose and return the pose reached. See ``Scope.move_to``."""
-        with self._working():
+        with self._busy():
             camera = self._open_parts().camera
             now = await camera.pose()
             try:
@@ -253,11 +253,11 @@ class AsyncScope:
 
     async def dispatch(self, name: str, arguments: Arguments = None) -> ToolOutput:
         """Run a tool call that a model made, and return its outcome for the model. See ``Scope.dispatch``."""
-        async with self._dispatching:  # calls that a model makes together run one after the other
-            return await output_of_call(self._run_tool, self.picture, name, arguments)
+        async with self._dispatch_lock:  # concurrent calls run one after the other
+            return await run_tool_call(self._run_tool, self.picture, name, arguments)
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method that calls a registered tool for which this class defines no method."""
+        """Return a method that calls a registered tool for which this class has no method."""
         if name in TOOLS:
             return partial(self._run_tool, Result, name)
         raise AttributeError(f"A session has no attribute '{name}'.")
@@ -266,12 +266,12 @@ class AsyncScope:
         return sorted({*super().__dir__(), *TOOLS})
 
     async def run_with_events(self, instruction: str, listener: EventListener) -> Run:
-        """Carry out an instruction, passing each event to a listener as it happens.
+        """Carry out an instruction, and pass each event to a listener as it happens.
 
         Raises:
-            InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
-            PackError: the files of a scene are damaged.
-            CameraError: the camera failed before the first step.
+            InputError: The instruction is empty or too long, the session is closed or busy, or a file cannot be written.
+            PackError: The files of a scene are damaged.
+            CameraError: The camera failed before the first step.
         """
         parts, options = self._open_parts(), self._options
         self._require_idle()
@@ -283,7 +283,7 @@ class AsyncScope:
         labels = RunLabels(perception_note=parts.note, seed=options.seed, home_viewpoint=options.viewpoint)
         agent = Agent(parts.planner, parts.camera, parts.perception, recorder.images, budgets=options.budgets, labels=labels)
         try:
-            with recorder, self._working():
+            with recorder, self._busy():
                 result = await agent.run(instruction, conversation=self._conversation, listener=recorder)
                 self._conversation = (*self._conversation, result.past_turn())
         finally:
@@ -298,7 +298,7 @@ class AsyncScope:
     async def _run_tool(self, result_type: type[_R], name: str, /, **arguments: Any) -> _R:
         """Run a tool without the planner."""
         parts = self._open_parts()
-        with self._working():
+        with self._busy():
             context = ToolContext(parts.camera, parts.perception, self._images)
             result = await run_tool(context, name, arguments)
             assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
@@ -310,8 +310,8 @@ class AsyncScope:
         return self._images.picture(name)
 
     @contextmanager
-    def _working(self) -> Iterator[None]:
-        """Mark the session as busy while the block runs. If ``cancel`` is called, the block ends without an exception."""
+    def _busy(self) -> Iterator[None]:
+        """Mark the session as busy during a block. If ``cancel`` is called, the block ends without an exception."""
         self._require_idle()
         self._finished = anyio.Event()
         try:
@@ -338,7 +338,7 @@ class AsyncScope:
 
 
 def _send(stream: MemoryObjectSendStream[Event], event: Event) -> None:
-    """Send an event to the caller, unless the caller has stopped reading events."""
+    """Send an event to the caller unless the caller has stopped reading events."""
     with suppress(anyio.BrokenResourceError):
         stream.send_nowait(event)
 
@@ -348,7 +348,7 @@ def _cancelled_call() -> ScopeError:
 
 
 class _Recorder:
-    """Collects the records of a run, writes its trace if runs are stored in a folder, and passes events to the listener."""
+    """Collects the records of a run, writes the trace if runs are stored in a folder, and passes events to the listener."""
 
     def __init__(self, options: SessionOptions, instruction: str, listener: EventListener) -> None:
         folder = options.runs_dir
@@ -371,10 +371,10 @@ class _Recorder:
         self._write(record)
         self._records.append(record)
         if not isinstance(record, Ended):
-            self._listener(event_of(record))
+            self._listener(create_event(record))
 
     def run(self) -> Run | None:
-        """Return the finished run; None if the run did not start or its end could not be recorded."""
+        """Return the finished run; None if the run did not start, or its end could not be recorded."""
         if not self._records or not isinstance(ended := self._records[-1], Ended):
             return None
         if isinstance(self.images, RunFolder):

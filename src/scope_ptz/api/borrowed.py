@@ -1,4 +1,4 @@
-"""Wrappers that keep the caller's planner and perception backend open when an evaluation ends."""
+"""Wrappers that keep the caller's planner and perception backend open after an evaluation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Create the camera, the planner and the perception backend of a session from its options."""
+"""Create the camera, planner and perception backend of a session from its options."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Parts:
     """The parts of an open session.
 
     Attributes:
-        camera: the open camera.
-        planner: the planner.
-        perception: the perception backend.
-        scene: the scene that provides the ground truth of the camera's frames; None if there is none.
-        note: a sentence that describes a built-in perception backend, such as ground truth; empty for models.
-        release: closes the parts that were created for the session. Objects that the caller passed stay open.
+        camera: The open camera.
+        planner: The planner.
+        perception: The perception backend.
+        scene: The scene that provides the ground truth of the camera's frames; None if there is none.
+        note: A sentence that describes a built-in perception backend, such as ground truth; empty for models.
+        release: Function that closes the parts that were created for the session. Objects passed by the caller stay open.
     """
 
     camera: Camera
@@ -50,22 +50,22 @@ class Parts:
     release: Callable[[], Awaitable[None]]
 
 
-async def build(options: SessionOptions) -> Parts:
+async def build_parts(options: SessionOptions) -> Parts:
     """Open the camera, and create the planner and the perception backend.
 
     Raises:
-        InputError: an option is invalid.
-        PackError: the files of a scene are damaged.
-        CameraError: the camera failed or did not answer.
+        InputError: An option is invalid.
+        PackError: The files of a scene are damaged.
+        CameraError: The camera failed or did not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
     pair = await resolve_models(options.served.model_options(options.planner, options.perception))
     async with AsyncExitStack() as stack:
-        camera, opened = await _camera(options, stack)
+        camera, opened = await _open_session_camera(options, stack)
         planner = make_planner(pair.planner)
         if pair.planner.instance is None:
             stack.push_async_callback(planner.close)
-        perception = _perception(options, pair.perception, camera, opened)
+        perception = _create_perception(options, pair.perception, camera, opened)
         if pair.perception.instance is None:
             stack.push_async_callback(perception.close)
         scene = opened.scene if opened is not None else None
@@ -75,7 +75,7 @@ async def build(options: SessionOptions) -> Parts:
         return Parts(camera, planner, perception, scene, note, stack.pop_all().aclose)
 
 
-async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
+async def _open_session_camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
     check_type("camera", options.camera, Camera)
     if not isinstance(options.camera, Camera):
         opened = await open_camera(
@@ -99,7 +99,9 @@ async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camer
     return camera, None
 
 
-def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None) -> Perception:
+def _create_perception(
+    options: SessionOptions, resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None
+) -> Perception:
     scenes = opened.scenes if opened is not None else _scenes_by_name() if camera.info.simulated else None
     served_truth = opened.served_truth if opened is not None else None
     if scenes is None and resolved.spec is None and resolved.instance is None and resolved.name != SERVED_TRUTH:
@@ -113,7 +115,7 @@ def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: C
 
 
 def _scenes_by_name() -> Callable[[str], Scene]:
-    """Return a function that opens scenes by name. Ground truth needs it for a simulated camera that the caller created."""
+    """Return a function that opens scenes by name, for ground truth with a simulated camera created by the caller."""
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library

@@ -55,7 +55,7 @@ class EvaluationRequest:
 
 
 def run_evaluation(request: EvaluationRequest) -> Evaluation:
-    """Run or resume an evaluation, or read a complete one. This works even inside a running event loop."""
+    """Run or resume an evaluation, or read the results of a complete one. This works even inside a running event loop."""
     from scope_ptz.factory.evaluate import evaluate, require_engine
 
     require_engine()
@@ -98,7 +98,7 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
         timeout_s=request.timeout_s,
     )
     return EvaluationOptions(
-        models=_borrowed(served.model_options(request.planner, request.perception)),
+        models=_borrow_instances(served.model_options(request.planner, request.perception)),
         out=request.out,
         tasks=_task_file(request.tasks, request.out) if isinstance(request.tasks, tuple) else str(request.tasks),
         categories=request.categories,
@@ -116,8 +116,8 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
     )
 
 
-def _borrowed(models: ModelOptions) -> ModelOptions:
-    """Wrap the caller's objects, so that they stay open at the end of the evaluation."""
+def _borrow_instances(models: ModelOptions) -> ModelOptions:
+    """Wrap the caller's objects, so that they stay open after the evaluation."""
     planner, perception = models.planner_instance, models.perception_instance
     return replace(
         models,
@@ -127,7 +127,7 @@ def _borrowed(models: ModelOptions) -> ModelOptions:
 
 
 def _task_file(tasks: tuple[Task, ...], out: Path) -> str:
-    """Write tasks to a file next to the logs and return its path. Resuming a log needs its task file."""
+    """Write tasks to a file next to the logs, and return its path. The file is required for resuming the evaluation."""
     from scope_ptz.bench.tasks.files import digest_of, dump_tasks
 
     path = out / "tasks" / f"{digest_of(tasks)[:16]}.jsonl"

@@ -1,4 +1,4 @@
-"""Evaluations from Python: load tasks, run a planner and a perception backend on them, and read the results."""
+"""Evaluations in Python: load tasks, run a planner and a perception backend on them, and read the results."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class EvaluationResults:
     """The results of an evaluation: scores by category, and every trial. In a notebook, they are shown as a table.
 
     ``evaluate`` and ``load_results`` return this class. A score is the fraction of correct trials among those that were scored.
-    Trials that failed because of infrastructure are excluded, and so are those that await a judge.
+    Trials with an infrastructure failure and trials that still need a judge are excluded.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -41,7 +41,7 @@ class EvaluationResults:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """All trials. A trial is one run of one task, with its verdict, answer, error mode and timings."""
+        """All trials. A trial is a run of a task, with its verdict, answer, error mode and timings."""
         return self._evaluation.trials
 
     @property
@@ -61,18 +61,18 @@ class EvaluationResults:
 
     @cached_property
     def scores(self) -> dict[str, float]:
-        """Score of each category, from 0 to 1. Categories without scored trials are omitted."""
+        """Score in each category, from 0 to 1. Categories without scored trials are omitted."""
         scored = {category: score(self._trials_of(category)) for category in CATEGORIES}
         return {category: value for category, value in scored.items() if value is not None}
 
     @property
     def macro(self) -> float | None:
-        """Unweighted mean of the scores of the categories; None if nothing was scored."""
+        """Unweighted mean of the category scores; None if no trial was scored."""
         return sum(self.scores.values()) / len(self.scores) if self.scores else None
 
     @property
     def micro(self) -> float | None:
-        """Fraction of correct trials among all scored ones; None if nothing was scored."""
+        """Fraction of correct trials among all scored trials; None if no trial was scored."""
         return score(self.trials)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -128,16 +128,16 @@ def load_tasks(
     """Load benchmark tasks.
 
     Args:
-        tasks: a split ("core", "lite", "paraphrase", "reaction", "unseen" or "all"), or a task file (JSONL or YAML).
-        categories: only tasks of these categories; all by default.
-        scenes: only tasks of these scenes; all by default.
-        limit: at most this many tasks, sampled evenly across the selected categories, scenes and answers.
+        tasks: A split ("core", "lite", "paraphrase", "reaction", "unseen" or "all"), or a task file (JSONL or YAML).
+        categories: Only tasks of these categories; all by default.
+        scenes: Only tasks of these scenes; all by default.
+        limit: At most this many tasks, sampled evenly across the selected categories, scenes and answers.
 
     Returns:
-        The tasks, always the same ones for the same arguments.
+        The tasks. The same arguments always select the same tasks.
 
     Raises:
-        InputError: a name is unknown, a file is missing or damaged, or no task matches the selection.
+        InputError: A name is unknown, a file is missing or damaged, or no task matches the selection.
 
     Example:
         >>> import scope_ptz
@@ -145,14 +145,14 @@ def load_tasks(
         >>> len(tasks), len({task.category for task in tasks})
         (16, 8)
     """
-    from scope_ptz.bench.engine.entries import select
-    from scope_ptz.factory.evaluation import tasks_of
+    from scope_ptz.bench.engine.entries import select_entries
+    from scope_ptz.factory.evaluation import load_entries
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library
 
-    entries = tasks_of(str(tasks), Library(scene_search(load_settings())))
-    selected = select(entries, _names("categories", categories), _names("scenes", scenes), limit)
+    entries = load_entries(str(tasks), Library(scene_search(load_settings())))
+    selected = select_entries(entries, _names("categories", categories), _names("scenes", scenes), limit)
     loaded = tuple(entry.task for entry in selected if entry.task is not None)
     if len(loaded) < len(selected):
         raise InputError(f"{tasks} contains imported tasks, which only a judge can score. Pass its path to evaluate(tasks=...).")
@@ -197,43 +197,44 @@ def evaluate(
     the results of a complete one.
 
     Args:
-        planner: name of a planner or model, or a ``Planner`` object; the built-in rule-based planner by default.
-        perception: name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
-        tasks: a split, a task file, or tasks returned by ``load_tasks``.
-        out: folder for the logs.
-        pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.
-        agent: "module:Class" of an external agent, which replaces the planner and the agent loop. It runs in a process of its own.
-        agent_command: a program with arguments that speaks the agent protocol on stdin and stdout, instead of ``agent``.
+        planner: Name of a planner or model, or a ``Planner`` object; the built-in rule-based planner by default.
+        perception: Name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
+        tasks: A split, a task file, or tasks returned by ``load_tasks``.
+        out: Folder for the logs.
+        pair: A pair as "PLANNER+PERCEPTION", or the name of one model that does both.
+        agent: "module:Class" of an external agent, which replaces the planner and the agent loop. It runs in a separate process.
+        agent_command: Command line of a program that speaks the agent protocol on stdin and stdout, instead of ``agent``.
         agent_python: Python interpreter of the agent's own environment; the current one by default.
-        agent_env: names of environment variables to pass on to the agent.
-        sandbox: run the agent without the network and without the files of the dataset (bubblewrap, Linux only).
-        agent_memory_mb: maximum memory of the agent's processes together, in MB.
-        agent_step_s: maximum seconds that the agent takes for one step.
-        agent_run_s: maximum seconds that the agent takes in one run, without the time of tools and perception.
-        agent_in_process: run the agent inside this program, for debugging. It can reach the answers; its results are labelled so.
-        categories: only tasks of these categories; all by default.
-        scenes: only tasks of these scenes; all by default.
-        limit: at most this many tasks, sampled evenly across the selected categories, scenes and answers.
-        epochs: number of runs of each task.
-        seed: seed for every random choice.
-        max_steps: number of planner steps after which a run ends.
-        time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
-        concurrency: number of concurrent runs; the default depends on the models.
-        pictures: whether to render and log frames. Ground truth does not need frames and is faster without them.
-        fresh: start a new evaluation even if ``out`` has a log of the same evaluation.
-        planner_url: address of the planner's model server.
-        planner_model: the server's name for the planner.
-        perception_url: address of the vision model's server.
-        perception_model: the server's name for the vision model.
-        timeout_s: seconds after which a request to a model server fails, including its retries.
+        agent_env: Names of environment variables to pass on to the agent.
+        sandbox: Run the agent without access to the network and the dataset's files (bubblewrap, Linux only).
+        agent_memory_mb: Maximum total memory of the agent's processes, in MB.
+        agent_step_s: Maximum time in seconds that the agent may take per step.
+        agent_run_s: Maximum time in seconds that the agent may take per run, not counting tools and perception.
+        agent_in_process: Run the agent inside this program, for debugging. It can then read the expected answers, and its
+            results are labelled accordingly.
+        categories: Only tasks of these categories; all by default.
+        scenes: Only tasks of these scenes; all by default.
+        limit: At most this many tasks, sampled evenly across the selected categories, scenes and answers.
+        epochs: Number of runs of each task.
+        seed: Seed for every random choice.
+        max_steps: Number of planner steps after which a run ends.
+        time_budget_s: Seconds of wall-clock time after which a run ends; no limit by default.
+        concurrency: Number of concurrent runs; the default depends on the models.
+        pictures: Whether to render and log frames. Ground truth does not need frames and is faster without them.
+        fresh: Start a new evaluation even if ``out`` has a log of the same evaluation.
+        planner_url: Address of the planner's model server.
+        planner_model: The server's name for the planner.
+        perception_url: Address of the vision model's server.
+        perception_model: The server's name for the vision model.
+        timeout_s: Seconds after which a request to a model server fails, including its retries.
 
     Returns:
         The results.
 
     Raises:
-        ConfigError: the evaluation engine is not installed, or a model is not configured.
-        InputError: an option is invalid, or a name is unknown.
-        ScopeError: too many consecutive runs failed because of infrastructure.
+        ConfigError: The evaluation engine is not installed, or a model is not configured.
+        InputError: An option is invalid, or a name is unknown.
+        ScopeError: Too many consecutive runs failed because of infrastructure.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -266,14 +267,14 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
     """Read the results of an evaluation.
 
     Args:
-        path: a log file, or a folder. The newest log in the folder is read.
+        path: A log file, or a folder. The newest log in the folder is read.
 
     Returns:
         The results. ``finished`` is False if the evaluation is incomplete.
 
     Raises:
-        TraceError: there is no log, or it is damaged.
-        ConfigError: the evaluation engine is not installed.
+        TraceError: There is no log, or it is damaged.
+        ConfigError: The evaluation engine is not installed.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -289,10 +290,10 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
 
 
 def score(trials: Sequence[Trial]) -> float | None:
-    """Return the fraction of correct trials among the scored ones; None if none is scored."""
-    from scope_ptz.bench.judging.judgement_tally import without_verdict
+    """Return the fraction of correct trials among the scored trials; None if no trial is scored."""
+    from scope_ptz.bench.judging.judgement_tally import lacks_verdict
 
-    scored = [trial for trial in trials if trial.headline != "infrastructure" and not without_verdict(trial)]
+    scored = [trial for trial in trials if trial.headline != "infrastructure" and not lacks_verdict(trial)]
     return sum(trial.headline == "correct" for trial in scored) / len(scored) if scored else None
 
 

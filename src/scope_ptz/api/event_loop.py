@@ -1,4 +1,4 @@
-"""An event loop that runs in its own thread, for the synchronous session."""
+"""An event loop in a separate thread, for the synchronous session."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _T = TypeVar("_T")
 class EventLoopThread:
     """Runs coroutines in another thread, so that synchronous code works inside a running event loop, such as Jupyter's.
 
-    ``stop`` ends the thread. The thread also ends when the main thread does, because the interpreter would otherwise wait at exit
+    ``stop`` ends the thread. The thread also ends when the main thread ends, because the interpreter would otherwise wait at exit
     for a session that was never closed.
     """
 
@@ -51,7 +51,7 @@ class EventLoopThread:
             await self._at_exit()
 
     def call(self, work: Callable[[], Awaitable[_T]]) -> _T:
-        """Run a coroutine and return its result.
+        """Run a coroutine, and return its result.
 
         An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. The exception is raised again after
         the coroutine has finished, so that a cancelled run has a complete trace.
@@ -80,22 +80,22 @@ class EventLoopThread:
         return self._portal.start_task_soon(run), finished
 
     def call_function(self, function: Callable[[], None]) -> None:
-        """Run a function in the thread of the event loop."""
+        """Run a function in the event loop's thread."""
         self._portal.call(function)
 
     def stop(self) -> None:
-        """End the thread and wait for it. Calling it again has no effect."""
+        """Stop the thread, and wait until it has ended. Calling this method again has no effect."""
         if self._thread.is_alive() and self._stop is not None:
             self._portal.call(self._stop.set)
             self._thread.join()
 
 
 def run_in_thread(work: Callable[[], Awaitable[_T]]) -> _T:
-    """Run a coroutine in a new event loop, even if the calling thread already runs one."""
+    """Run a coroutine in a new event loop, even if an event loop is already running in the calling thread."""
 
-    async def nothing() -> None: ...
+    async def do_nothing() -> None: ...
 
-    loop = EventLoopThread(nothing)
+    loop = EventLoopThread(do_nothing)
     try:
         return loop.call(work)
     finally:

@@ -1,4 +1,4 @@
-"""Function calling for other agents: the tool schemas in the format of an API, and the outcome of a call."""
+"""Function calling for other agents: tool schemas in the formats of several APIs, and the outcomes of calls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.errors import InputError, PerceptionError, ScopeError, ToolCallEr
 from scope_ptz.perception.models.encoding import encode
 from scope_ptz.planner.base import Picture, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.observations import observation
-from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.planner.chat.schemas import simplify_schemas
 from scope_ptz.planner.chat.strict import encodable
 from scope_ptz.planner.chat.written_calls import plain_name, read_arguments, unreadable_arguments
 from scope_ptz.tools.registry import schemas
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from PIL import Image
 
 SchemaForm = Literal["chat", "responses", "anthropic", "mcp"]
-"""An API for which the schemas can be returned. ``Scope.tool_schemas`` describes them."""
+"""The name of an API in whose format schemas can be returned, as described in ``Scope.tool_schemas``."""
 
 Arguments = Mapping[str, Any] | str | None
-"""The arguments of a call: an object, or the JSON text that a model sent. None and an empty text mean no arguments."""
+"""The arguments of a call: a mapping, or the JSON text from a model. None and an empty text mean no arguments."""
 
 REPORTED_ERRORS: tuple[type[ScopeError], ...] = (ToolCallError, UnknownNameError, PerceptionError, KeepOutError)
-"""Errors that a model can react to, for example with other arguments. ``dispatch`` returns them as text for the model."""
+"""Errors to which a model can react, for example with other arguments. ``dispatch`` returns them as text for the model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +40,11 @@ class ToolOutput:
     """The outcome of a tool call that a model made.
 
     Attributes:
-        text: the outcome for the model, as one line of JSON: what the tool found and the pose of the camera, or ``error``. Text
+        text: The outcome for the model, as one line of JSON: what the tool found and the pose of the camera, or ``error``. Text
             that perception reported is enclosed in ``<camera_text>``, so that the model can treat it as data.
-        result: the result of the tool, such as a ``CountResult``; None if the call failed.
-        error: the reason why the call failed; None if it succeeded.
-        pictures: the picture that ``take_image`` took, as a JPEG of at most 1280 pixels, for models that accept images.
+        result: The result of the tool, such as a ``CountResult``; None if the call failed.
+        error: The reason why the call failed; None if it succeeded.
+        pictures: The picture that ``take_image`` took, as a JPEG of at most 1280 pixels, for models that accept images.
             ``data_url`` contains the JPEG, and ``caption`` describes it.
     """
 
@@ -60,15 +60,15 @@ class ToolOutput:
 
 
 def schemas_in_form(form: SchemaForm) -> list[dict[str, Any]]:
-    """Return the schemas of the tools in the form that an API accepts.
+    """Return the tool schemas in the format that an API accepts.
 
     Raises:
-        InputError: the form is unknown.
+        InputError: The form is unknown.
     """
     if form not in get_args(SchemaForm):
         raise InputError(f"There is no schema form {form!r}. Use one of: {', '.join(get_args(SchemaForm))}.")
     # Clients of MCP validate against the constraints. Model servers may compile schemas to grammars, and refuse some keywords.
-    tools = schemas() if form == "mcp" else plain_schemas(schemas())
+    tools = schemas() if form == "mcp" else simplify_schemas(schemas())
     return tools if form == "chat" else [_in_form(form, **tool["function"]) for tool in tools]
 
 
@@ -79,14 +79,14 @@ def _in_form(form: SchemaForm, name: str, description: str, parameters: dict[str
     return {**named, "input_schema" if form == "anthropic" else "inputSchema": parameters}
 
 
-async def output_of_call(
+async def run_tool_call(
     run_tool: Callable[..., Awaitable[Result]], open_picture: Callable[[str], Image.Image], name: str, arguments: Arguments
 ) -> ToolOutput:
     """Run a tool call that a model made.
 
     Args:
-        run_tool: Runs a tool: ``run_tool(Result, name, **arguments)``.
-        open_picture: Opens the picture that ``take_image`` stored under a name. It is called in a worker thread.
+        run_tool: Function that runs a tool, called as ``run_tool(Result, name, **arguments)``.
+        open_picture: Function that opens a picture stored by ``take_image``, given its name. It is called in a worker thread.
         name: The name that the model sent.
         arguments: The arguments that the model sent.
 

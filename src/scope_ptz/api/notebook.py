@@ -1,4 +1,4 @@
-"""Notebook display of runs, scenes and results: HTML with embedded pictures, for light and dark themes."""
+"""Display runs, scenes and results in notebooks as HTML with embedded pictures, for light and dark themes."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ PICTURE_WIDTH = 1100  # pixels; wider pictures are scaled down to keep notebooks
 JPEG_QUALITY = 85
 MAX_CELL_CHARS = 300  # longer table cells are truncated
 
-_COLOURS = {"answered": "#2e9e5b", "clarification": "#c98a00", "refused": "#c98a00"}
-_FAILED = "#d5483b"
-_FAINT = "opacity:.65"
-_CELL = "text-align:left;vertical-align:top;padding:3px 14px 3px 0"
+_OUTCOME_COLOURS = {"answered": "#2e9e5b", "clarification": "#c98a00", "refused": "#c98a00"}
+_FAILURE_COLOUR = "#d5483b"
+_FAINT_STYLE = "opacity:.65"
+_CELL_STYLE = "text-align:left;vertical-align:top;padding:3px 14px 3px 0"
 
 
 def run_html(
@@ -25,20 +25,22 @@ def run_html(
     """Return a run as HTML: the answer, the filmstrip and a table of the tool calls.
 
     Args:
-        instruction: the instruction.
-        answer: the final text of the run.
-        outcome: the outcome, which determines the colour of the bar.
-        facts: short phrases about the planner, the perception backend and the duration.
-        filmstrip: the filmstrip, or a sentence that explains why there is none.
-        calls: step, tool, arguments, result and seconds of each tool call.
+        instruction: The instruction.
+        answer: The final text of the run.
+        outcome: The outcome, which determines the colour of the bar.
+        facts: Short phrases that state the planner, the perception backend and the duration.
+        filmstrip: The filmstrip, or a sentence that explains why there is none.
+        calls: Step, tool, arguments, result and seconds of each tool call.
     """
-    colour = _COLOURS.get(outcome, _FAILED)
+    colour = _OUTCOME_COLOURS.get(outcome, _FAILURE_COLOUR)
     parts = [
         f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0 10px">',
-        f'<div style="{_FAINT}">{escape(instruction)}</div>',
+        f'<div style="{_FAINT_STYLE}">{escape(instruction)}</div>',
         f'<div style="font-size:1.15em;font-weight:600">{escape(answer)}</div>',
-        f'<div style="{_FAINT};font-size:.85em">{escape(" · ".join((outcome.replace("_", " "), *facts)))}</div></div>',
-        f'<div style="{_FAINT}">{escape(filmstrip)}</div>' if isinstance(filmstrip, str) else picture_html(filmstrip, "filmstrip"),
+        f'<div style="{_FAINT_STYLE};font-size:.85em">{escape(" · ".join((outcome.replace("_", " "), *facts)))}</div></div>',
+        f'<div style="{_FAINT_STYLE}">{escape(filmstrip)}</div>'
+        if isinstance(filmstrip, str)
+        else picture_html(filmstrip, "filmstrip"),
     ]
     if calls:
         parts.append(_table(("step", "tool", "arguments", "result", "seconds"), calls))
@@ -46,7 +48,7 @@ def run_html(
 
 
 def card_html(title: str, rows: Iterable[Sequence[str]], picture: Image.Image) -> str:
-    """Return a card as HTML: a title, rows of a label and a text, and a picture."""
+    """Return a card as HTML: a title, rows of labels and values, and a picture."""
     heading = f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>'
     return _block([heading, _table((), rows), picture_html(picture, title)])
 
@@ -55,7 +57,7 @@ def table_html(title: str, header: Sequence[str], rows: Iterable[Sequence[str]],
     """Return a titled table as HTML."""
     parts = [f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>', _table(header, rows)]
     if note:
-        parts.append(f'<div style="{_FAINT};font-size:.85em;margin-top:6px">{escape(note)}</div>')
+        parts.append(f'<div style="{_FAINT_STYLE};font-size:.85em;margin-top:6px">{escape(note)}</div>')
     return _block(parts)
 
 
@@ -71,7 +73,7 @@ def picture_html(image: Image.Image, alt: str) -> str:
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    head = "".join(f'<th style="{_CELL};{_FAINT};font-weight:400">{escape(name)}</th>' for name in header)
+    head = "".join(f'<th style="{_CELL_STYLE};{_FAINT_STYLE};font-weight:400">{escape(name)}</th>' for name in header)
     body = "".join(f"<tr>{''.join(_cell(text, first=number == 0) for number, text in enumerate(row))}</tr>" for row in rows)
     top = f"<thead><tr>{head}</tr></thead>" if head else ""
     return f'<table style="border-collapse:collapse;margin:8px 0 0;font-size:.95em">{top}<tbody>{body}</tbody></table>'
@@ -80,7 +82,7 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def _cell(text: str, *, first: bool) -> str:
     truncated = text if len(text) <= MAX_CELL_CHARS else text[: MAX_CELL_CHARS - 1] + "…"
     nowrap = ";white-space:nowrap" if first else ""
-    return f'<td style="{_CELL}{nowrap}">{escape(truncated)}</td>'
+    return f'<td style="{_CELL_STYLE}{nowrap}">{escape(truncated)}</td>'
 
 
 def _block(parts: Iterable[str]) -> str:

@@ -55,41 +55,41 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
     about what it sees raise ``PerceptionError``.
 
     Args:
-        camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), a ``Camera`` object, or a camera on a
-            ``scope serve`` server ("http://host:8000/yard-gate"). With a server, the planner and perception run there, and you
-            can pass only ``pair`` and ``preset`` as well. The server's token comes from the environment variable SCOPE_TOKEN.
-        planner: name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
-        perception: name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
-        pair: a pair as "PLANNER+PERCEPTION", or the name of one model that does both.
-        viewpoint: the viewpoint in the scene at which the camera stands; that of the home preset by default.
-        preset: the preset to start at. It determines the viewpoint, so pass only one of the two.
-        time_s: scene time at the start, in seconds; the scene's own start time by default.
-        seed: seed for every random choice.
-        realtime: whether moves take as long as those of a real camera, and scene time follows the wall clock.
-        dry_run: plan and report moves, but make none: every frame shows the view at the start, and the results of moves state this.
-        runs_dir: folder in which each run creates a folder with its trace and pictures; by default, runs stay in memory.
-        max_steps: number of planner steps after which a run ends.
-        time_budget_s: seconds of wall-clock time after which a run ends; no limit by default.
-        token_budget: number of planner tokens after which a run ends; no limit by default.
-        planner_url: address of the planner's model server.
-        planner_model: the server's name for the planner.
-        planner_key_file: file that contains the API key of the planner's server.
-        planner_options: additional options of the planner, such as ``{"temperature": 0.2}``.
-        perception_url: address of the vision model's server.
-        perception_model: the server's name for the vision model.
-        perception_key_file: file that contains the API key of the vision model's server.
-        perception_options: additional options of the perception backend.
-        reader: name of an additional backend that reads text.
-        detector: name of an additional backend that detects objects.
-        timeout_s: seconds after which a request to a model server fails, including its retries.
+        camera: A scene ("highway-works"), any other camera spec ("blender:yard.blend"), a ``Camera`` object, or a camera on a
+            ``scope serve`` server ("http://host:8000/yard-gate"). The planner and perception then run on the server, and the
+            only other options are ``pair`` and ``preset``. The server's token is read from the environment variable SCOPE_TOKEN.
+        planner: Name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
+        perception: Name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
+        pair: A pair as "PLANNER+PERCEPTION", or the name of one model that does both.
+        viewpoint: The viewpoint in the scene at which the camera stands; that of the home preset by default.
+        preset: The preset to start at. It determines the viewpoint, so pass only one of the two.
+        time_s: Scene time at the start, in seconds; the scene's own start time by default.
+        seed: Seed for every random choice.
+        realtime: Whether moves take as long as those of a real camera, and scene time follows the wall clock.
+        dry_run: Plan and report moves without making them. Every frame shows the initial view, and results of moves state this.
+        runs_dir: Folder in which each run creates a folder with its trace and pictures; by default, runs stay in memory.
+        max_steps: Number of planner steps after which a run ends.
+        time_budget_s: Seconds of wall-clock time after which a run ends; no limit by default.
+        token_budget: Number of planner tokens after which a run ends; no limit by default.
+        planner_url: Address of the planner's model server.
+        planner_model: The server's name for the planner.
+        planner_key_file: File that contains the API key of the planner's server.
+        planner_options: Additional options of the planner, such as ``{"temperature": 0.2}``.
+        perception_url: Address of the vision model's server.
+        perception_model: The server's name for the vision model.
+        perception_key_file: File that contains the API key of the vision model's server.
+        perception_options: Additional options of the perception backend.
+        reader: Name of an additional backend that reads text.
+        detector: Name of an additional backend that detects objects.
+        timeout_s: Seconds after which a request to a model server fails, including its retries.
 
     Returns:
         An open session. Use it in a ``with`` statement, or call ``close`` at the end.
 
     Raises:
-        InputError: an option is invalid, or a name is unknown.
-        PackError: the files of a scene are damaged.
-        CameraError: the camera failed or did not answer.
+        InputError: An option is invalid, or a name is unknown.
+        PackError: The files of a scene are damaged.
+        CameraError: The camera failed or did not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
 
     Example:
@@ -136,7 +136,7 @@ def open_async(
         A session that is not open yet. Use it in an ``async with`` statement, or await it and call ``close`` at the end.
 
     Raises:
-        InputError: an option is invalid. The other errors of ``open`` are raised by ``async with`` or ``await``.
+        InputError: An option is invalid. The other errors of ``open`` are raised by ``async with`` or ``await``.
 
     Example:
         >>> import asyncio, scope_ptz

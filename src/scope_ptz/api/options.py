@@ -1,4 +1,4 @@
-"""The options of a session, which ``scope_ptz.open`` and ``scope_ptz.open_async`` accept."""
+"""The session options that ``scope_ptz.open`` and ``scope_ptz.open_async`` accept."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ StrPath = str | PathLike[str]
 
 @dataclass(frozen=True, slots=True)
 class ServedModels:
-    """Options for served models: addresses, served names, keys and request options. ``scope_ptz.open`` describes each of them."""
+    """Options for served models: addresses, served names, keys and request options, as described in ``scope_ptz.open``."""
 
     pair: str | None = None
     planner_url: str | None = None
@@ -37,14 +37,14 @@ class ServedModels:
     timeout_s: float | None = None
 
     def model_options(self, planner: Planner | str | None, perception: Perception | str | None) -> ModelOptions:
-        """Return the options in the form that the factory accepts.
+        """Convert the options to the form that the factory accepts.
 
         Args:
-            planner: a name, an object, or None for the default.
-            perception: a name, an object, or None for the default.
+            planner: A name, an object, or None for the default.
+            perception: A name, an object, or None for the default.
 
         Raises:
-            InputError: an object is combined with options that only apply to names.
+            InputError: An object is combined with options that apply only to names.
         """
         check_type("planner", planner, Planner)
         check_type("perception", perception, Perception)
@@ -94,7 +94,7 @@ class SessionOptions:
 
 
 def check_type(option: str, given: object, contract: type) -> None:
-    """Raise ``InputError`` unless an option is a name, None, or an instance of the contract's class."""
+    """Raise ``InputError`` unless the value of an option is a name, None, or an instance of ``contract``."""
     if not isinstance(given, str | contract | None):
         expected = (
             "an instance of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
@@ -107,5 +107,5 @@ def _path(given: StrPath | None) -> Path | None:
 
 
 def _pairs(options: Mapping[str, Any] | None) -> tuple[str, ...]:
-    """Return options as ``NAME=JSON`` strings. The factory parses them back to the same values."""
+    """Convert options to ``NAME=JSON`` strings, which the factory parses back to the same values."""
     return tuple(f"{name}={json.dumps(value)}" for name, value in (options or {}).items())

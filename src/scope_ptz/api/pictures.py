@@ -1,4 +1,4 @@
-"""Storage for the pictures of tool calls outside a run."""
+"""Store the pictures of tool calls outside runs."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class ToolCallImages(EncodedImages):
     """Stores pictures in memory, or in a folder that is created when the first picture is stored.
 
-    In memory, it stores only the pictures of ``take_image``. Storing the frames that perception receives would use too much memory
-    in a long session.
+    In memory, only the pictures taken by ``take_image`` are stored, because storing the frames for perception would use too much
+    memory in a long session.
     """
 
     def __init__(self, runs_dir: Path | None) -> None:

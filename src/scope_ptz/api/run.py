@@ -1,4 +1,4 @@
-"""A finished run, its tool calls, and the events of a run in progress."""
+"""Finished runs, their tool calls, and the events of runs in progress."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ EventKind = Literal["started", "decided", "called", "ended"]
 
 @dataclass(frozen=True, slots=True)
 class CallResult:
-    """A tool call of a run, with its result or its error.
+    """A tool call in a run, with its result or error.
 
     Attributes:
-        step: the planner step that made the call, counted from 1.
-        name: name of the tool.
-        arguments: the arguments that the planner passed.
-        result: the result of the tool as JSON data; None if the call failed.
-        error: the reason why the call failed; None if it succeeded.
-        fault: kind of failure: "bad_call", "perception", "camera", "skipped" or "cancelled"; None if the call succeeded.
-        pose: pose of the camera after the call.
-        duration_s: duration of the call in seconds of wall-clock time.
+        step: The planner step that made the call, counted from 1.
+        name: Name of the tool.
+        arguments: The arguments that the planner passed.
+        result: The result of the tool as JSON data; None if the call failed.
+        error: The reason why the call failed; None if it succeeded.
+        fault: Kind of failure: "bad_call", "perception", "camera", "skipped" or "cancelled"; None if the call succeeded.
+        pose: Pose of the camera after the call.
+        duration_s: Duration of the call in seconds of wall-clock time.
 
     Example:
         >>> import scope_ptz
@@ -75,7 +75,7 @@ class CallResult:
 
     @property
     def message(self) -> str:
-        """A sentence about the outcome: the message of the result, or the error if the call failed."""
+        """A sentence about the outcome: the result's message, or the error if the call failed."""
         return self.error if self.error is not None else str((self.result or {}).get("message", ""))
 
     def __str__(self) -> str:
@@ -84,7 +84,7 @@ class CallResult:
 
 
 class Run:
-    """A finished run: the answer, the steps that led to it, and its pictures. A notebook displays it as HTML.
+    """A finished run: the answer, the steps that led to it, and the pictures. A notebook displays it as HTML.
 
     ``Scope.ask`` returns runs, and ``Run.load`` reads one from a run folder.
 
@@ -103,16 +103,16 @@ class Run:
 
     @classmethod
     def load(cls, folder: str | PathLike[str]) -> Run:
-        """Read a run from a run folder, which ``scope ask`` and ``open(runs_dir=...)`` write.
+        """Read a run from a run folder, such as those created by ``scope ask`` and ``open(runs_dir=...)``.
 
         Args:
-            folder: the run folder, or the trace file in it.
+            folder: The run folder, or the trace file in it.
 
         Returns:
             The run.
 
         Raises:
-            TraceError: the trace is missing, damaged or incomplete.
+            TraceError: The trace is missing, damaged or incomplete.
         """
         trace = read_trace(Path(folder))
         if trace.ended is None:
@@ -146,12 +146,12 @@ class Run:
 
     @property
     def pose(self) -> Pose:
-        """Pose of the camera at the end."""
+        """Final pose of the camera."""
         return self._ended.pose.pose()
 
     @property
     def start(self) -> Pose:
-        """Pose of the camera at the start."""
+        """Initial pose of the camera."""
         return self._trace.started.pose.pose()
 
     @cached_property
@@ -194,7 +194,7 @@ class Run:
         """The whole run in one picture, drawn on first use.
 
         Raises:
-            TraceError: a picture of the run is missing or damaged.
+            TraceError: A picture of the run is missing or damaged.
         """
         from scope_ptz.agent.filmstrip import draw_filmstrip
 
@@ -216,13 +216,13 @@ class Run:
         """Open a stored picture.
 
         Args:
-            name: one of ``pictures``, or a name from the result of a call (``file`` of ``take_image``, or ``frames``).
+            name: One of ``pictures``, or a name from the result of a call (``file`` of ``take_image``, or ``frames``).
 
         Returns:
             The picture.
 
         Raises:
-            TraceError: there is no such picture.
+            TraceError: There is no such picture.
         """
         from scope_ptz.agent.filmstrip import open_picture
 
@@ -253,9 +253,9 @@ class Event:
 
     Attributes:
         kind: "started", "decided" (the planner chose tool calls or ended the run), "called" (a tool call finished) or "ended".
-        text: a description of the event.
-        call: the finished call of a "called" event; otherwise None.
-        run: the finished run of an "ended" event; otherwise None.
+        text: A description of the event.
+        call: The finished call of a "called" event; otherwise None.
+        run: The finished run of an "ended" event; otherwise None.
 
     Example:
         >>> import scope_ptz
@@ -278,8 +278,8 @@ class Event:
         return f"{self.kind:<8} {self.text}"
 
 
-def event_of(record: Started | Decided | Called) -> Event:
-    """Return the event for a trace record. The session creates the "ended" event itself, because it contains the finished run."""
+def create_event(record: Started | Decided | Called) -> Event:
+    """Create the event for a trace record. The session itself creates the "ended" event, which contains the finished run."""
     match record:
         case Started():
             return Event("started", record.instruction)
@@ -293,7 +293,7 @@ def event_of(record: Started | Decided | Called) -> Event:
 
 
 def _row(call: CallResult) -> tuple[str, str, str, str, str]:
-    """Return a call as a row of the table that a notebook shows."""
+    """Return the table row for a call in a notebook."""
     arguments = ", ".join(f"{name}={value}" for name, value in call.arguments.items())
     message = call.message if call.ok else f"failed: {call.message}"
     return str(call.step), call.name, arguments, message, f"{call.duration_s:.2f}"

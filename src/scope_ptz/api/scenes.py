@@ -1,4 +1,4 @@
-"""List and inspect scenes, models, and the schemas of the tools."""
+"""List and inspect scenes, models and tool schemas."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MAX_CATEGORIES = 10  # object categories listed in the notebook display of a sce
 
 
 class SceneInfo:
-    """A simulated scene: its viewpoints, presets and objects. In a notebook, it is shown with its contact sheet.
+    """A simulated scene with its viewpoints, presets and objects. A notebook displays it with its contact sheet.
 
     Example:
         >>> import scope_ptz
@@ -32,7 +32,7 @@ class SceneInfo:
 
     @property
     def name(self) -> str:
-        """Name of the scene, which ``scope_ptz.open`` accepts."""
+        """Name of the scene, which can be passed to ``scope_ptz.open``."""
         return self._scene.name
 
     @property
@@ -47,7 +47,7 @@ class SceneInfo:
 
     @property
     def presets(self) -> dict[str, str]:
-        """The viewpoint of each preset, by the preset's name."""
+        """The viewpoint of each preset, by preset name."""
         return {preset.name: preset.viewpoint for preset in self._scene.file.presets}
 
     @cached_property
@@ -59,7 +59,7 @@ class SceneInfo:
 
     @cached_property
     def contact_sheet(self) -> Image.Image:
-        """A picture with the views of all presets, drawn on first use."""
+        """A picture with the views at all presets, drawn on first use."""
         from scope_ptz.api.event_loop import run_in_thread
 
         return run_in_thread(self._draw)
@@ -95,13 +95,13 @@ class SceneInfo:
 
 
 def scenes() -> dict[str, SceneInfo]:
-    """Return all scenes by name: the built-in ones and those in the folder set by ``SCOPE_SCENES_DIR``.
+    """Return all scenes by name: the built-in scenes and those in the folder set by ``SCOPE_SCENES_DIR``.
 
     Returns:
         The scenes. Their pictures are loaded on first use.
 
     Raises:
-        PackError: the files of a scene are damaged.
+        PackError: The files of a scene are damaged.
 
     Example:
         >>> import scope_ptz
@@ -112,16 +112,16 @@ def scenes() -> dict[str, SceneInfo]:
 
 
 def models(role: Role | None = None) -> dict[str, Model]:
-    """Return the registered models by name: the built-in ones and those of the user's models file.
+    """Return the registered models by name: the built-in models and those in the user's models file.
 
     Args:
         role: "planner" or "perception" to select the models of one role; all models by default.
 
     Returns:
-        The models. ``model.memory_for()`` returns the memory in GB that is needed to serve a model.
+        The models. ``model.memory_for()`` returns the memory in GB for serving a model.
 
     Raises:
-        ConfigError: the user's models file is invalid.
+        ConfigError: The user's models file is invalid.
 
     Example:
         >>> import scope_ptz
@@ -136,7 +136,7 @@ def models(role: Role | None = None) -> dict[str, Model]:
 def tool_schemas() -> list[dict[str, Any]]:
     """Return the schemas of the nine tools in the OpenAI function format, as planners receive them.
 
-    ``Scope.tool_schemas`` returns them in the forms of several APIs, for function calling.
+    For function calling, ``Scope.tool_schemas`` returns the schemas in the formats of several APIs.
 
     Returns:
         One schema per tool.

@@ -89,15 +89,15 @@ class Scope:
         If the planner or the camera fails during the run, no exception is raised: ``Run.outcome`` reports the failure.
 
         Args:
-            instruction: what the camera should do, in plain language. It may refer to earlier instructions of the session.
+            instruction: What the camera should do, in plain language. It may refer to earlier instructions of the session.
 
         Returns:
             The finished run.
 
         Raises:
-            InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
-            PackError: the files of a scene are damaged.
-            CameraError: the camera failed before the first step.
+            InputError: The instruction is empty or too long, the session is closed or busy, or a file cannot be written.
+            PackError: The files of a scene are damaged.
+            CameraError: The camera failed before the first step.
             KeyboardInterrupt: Ctrl-C was pressed. The cancelled run is the last one in ``runs``.
 
         Example:
@@ -114,15 +114,15 @@ class Scope:
         The run starts when the first event is requested. Leaving the loop early cancels the run.
 
         Args:
-            instruction: what the camera should do, in plain language. It may refer to earlier instructions of the session.
+            instruction: What the camera should do, in plain language. It may refer to earlier instructions of the session.
 
         Yields:
             The events of the run. The last one contains the finished run in ``event.run``.
 
         Raises:
-            InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
-            PackError: the files of a scene are damaged.
-            CameraError: the camera failed before the first step.
+            InputError: The instruction is empty or too long, the session is closed or busy, or a file cannot be written.
+            PackError: The files of a scene are damaged.
+            CameraError: The camera failed before the first step.
 
         Example:
             >>> import scope_ptz
@@ -190,8 +190,8 @@ class Scope:
             The pose, with ``pan_deg``, ``tilt_deg`` and ``zoom``.
 
         Raises:
-            InputError: the session is closed.
-            CameraError: the camera failed.
+            InputError: The session is closed.
+            CameraError: The camera failed.
         """
         return self._call(self._session.pose)
 
@@ -202,8 +202,8 @@ class Scope:
             The frame. ``frame.image`` is an ``(H, W, 3)`` uint8 RGB array; a notebook displays the frame as a picture.
 
         Raises:
-            InputError: the session is closed.
-            CameraError: the camera failed.
+            InputError: The session is closed.
+            CameraError: The camera failed.
         """
         return self._call(self._session.frame)
 
@@ -211,13 +211,13 @@ class Scope:
         """Open a picture that ``take_image`` stored.
 
         Args:
-            name: name of the picture, which is the field ``file`` in the result of ``take_image``.
+            name: Name of the picture, which is the field ``file`` in the result of ``take_image``.
 
         Returns:
             The picture.
 
         Raises:
-            TraceError: there is no such picture.
+            TraceError: There is no such picture.
         """
         return self._session.picture(name)
 
@@ -245,17 +245,17 @@ class Scope:
         """Move the camera to an absolute pose.
 
         Args:
-            pan_deg: pan in degrees; positive is to the right of the camera's zero direction. Unchanged by default.
-            tilt_deg: tilt in degrees; 0 is the horizon, and positive is up. Unchanged by default.
-            zoom: magnification; 1 is the widest view. Unchanged by default.
+            pan_deg: Pan in degrees; positive is to the right of the camera's zero direction. Unchanged by default.
+            tilt_deg: Tilt in degrees; 0 is the horizon, and positive is up. Unchanged by default.
+            zoom: Magnification; 1 is the widest view. Unchanged by default.
 
         Returns:
             The pose reached, which is the nearest pose within the camera's limits.
 
         Raises:
-            InputError: a number is not finite, the zoom is not positive, or the session is closed or busy.
-            CameraError: the camera failed.
-            ScopeError: the call was cancelled.
+            InputError: A number is not finite, the zoom is not positive, or the session is closed or busy.
+            CameraError: The camera failed.
+            ScopeError: The call was cancelled.
         """
         return self._call(partial(self._session.move_to, pan_deg, tilt_deg, zoom))
 
@@ -270,20 +270,20 @@ class Scope:
         """Turn and zoom the camera relative to its current pose.
 
         Args:
-            pan_deg: degrees to turn right; negative turns left.
-            tilt_deg: degrees to turn up; negative turns down.
-            zoom_factor: factor by which the magnification is multiplied; 2.0 zooms in to twice the magnification.
-            zoom_percent: change of the magnification in percent; 50 multiplies it by 1.5.
+            pan_deg: Degrees to turn right; negative turns left.
+            tilt_deg: Degrees to turn up; negative turns down.
+            zoom_factor: Factor by which the magnification is multiplied; 2.0 zooms in to twice the magnification.
+            zoom_percent: Change of the magnification in percent; 50 multiplies it by 1.5.
             zoom_limit: "in" for the highest magnification, "out" for the lowest.
 
         Returns:
             The result: ``pose`` is the pose reached, and ``clamped`` lists the axes on which a limit stopped the camera.
 
         Raises:
-            ToolCallError: the arguments are invalid, for example more than one zoom argument.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
-            ScopeError: the call was cancelled.
+            ToolCallError: The arguments are invalid, for example more than one zoom argument.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
+            ScopeError: The call was cancelled.
 
         Example:
             >>> import scope_ptz
@@ -298,15 +298,15 @@ class Scope:
         """Go to a named preset view.
 
         Args:
-            name: one of the names that ``get_presets`` lists.
+            name: One of the names that ``get_presets`` lists.
 
         Returns:
             The result, with the ``pose`` reached and the name of the ``preset``.
 
         Raises:
-            UnknownNameError: there is no such preset.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            UnknownNameError: There is no such preset.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(partial(self._session.go_to_preset, name))
 
@@ -317,8 +317,8 @@ class Scope:
             The result, with the ``pose`` reached.
 
         Raises:
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(self._session.go_home)
 
@@ -329,8 +329,8 @@ class Scope:
             The result, with the names in ``presets``.
 
         Raises:
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(self._session.get_presets)
 
@@ -341,8 +341,8 @@ class Scope:
             The result, with the name of the picture in ``file``. ``picture(name)`` opens it.
 
         Raises:
-            InputError: the session is closed or busy, or the file cannot be written.
-            CameraError: the camera failed.
+            InputError: The session is closed or busy, or the file cannot be written.
+            CameraError: The camera failed.
         """
         return self._call(self._session.take_image)
 
@@ -350,17 +350,17 @@ class Scope:
         """Count the objects that match a description.
 
         Args:
-            description: what to count, for example "traffic cones".
+            description: What to count, for example "traffic cones".
             view: "current" for this view, "full" to sweep everything around the camera.
 
         Returns:
             The result: the ``count``, and the ``boxes`` of the objects. ``complete`` is False if the count is a lower bound.
 
         Raises:
-            PerceptionError: perception failed.
-            ToolCallError: the arguments are invalid.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            PerceptionError: Perception failed.
+            ToolCallError: The arguments are invalid.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
 
         Example:
             >>> import scope_ptz
@@ -374,17 +374,17 @@ class Scope:
         """Answer a question about the camera's view, for example about existence, colour, text, position or state.
 
         Args:
-            question: the question in plain language.
+            question: The question in plain language.
             view: "current" for this view, "full" to sweep everything around the camera.
 
         Returns:
             The result, with the ``answer``. ``known`` is False if the answer cannot be determined from the view.
 
         Raises:
-            PerceptionError: perception failed.
-            ToolCallError: the arguments are invalid.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            PerceptionError: Perception failed.
+            ToolCallError: The arguments are invalid.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(partial(self._session.query_answer, question, view))
 
@@ -392,16 +392,16 @@ class Scope:
         """Find an object in the current view, centre it and zoom in on it.
 
         Args:
-            description: what to zoom in on, for example "the white van".
+            description: What to zoom in on, for example "the white van".
 
         Returns:
             The result: ``found`` states whether the object was found, and ``fill`` is the fraction of the frame that it fills.
 
         Raises:
-            PerceptionError: perception failed.
-            ToolCallError: the arguments are invalid.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            PerceptionError: Perception failed.
+            ToolCallError: The arguments are invalid.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(partial(self._session.zoom_to_object, description))
 
@@ -409,36 +409,36 @@ class Scope:
         """Keep a moving object in the middle of the view for a given time.
 
         Args:
-            description: what to track, for example "the white van".
-            duration_s: duration in seconds of scene time, at most 600.
+            description: What to track, for example "the white van".
+            duration_s: Duration in seconds of scene time, at most 600.
 
         Returns:
             The result: ``path`` is the camera's path, and ``held_share`` is the fraction of the time during which the object was
             seen.
 
         Raises:
-            PerceptionError: perception failed.
-            ToolCallError: the arguments are invalid.
-            InputError: the session is closed or busy.
-            CameraError: the camera failed.
+            PerceptionError: Perception failed.
+            ToolCallError: The arguments are invalid.
+            InputError: The session is closed or busy.
+            CameraError: The camera failed.
         """
         return self._call(partial(self._session.track_object, description, duration_s))
 
     def tool_schemas(self, form: SchemaForm = "chat") -> list[dict[str, Any]]:
-        """Return the schemas of the tools, to offer them to a model.
+        """Return the tool schemas, to offer the tools to a model.
 
-        Except for "mcp", the schemas contain no keywords that some model servers refuse, such as patterns. ``dispatch`` checks
+        Except for "mcp", the schemas do not contain keywords that some model servers reject, such as patterns. ``dispatch`` checks
         every call.
 
         Args:
-            form: the API: "chat" for OpenAI chat completions, "responses" for OpenAI responses, "anthropic" for Anthropic
+            form: The API: "chat" for OpenAI chat completions, "responses" for OpenAI responses, "anthropic" for Anthropic
                 messages, "mcp" for the Model Context Protocol.
 
         Returns:
             One schema per tool.
 
         Raises:
-            InputError: the form is unknown.
+            InputError: The form is unknown.
 
         Example:
             >>> import scope_ptz
@@ -456,17 +456,17 @@ class Scope:
         agent frameworks send them, run one after the other.
 
         Args:
-            name: name of the tool, as the model sent it.
-            arguments: the arguments as a dictionary, or as the JSON text that the model sent.
+            name: Name of the tool, as the model sent it.
+            arguments: The arguments as a dictionary, or as the JSON text that the model sent.
 
         Returns:
             The outcome: ``text`` for the model, ``ok``, and either the ``result`` as an object or the ``error``. ``pictures``
             contains the picture that ``take_image`` took, with its ``caption`` and ``data_url``.
 
         Raises:
-            InputError: the session is closed or busy, or the picture cannot be written.
-            CameraError: the camera failed.
-            ScopeError: the call was cancelled.
+            InputError: The session is closed or busy, or the picture cannot be written.
+            CameraError: The camera failed.
+            ScopeError: The call was cancelled.
 
         Example:
             >>> import scope_ptz
@@ -480,7 +480,7 @@ class Scope:
         return self._call(partial(self._session.dispatch, name, arguments))
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method that calls a registered tool for which this class defines no method."""
+        """Return a method that calls a registered tool for which this class has no method."""
         if name in TOOLS:
 
             def run_tool(**arguments: Any) -> Result:

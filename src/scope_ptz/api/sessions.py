@@ -1,4 +1,4 @@
-"""Create a session for a camera: a local session, or one with a camera on a server."""
+"""Create a session with a local camera or a camera on a server."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from scope_ptz.api.options import SessionOptions
 
 
 def new_session(options: SessionOptions) -> AsyncScope:
-    """Return a session that is not open yet. A camera spec that begins with http:// or https:// names a camera on a server."""
+    """Create a session that is not open yet. A camera spec that begins with http:// or https:// names a camera on a server."""
     if isinstance(options.camera, str) and options.camera.strip().lower().startswith(("http://", "https://")):
         from scope_ptz.api.remote.session import RemoteSession
 

@@ -26,10 +26,10 @@ HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom;
   skip          quit                                    leave this task for later; end the session"""
 
 Ask = Callable[[str], str]
-"""Shows a prompt to the person and returns the typed line. Raises ``EOFError`` at the end of the input."""
+"""Function that shows a prompt to the person and returns the typed line. Raises ``EOFError`` at the end of the input."""
 T = TypeVar("T")
 _FINAL_REPLIES = {"answer": "answered", "question": "clarification", "refuse": "refused"}
-"""Commands that end a task, and the outcomes that they record."""
+"""The outcomes recorded by the commands that end a task."""
 
 
 class TaskLeftError(Exception):
@@ -41,7 +41,7 @@ class TaskLeftError(Exception):
 
 
 def parse(line: str) -> ToolCall | Finish | None:
-    """Parse a typed line into a call or a final reply; return None if it is a request for help.
+    """Parse a typed line as a tool call or a final reply. Return None if the line is a request for help.
 
     Raises:
         TaskLeftError: The line is ``skip`` or ``quit``.
@@ -51,7 +51,7 @@ def parse(line: str) -> ToolCall | Finish | None:
     verb, rest = verb.lower(), rest.strip()
     if verb in _FINAL_REPLIES:
         if not rest:
-            raise InputError(f"'{verb}' must be followed by a text.")
+            raise InputError(f"'{verb}' must be followed by text.")
         return Finish(kind=_FINAL_REPLIES[verb], text=rest)  # type: ignore[arg-type]
     if verb in ("skip", "quit"):
         raise TaskLeftError(ends_session=verb == "quit")
@@ -62,7 +62,7 @@ def parse(line: str) -> ToolCall | Finish | None:
 
 
 def _tool_call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
-    """Return the tool and the arguments of a command."""
+    """Return the tool name and arguments for a command."""
     without_arguments = {"home": "go_home", "presets": "get_presets", "picture": "take_image"}
     if verb in without_arguments and not rest:
         return without_arguments[verb], {}
@@ -87,9 +87,9 @@ def _tool_call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
 
 
 def _turn_arguments(words: list[str]) -> dict[str, Any]:
-    """Parse ``pan 20 tilt -5 zoom 2`` as arguments of ``adjust_ptz``."""
+    """Parse a command such as ``pan 20 tilt -5 zoom 2`` as arguments for ``adjust_ptz``."""
     if len(words) % 2:
-        raise InputError("An amount is missing. Examples: pan 20, tilt -5, zoom 2, zoom in.")
+        raise InputError("A value is missing. Examples: pan 20, tilt -5, zoom 2, zoom in.")
     arguments: dict[str, Any] = {}
     for axis, amount in zip(words[::2], words[1::2], strict=True):
         if axis == "zoom" and amount in ("in", "out"):
@@ -97,7 +97,7 @@ def _turn_arguments(words: list[str]) -> dict[str, Any]:
         elif axis in ("pan", "tilt", "zoom"):
             arguments["zoom_factor" if axis == "zoom" else f"{axis}_deg"] = _number(amount)
         else:
-            raise InputError(f"Each amount must follow pan, tilt or zoom; got '{axis}'.")
+            raise InputError(f"Each value must follow pan, tilt or zoom; got '{axis}'.")
     return arguments
 
 
@@ -122,7 +122,7 @@ class HumanPlanner(Planner):
     """A planner that shows the view and the latest results to a person, and returns the calls that the person types.
 
     Attributes:
-        left: The error that records how the person left the task; None if the person did not leave it.
+        exit_error: The error that states how the person left the task unfinished; None if the person did not.
     """
 
     sees = True
@@ -131,7 +131,7 @@ class HumanPlanner(Planner):
         self, name: str, camera: Camera, viewer: Viewer, perception: HumanPerception, ask: Ask, tell: Callable[[str], None]
     ) -> None:
         self.name, self._camera, self._viewer, self._perception, self._ask, self._tell = name, camera, viewer, perception, ask, tell
-        self.left: TaskLeftError | None = None
+        self.exit_error: TaskLeftError | None = None
 
     async def step(self, state: State) -> Decision:
         for outcome in state.history[-1].outcomes if state.history else ():
@@ -146,15 +146,15 @@ class HumanPlanner(Planner):
             except InputError as error:
                 self._tell(f"  {error}")
                 continue
-            except (TaskLeftError, EOFError) as left:
-                self.left = left if isinstance(left, TaskLeftError) else TaskLeftError(ends_session=True)
+            except (TaskLeftError, EOFError) as error:
+                self.exit_error = error if isinstance(error, TaskLeftError) else TaskLeftError(ends_session=True)
                 return Finish(kind="refused", text="left")
             if isinstance(command, Finish):
                 return command
             if command is None:
                 self._tell(HELP)
                 continue
-            self._perception.counts = command.name == "count_objects"
+            self._perception.is_counting = command.name == "count_objects"
             return CallTools(calls=(command.model_copy(update={"id": f"call-{len(state.history) + 1}"}),))
 
 
@@ -162,12 +162,12 @@ class HumanPerception(Perception):
     """A perception backend that asks a person.
 
     Attributes:
-        counts: Whether the next detection is for counting. If so, the person enters a number instead of a box.
+        is_counting: Whether the next detection is for counting. If so, the person enters a number instead of a box.
     """
 
     def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:
         self.name, self._viewer, self._ask, self._tell = name, viewer, ask, tell
-        self.counts = False
+        self.is_counting = False
         self._last_box = ""
 
     async def caption(self, frame: Frame) -> Caption:
@@ -184,7 +184,7 @@ class HumanPerception(Perception):
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         start_s = time.perf_counter()
-        if self.counts:
+        if self.is_counting:
             number = await self._ask_until_valid(frame, f"How many: {description}?", _whole_number)
             boxes = (Box(x_min=0, y_min=0, x_max=1, y_max=1, label="counted, place not asked"),) * number
         else:

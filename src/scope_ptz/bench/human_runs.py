@@ -1,4 +1,4 @@
-"""The human baseline: runs by people, with the same checks and the same records as runs by models."""
+"""The human baseline: score and store runs by people with the same checks and records as runs by models."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from scope_ptz.errors import InputError, OutputError, TraceError
 from scope_ptz.simulator.models import SceneFile
 from scope_ptz.version import __version__
 
-RESULT = "evaluation.json"
-"""File name of the result of a session."""
+RESULT_FILE = "evaluation.json"
+"""File name for the result of a session."""
 DIGEST_CHARS = 16
-"""Length of the digest of the tasks, in hexadecimal characters."""
+"""Length of the tasks' digest in hexadecimal characters."""
 
 
 def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """Return the run card of a session by the person named ``by``, who is both planner and perception."""
+    """Create the run card for a session by a person, who is both planner and perception. ``by`` is the person's name."""
     person = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
@@ -47,7 +47,7 @@ def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max
 
 
 def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
-    """Score a finished run by the task's checks. The person saw the camera's view before every decision."""
+    """Score a finished run with the task's checks. The person saw the camera's view before every decision."""
     episode = episode_of(trace, PresetViewpoints.of(scene), planner_sees=True)
     verdict, ended = score_episode(task, episode), trace.ended
     viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
@@ -89,7 +89,7 @@ class StoredHumanRun:
 
 
 def open_run(result: Path, sample: str) -> StoredHumanRun:
-    """Open a run by its name (``Trial.sample``). Its folder is next to the result file.
+    """Open a run by name (``Trial.sample``). The run folder is next to the result file.
 
     Raises:
         TraceError: The run cannot be read, or its name refers to a path outside the folder.
@@ -106,7 +106,7 @@ def write_result(evaluation: Evaluation, folder: Path) -> Path:
     Raises:
         OutputError: The file cannot be written.
     """
-    path, new_file = folder / RESULT, folder / f"{RESULT}.new"
+    path, new_file = folder / RESULT_FILE, folder / f"{RESULT_FILE}.new"
     try:
         new_file.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
         new_file.replace(path)

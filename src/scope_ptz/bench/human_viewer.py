@@ -1,4 +1,4 @@
-"""Show pictures to a person, as files and inline in terminals that support it."""
+"""Show pictures to a person, as files and inline in terminals that support inline pictures."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from scope_ptz.settings import InlineProtocol
 
 JPEG_QUALITY = 92
 _KITTY_CHUNK_CHARS = 4096
-"""Maximum length of a chunk of data in kitty's protocol, in characters."""
+"""Maximum length in characters of a data chunk in kitty's graphics protocol."""
 _GRID_PERCENT = range(10, 100, 10)
-"""Positions of the grid lines as percentages of the width and height."""
+"""Positions of the grid lines, in percent of the width or height."""
 
 
 class Viewer:
@@ -27,7 +27,7 @@ class Viewer:
     Args:
         folder: Folder for the pictures.
         terminal: The terminal; None to write only files.
-        inline: The terminal's protocol for inline pictures; None if it has none.
+        inline: The terminal's protocol for inline pictures; None if it does not support them.
     """
 
     def __init__(self, folder: Path, terminal: IO[str] | None, inline: InlineProtocol | None) -> None:
@@ -35,11 +35,11 @@ class Viewer:
         self._shown = 0
 
     def show(self, frame: Frame, *, grid: bool = False) -> Path:
-        """Show a frame and return the path of its file.
+        """Show a frame, and return the path of its file.
 
         Args:
             frame: The frame.
-            grid: Whether to draw a line at every tenth of its width and height.
+            grid: Whether to draw grid lines at every tenth of the width and height.
 
         Raises:
             OutputError: The file cannot be written.
@@ -48,7 +48,7 @@ class Viewer:
         path = self._folder / f"{self._shown:03d}.jpg"
         image = Image.fromarray(frame.image)
         if grid:
-            image = _with_grid(image)
+            image = _draw_grid(image)
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             image.save(path, quality=JPEG_QUALITY)
@@ -60,7 +60,7 @@ class Viewer:
         return path
 
 
-def _with_grid(image: Image.Image) -> Image.Image:
+def _draw_grid(image: Image.Image) -> Image.Image:
     canvas = Canvas(image.width, image.height)
     canvas.picture(image, 0, 0, image.width, image.height, radius=0)
     for percent in _GRID_PERCENT:
@@ -73,7 +73,7 @@ def _with_grid(image: Image.Image) -> Image.Image:
 
 
 def inline_sequence(frame: Frame, inline: InlineProtocol) -> str:
-    """Return the escape sequence with which a terminal shows a frame at half its size."""
+    """Return the escape sequence that shows a frame in a terminal at half its size."""
     small = cv2.resize(cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     suffix = ".png" if inline == "kitty" else ".jpg"
     _, encoded = cv2.imencode(suffix, small)

@@ -1,7 +1,7 @@
-"""Run programs of tool calls with the real tools and the simulated camera, in memory.
+"""Run programs, which are sequences of tool calls, with the real tools and a simulated camera, in memory.
 
-The caller provides the perception backend and the image store. Frames are blank, which is sufficient for backends that use the
-ground truth.
+The caller provides the perception backend and the image store. Frames are blank, which is sufficient for perception backends that
+use the ground truth.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 
 MakeToolContext = Callable[[Camera], ToolContext]
-"""Creates the tool context for a camera, with perception and an image store."""
+"""Function that creates the tool context for a camera, with perception and an image store."""
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera with blank frames, so that no time is spent on rendering. Each frame records its origin."""
+    """A simulated camera that does not render: its frames are blank, but contain their origin."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)
@@ -55,18 +55,18 @@ class ProgramRunner:
 
     Args:
         scene: The scene.
-        make_context: Creates the tool context for the camera.
-        geometry: Size and lens of the frames.
+        make_context: Function that creates the tool context for the camera.
+        geometry: The geometry of the frames.
     """
 
     def __init__(self, scene: Scene, make_context: MakeToolContext, geometry: FrameGeometry) -> None:
         self.scene, self.make_context, self.geometry = scene, make_context, geometry
 
     async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
-        """Run a program from the start of a task. The program continues after a failed call.
+        """Run a program at the start position of a task. The program continues after a failed call.
 
         Args:
-            task: The task, which defines the preset and the scene time at the start.
+            task: The task, which defines the start preset and the start time.
             program: The calls in order.
             text: The final answer to record for the run.
             outcome: The outcome to record for the run.
@@ -82,12 +82,12 @@ class ProgramRunner:
 
 
 class EpisodeRecorder:
-    """Makes tool calls one at a time and records them as an episode.
+    """Makes tool calls one at a time, and records them as an episode.
 
     Attributes:
-        position: The camera's present viewpoint and pose.
+        position: The camera's current viewpoint and pose.
         calls: The calls in order.
-        planner_views: The frames that the agent was shown.
+        planner_views: The frames that were shown to the agent.
     """
 
     def __init__(
@@ -103,18 +103,18 @@ class EpisodeRecorder:
     async def begin(
         cls, instruction: str, camera: SimulatedCamera, context: ToolContext, geometry: FrameGeometry
     ) -> EpisodeRecorder:
-        """Start an episode at the camera's present position.
+        """Start an episode at the camera's current position.
 
         Args:
             instruction: The instruction to record.
             camera: The camera.
-            context: The context of the tool calls.
-            geometry: Size and lens of the frames that the tools take.
+            context: The context for the tool calls.
+            geometry: The geometry of the frames that the tools take.
         """
         return cls(instruction, camera, context, geometry, CameraPosition(camera.viewpoint, await camera.pose()))
 
     async def call(self, name: str, arguments: Mapping[str, Any]) -> EpisodeCall:
-        """Make a tool call and record it. A wrong call and a failure of perception become the error of the recorded call."""
+        """Make and record a tool call. If the call is invalid or perception fails, the record contains the error."""
         time_s, before = self._camera.clock.now_s(), self.position
         result, error, fault = None, None, None
         try:
@@ -124,14 +124,14 @@ class EpisodeRecorder:
         except PerceptionError as exception:
             error, fault = str(exception), "perception"
         self.position = CameraPosition(self._camera.viewpoint, await self._camera.pose())
-        call = with_observations(EpisodeCall(name, arguments, before, self.position, result, error, fault, time_s), self._geometry)
+        call = add_observations(EpisodeCall(name, arguments, before, self.position, result, error, fault, time_s), self._geometry)
         self.calls.append(call)
         if result is not None and name == "take_image":
             self._pictures.append(SavedPicture(str(result["file"])))
         return call
 
     def episode(self, text: str, outcome: str | None) -> Episode:
-        """Return the episode so far.
+        """Return the episode recorded so far.
 
         Args:
             text: The final answer to record.
@@ -143,8 +143,8 @@ class EpisodeRecorder:
         )  # fmt: skip
 
 
-def with_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:
-    """Return a call with its observations added."""
+def add_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:
+    """Return a copy of a call that includes its observations."""
     observations = observations_of(call, geometry) if call.succeeded else ()
     return EpisodeCall(
         call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, observations

@@ -1,1 +1,1 @@
-"""Blender, as used by the main program: its environment, the client of the worker process, and the baking of viewpoint packs."""
+"""Use Blender from the main program: its environment, the client for the worker process, and baking of viewpoint packs."""

@@ -1,4 +1,4 @@
-"""Build the installable file of the add-on for Blender."""
+"""Build the installable zip file for the Blender add-on."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from pathlib import Path
 from scope_ptz.errors import BlenderError, OutputError
 
 PACKAGE = "scope_addon"
-_DATE = (1980, 1, 1, 0, 0, 0)  # the same for all files, so that the same sources give the same zip file
+_DATE = (1980, 1, 1, 0, 0, 0)  # fixed, so that identical sources give identical zip files
 
 
 def addon_folder() -> Path:
-    """Return the folder of the add-on's sources without importing them.
+    """Return the folder that contains the add-on's sources, without importing them.
 
     Raises:
-        BlenderError: They are not installed.
+        BlenderError: The sources are not installed.
     """
     spec = importlib.util.find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise BlenderError("The sources of the add-on are not installed. Install scope-ptz again.")
+        raise BlenderError("The add-on's sources are not installed. Install scope-ptz again.")
     return Path(next(iter(spec.submodule_search_locations)))
 
 
 def addon_zip() -> bytes:
-    """Return the zip file of the add-on. Blender 3.4 to 4.1 installs it as an add-on, and 4.2 or later as an extension.
+    """Return the add-on's zip file. Blender 3.4 to 4.1 installs it as an add-on, and 4.2 or later as an extension.
 
     Raises:
-        BlenderError: The sources of the add-on are not installed.
+        BlenderError: The add-on's sources are not installed.
     """
     folder, content = addon_folder(), BytesIO()
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".py", ".toml"))
@@ -43,7 +43,7 @@ def addon_zip() -> bytes:
 
 
 def write_addon_zip(path: Path) -> None:
-    """Write the zip file of the add-on.
+    """Write the add-on's zip file.
 
     Raises:
         OutputError: The file cannot be written.

@@ -1,4 +1,4 @@
-"""Baking of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
+"""Bake a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.extents import extents
 from scope_ptz.blender.keyframes import Keyframe, keyframes
-from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, weight_bytes, write_pack
+from scope_ptz.blender.pack_writer import RenderedActor, RenderedTile, RenderedViewpoint, folder_size_bytes, write_pack
 from scope_ptz.blender.panorama import render_base
 from scope_ptz.blender.part_cache import PartCache, Progress
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, WIDER_DENSITY_PX_PER_DEG, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.tiles import busiest, cover, covers, join_in_rows, most_useful, targets
+from scope_ptz.blender.tiles import busiest_cells, cover, covers, join_in_rows, select_most_useful, targets
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
@@ -32,32 +32,30 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Number of views that are compared with live renders at the end of a bake, and the seed for their poses.
-
-The number is per viewpoint and zoom level: widest and zoomed in.
-"""
+"""Number of views to compare with live renders at the end of a bake, per viewpoint and zoom level (widest and zoomed in), and the
+seed for their poses."""
 
 
 @dataclass(frozen=True, slots=True)
 class BakedViewpoint:
-    """The baked pack of one viewpoint.
+    """One viewpoint's baked pack.
 
     Attributes:
         folder: The viewpoint folder.
-        weight_bytes: Total size of its files.
+        size_bytes: Total size of the folder's files.
         tiles: Number of tiles.
         uncovered: Ids of the targets (texts and small instances) that the tiles do not cover completely.
     """
 
     folder: Path
-    weight_bytes: int
+    size_bytes: int
     tiles: int
     uncovered: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class BakeResult:
-    """The result of a bake: the packs of a scene, and their comparison with live renders."""
+    """The result of a bake: a scene's packs, and their comparison with live renders."""
 
     packs: tuple[BakedViewpoint, ...]
     reports: tuple[PoseReport, ...]
@@ -75,19 +73,19 @@ def bake(
 ) -> BakeResult:
     """Bake a scene into a folder.
 
-    At the end, every file is checked against its checksum and some views are compared with live renders.
+    At the end, every file's checksum is verified, and some views are compared with live renders.
 
     Args:
-        source: A scene of ``scope_studio.scenes``, or the path of a Python file with ``build(stage)``.
+        source: A scene in ``scope_studio.scenes``, or the path of a Python file that defines ``build(stage)``.
         out_dir: The scene's folder, which must have the scene's name.
         quality: The quality settings.
         command: The command that starts the Blender worker.
-        cache_dir: The folder for the cached parts of unfinished bakes.
+        cache_dir: The folder for cached parts of unfinished bakes.
         viewpoints: Names of the viewpoints to bake; None bakes all.
         progress: Called after every step.
 
     Raises:
-        BlenderError: Blender fails, or the folder does not have the name of the scene.
+        BlenderError: Blender fails, or the folder does not have the scene's name.
         UnknownNameError: The scene has no such viewpoint.
     """
     key = scene_key(source)
@@ -100,7 +98,7 @@ def bake(
         step()
         scene = scene_file(description, key.rsplit("-", 1)[1])
         if out_dir.name != scene.name:
-            raise BlenderError(f"The folder must have the name of the scene: bake to '{out_dir.with_name(scene.name)}'.")
+            raise BlenderError(f"The folder must have the scene's name: bake to '{out_dir.with_name(scene.name)}'.")
         known = {v.name: v for v in scene.viewpoints}
         names = list(known) if viewpoints is None else list(viewpoints)
         for name in names:
@@ -120,7 +118,7 @@ def bake(
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
-    """Return the scene file for the worker's description of a scene.
+    """Create a scene file from the worker's description of a scene.
 
     Raises:
         BlenderError: The description is not a valid scene.
@@ -148,30 +146,32 @@ class _Baker:
     def bake_viewpoint(self, viewpoint: SceneViewpoint, folder: Path) -> BakedViewpoint:
         quality, name = self._quality, viewpoint.name
         wide = Panorama.of(quality.ids_width, self._band)
-        ids, _ = self._truth(name, "ids", panorama_request(wide.projection))
+        ids, _ = self._render_truth(name, "ids", panorama_request(wide.projection))
         coarse = Panorama.of(quality.depth_width, self._band)
-        _, metres = self._truth(name, "depth", panorama_request(coarse.projection))
-        silhouettes = self._extents(viewpoint)
+        _, metres = self._render_truth(name, "depth", panorama_request(coarse.projection))
+        silhouettes = self._measure_extents(viewpoint)
         panorama = Panorama.of(quality.base_width, self._band)
         base = render_base(self._worker, self._cache, name, panorama, quality.base_samples)
         tile_targets = targets(self._scene, viewpoint, ids, wide.projection)
         views = [
             cell.view(quality.tile_density_px_per_deg)
-            for cell in join_in_rows(most_useful(cover(tile_targets), tile_targets, quality.max_cells))
+            for cell in join_in_rows(select_most_useful(cover(tile_targets), tile_targets, quality.max_cells))
         ]
-        tiles = self._tiles(name, "tiles", views)
+        tiles = self._render_tiles(name, "tiles", views)
         if quality.wider_tiles:
-            busiest_cells = busiest(ids, wide.projection, quality.wider_tiles)
-            tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busiest_cells])
-        actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
+            wider_cells = busiest_cells(ids, wide.projection, quality.wider_tiles)
+            tiles += self._render_tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in wider_cells])
+        actors = [a for actor in self._scene.actors if (a := self._render_actor(viewpoint, actor)) is not None]
         rendered = RenderedViewpoint(
             panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes
         )
         manifest = write_pack(folder, self._scene, viewpoint, rendered, quality, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
         uncovered = tuple(t.name for t in tile_targets if not covers(views, t))
-        return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)
+        return BakedViewpoint(folder, folder_size_bytes(folder), len(manifest.tiles), uncovered)
 
-    def _truth(self, viewpoint: str, part: str, projection: dict[str, Any]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+    def _render_truth(
+        self, viewpoint: str, part: str, projection: dict[str, Any]
+    ) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
         def produce(path: Path) -> None:
             step = self._cache.steps(f"{viewpoint}/{part}", 1)
             self._worker.request("truth", {"viewpoint": viewpoint, "projection": projection, "out": str(path)})
@@ -180,7 +180,7 @@ class _Baker:
         with np.load(self._cache.part(f"{viewpoint}/truth", ".npz", projection, produce)) as file:
             return file["ids"], file["depth"]
 
-    def _colour(self, viewpoint: str, part: str, view: Perspective, samples: int) -> NDArray[np.uint8]:
+    def _render_colour(self, viewpoint: str, part: str, view: Perspective, samples: int) -> NDArray[np.uint8]:
         projection = perspective_request(view)
 
         def produce(path: Path) -> None:
@@ -189,7 +189,7 @@ class _Baker:
 
         return read_colour(self._cache.part(part, ".png", {"projection": projection, "samples": samples}, produce))
 
-    def _extents(self, viewpoint: SceneViewpoint) -> list[Extent]:
+    def _measure_extents(self, viewpoint: SceneViewpoint) -> list[Extent]:
         def dump(path: Path) -> None:
             self._worker.request("meshes", {"out": str(path)})
 
@@ -202,26 +202,26 @@ class _Baker:
         file = self._cache.part(f"{viewpoint.name}/extents", ".json", place, measure)
         return [Extent.model_validate(e) for e in json.loads(file.read_text())]
 
-    def _tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
+    def _render_tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
         step = self._cache.steps(f"{viewpoint}/{part}", len(views))
         tiles = []
         for view in views:
-            colour = self._colour(viewpoint, f"{viewpoint}/tile", view, self._quality.tile_samples)
-            ids, _ = self._truth(viewpoint, "tile ids", perspective_request(view))
+            colour = self._render_colour(viewpoint, f"{viewpoint}/tile", view, self._quality.tile_samples)
+            ids, _ = self._render_truth(viewpoint, "tile ids", perspective_request(view))
             tiles.append(RenderedTile(view, colour, ids))
             step()
         return tiles
 
-    def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
+    def _render_actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
         quality, stride_m = self._quality, self._strides[actor.id]
         limit = quality.max_sprites * 3 // 2 if stride_m else quality.max_sprites
         frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, limit)
         if not frames:
             return None
-        folder = self._sprite_folder(viewpoint.name, actor, frames)
+        folder = self._render_sprites(viewpoint.name, actor, frames)
         return RenderedActor(actor.number, make_sheet(frames, folder), stride_m)
 
-    def _sprite_folder(self, viewpoint: str, actor: SceneActor, frames: list[Keyframe]) -> Path:
+    def _render_sprites(self, viewpoint: str, actor: SceneActor, frames: list[Keyframe]) -> Path:
         requests = [f.request() for f in frames]
         samples = self._quality.sprite_samples
 

@@ -1,4 +1,4 @@
-"""The band of the sphere that a camera can see, and the strips in which its panorama is rendered."""
+"""The band of the sphere that a camera can see, and the strips in which the panorama is rendered."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from scope_ptz.geometry import Equirectangular, Limits, Optics, Perspective, pan
 from scope_ptz.simulator.models import Band
 
 ASPECTS = (16 / 9, 4 / 3)
-"""Aspect ratios of the frames that a pack must cover."""
+"""Aspect ratios of frames that a pack must cover."""
 
 MARGIN_DEG = 0.8  # added to the band at the top and the bottom
 POLE_DEG = 7.0
-"""A band that ends within this angle of a pole is extended to the pole."""
+"""A band that ends within this angle, in degrees, of a pole is extended to the pole."""
 
 
 def reachable_band(limits: Limits, optics: Optics) -> Band:
-    """Return the range of tilts that the frames of a camera can show."""
+    """Return the range of tilts that a camera's frames can show."""
     tops, bottoms = [], []
     hfov_deg = optics.hfov_deg(limits.min_zoom)
     side = np.linspace(0.0, 1.0, 33)
@@ -49,7 +49,7 @@ class Strip:
 
 @dataclass(frozen=True, slots=True)
 class Panorama:
-    """The size and the band of a panorama. The band has whole degrees, and each pixel spans equal angles in pan and tilt."""
+    """A panorama's size and band. The band ends at whole degrees, and each pixel spans equal angles in pan and tilt."""
 
     width: int
     height: int
@@ -57,7 +57,7 @@ class Panorama:
 
     @classmethod
     def of(cls, width: int, band: Band) -> Panorama:
-        """Return a panorama of a given width that covers a band. The band is extended to whole degrees."""
+        """Return a panorama with a given width that covers a band. The band is extended to whole degrees."""
         top = min(90.0, float(math.ceil(band.top_tilt_deg)))
         bottom = max(-90.0, float(math.floor(band.bottom_tilt_deg)))
         height = round((top - bottom) / 360.0 * width)

@@ -1,4 +1,4 @@
-"""The client of a Blender worker process."""
+"""The client for a Blender worker process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import IO, Any
 
 from scope_ptz.errors import BlenderError
 
-MARK = "@scope "  # prefix of the lines of the worker's output that are replies
+REPLY_PREFIX = "@scope "  # prefix of reply lines in the worker's output
 START_TIMEOUT_S = 120.0
 QUIT_TIMEOUT_S = 10.0
 Progress = Callable[[int, int], None]
@@ -70,16 +70,16 @@ class BlenderWorker:
         if self._process.stdout is not None:
             self._listener = threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True)
             self._listener.start()
-        self.version = str(self._next(time.monotonic() + START_TIMEOUT_S, "start").get("hello", ""))
+        self.version = str(self._next_reply(time.monotonic() + START_TIMEOUT_S, "start").get("hello", ""))
 
     def request(
         self, op: str, params: dict[str, Any] | None = None, *, timeout_s: float = 3600.0, progress: Progress | None = None
     ) -> Any:
-        """Run one operation and return its result.
+        """Run an operation and return its result.
 
         Args:
             op: Name of the operation in ``scope_studio.operations``.
-            params: Its arguments, as JSON data.
+            params: The operation's arguments, as JSON data.
             timeout_s: Seconds after which the worker is killed.
             progress: Called with the number of finished steps and the total.
 
@@ -95,10 +95,10 @@ class BlenderWorker:
                 self._process.stdin.write(json.dumps(message) + "\n")
                 self._process.stdin.flush()
             except OSError as error:
-                raise self._crashed(op) from error
+                raise self._exit_error(op) from error
             deadline = time.monotonic() + timeout_s
             while True:
-                reply = self._next(deadline, op)
+                reply = self._next_reply(deadline, op)
                 if "progress" in reply:
                     if progress is not None:
                         progress(*reply["progress"])
@@ -119,23 +119,23 @@ class BlenderWorker:
 
     def _listen(self, pipe: IO[str]) -> None:
         for line in pipe:
-            if line.startswith(MARK):
-                self._replies.put(json.loads(line[len(MARK) :]))
+            if line.startswith(REPLY_PREFIX):
+                self._replies.put(json.loads(line[len(REPLY_PREFIX) :]))
         self._replies.put(None)
 
-    def _next(self, deadline: float, op: str) -> dict[str, Any]:
+    def _next_reply(self, deadline: float, op: str) -> dict[str, Any]:
         try:
             reply = self._replies.get(timeout=max(0.0, deadline - time.monotonic()))
         except queue.Empty:
             self._kill()
-            raise BlenderError(f"Blender did not finish '{op}' in time and was stopped. {self._tail()}") from None
+            raise BlenderError(f"Blender did not finish '{op}' in time and was stopped. {self._log_tail()}") from None
         if reply is None:
-            raise self._crashed(op)
+            raise self._exit_error(op)
         return reply
 
-    def _crashed(self, op: str) -> BlenderError:
+    def _exit_error(self, op: str) -> BlenderError:
         self._kill()
-        return BlenderError(f"Blender exited during '{op}'. {self._tail()}")
+        return BlenderError(f"Blender exited during '{op}'. {self._log_tail()}")
 
     def _kill(self) -> None:
         process, self._process = self._process, None
@@ -150,6 +150,6 @@ class BlenderWorker:
                 with suppress(OSError):
                     pipe.close()
 
-    def _tail(self) -> str:
+    def _log_tail(self) -> str:
         lines = self._log_file.read_text(errors="replace").strip().splitlines()[-6:]
         return f"The end of its log ({self._log_file}):\n" + "\n".join(lines)

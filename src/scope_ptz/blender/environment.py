@@ -35,14 +35,14 @@ def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[
         return [str(ensure_environment(cache_dir)), script]
     program = shutil.which(str(blender_python))
     if program is None:
-        raise BlenderError(f"There is no program '{blender_python}'. Give a Python that has bpy, or the blender program.")
+        raise BlenderError(f"There is no program '{blender_python}'. Specify a Python that can import bpy, or the blender program.")
     if Path(program).name.lower().startswith("blender"):
         return [program, "--background", "--factory-startup", "--python-exit-code", "1", "--python", script]
     return [program, script]
 
 
 def environment_python(cache_dir: Path) -> Path:
-    """Return the path of the environment's Python, which may not exist yet."""
+    """Return the path to the environment's Python, which may not exist yet."""
     folder = cache_dir / f"blender-{BPY_VERSION}"
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
@@ -53,7 +53,7 @@ def is_ready(cache_dir: Path) -> bool:
 
 
 def ensure_environment(cache_dir: Path) -> Path:
-    """Create the environment if it is missing or incomplete, and return its Python.
+    """Create the environment if it is missing or incomplete, and return the path to its Python.
 
     Raises:
         BlenderError: The environment cannot be created.

@@ -1,4 +1,4 @@
-"""The full silhouettes of instances as seen from a viewpoint, including hidden parts, calculated from their triangles."""
+"""Compute the full silhouettes of instances as seen from a viewpoint, including hidden parts, from their triangles."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ WIDE_DEG = 60.0
 
 NEAR_M = 1e-3  # distance of the plane at which triangles are clipped
 FRACTION_BITS = 4  # fractional bits of OpenCV's fixed-point coordinates
-HULL_POINTS = 24  # maximum number of points of an outline
+HULL_POINTS = 24  # maximum number of points in an outline
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """The mesh of an instance: vertices ``(n, 3)`` in the viewpoint's coordinates, and triangles ``(m, 3)`` of vertex indices."""
+    """An instance's mesh: vertices ``(n, 3)`` in the viewpoint's coordinates, and triangles ``(m, 3)`` as vertex indices."""
 
     number: int
     vertices: Floats
@@ -37,7 +37,7 @@ class Body:
 
 
 def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
-    """Return the extent of every instance in a file from the worker's operation ``meshes``."""
+    """Return the extent of every instance in a file that the worker's operation ``meshes`` wrote."""
     bodies = read_bodies(meshes, viewpoint)
     found = []
     for k, body in enumerate(bodies):
@@ -47,7 +47,7 @@ def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, in
 
 
 def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
-    """Return the meshes of all instances in the coordinates of a viewpoint, ordered by number."""
+    """Return the meshes of all instances in a viewpoint's coordinates, sorted by number."""
     bearing = math.radians(viewpoint.pan0_bearing_deg)
     c, s = math.cos(bearing), math.sin(bearing)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -72,7 +72,7 @@ def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
 
 
 def extent(body: Body) -> Extent:
-    """Return the solid angle, the convex outline and the distance of an instance."""
+    """Return an instance's solid angle, convex outline and distance."""
     used = body.vertices[np.unique(body.triangles)]
     rays = used / np.linalg.norm(used, axis=1, keepdims=True)
     middle = rays.mean(axis=0)
@@ -97,24 +97,23 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
     local = body.vertices @ axes.T
     flat = local[:, :2] / local[:, 2:]
     used = flat[np.unique(body.triangles)]
-    lengthwise = np.linalg.eigh(np.cov(used.T))[
-        1
-    ]  # align the longest axis with the raster, so that a leaning pole covers more of it
+    # The longest axis is aligned with the raster, so that a leaning pole covers more of it.
+    _, lengthwise = np.linalg.eigh(np.cov(used.T))
     flat, used = flat @ lengthwise, used @ lengthwise
     low, high = used.min(axis=0), used.max(axis=0)
-    coarse, fine = (_drawn_solid_angle(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
-    return _without_outline(coarse, fine)
+    coarse, fine = (_rasterised_solid_angle(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
+    return _remove_fill_bias(coarse, fine)
 
 
-def _without_outline(coarse: float, fine: float) -> float:
-    """Correct a solid angle for the way in which OpenCV fills polygons.
+def _remove_fill_bias(coarse: float, fine: float) -> float:
+    """Correct a solid angle for the excess area in OpenCV's polygon fill, using rasters at two pixel sizes.
 
     OpenCV fills every pixel that an outline touches, so areas are too large. Halving the pixel size halves the excess.
     """
     return max(2 * fine - coarse, 0.3 * fine)
 
 
-def _drawn_solid_angle(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
+def _rasterised_solid_angle(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
     """Return the solid angle of the union of triangles in a tangent plane.
 
     Args:
@@ -138,16 +137,16 @@ def _wide_solid_angle(body: Body) -> float:
     low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     for pan, tilt in ((0, 0), (90, 0), (180, 0), (-90, 0), (0, 90), (0, -90)):
         local = body.vertices @ camera_axes(pan, tilt).T
-        corners = _in_front(local[body.triangles])
+        corners = _clip_behind_camera(local[body.triangles])
         flat = corners[..., :2] / corners[..., 2:]
         touching = np.all(flat.max(axis=1) > low, axis=1) & np.all(flat.min(axis=1) < high, axis=1)
         if touching.any():
             for k, side in enumerate((RASTER_PX, 2 * RASTER_PX)):
-                totals[k] += _drawn_solid_angle(flat[touching], low, high, side)
-    return _without_outline(*totals)
+                totals[k] += _rasterised_solid_angle(flat[touching], low, high, side)
+    return _remove_fill_bias(*totals)
 
 
-def _in_front(corners: Floats) -> Floats:
+def _clip_behind_camera(corners: Floats) -> Floats:
     """Clip triangles of shape ``(m, 3, 3)`` at a plane just in front of the camera. Quadrilaterals are split into two triangles."""
     ahead = corners[..., 2] > NEAR_M
     whole = corners[ahead.all(axis=1)]
@@ -178,7 +177,7 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
 
 
 def _nearest_m(body: Body) -> float:
-    """Return the distance from the origin to the nearest point of all triangles."""
+    """Return the distance from the origin to the nearest point on any triangle."""
     a, b, c = (body.vertices[body.triangles[:, k]] for k in range(3))
     nearest = min(_edge_distance(a, b), _edge_distance(b, c), _edge_distance(c, a))
     normal = np.cross(b - a, c - a)

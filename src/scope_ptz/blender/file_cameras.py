@@ -1,4 +1,4 @@
-"""Combine the cameras of a .blend file into one pan-tilt-zoom camera, in which each of them is a viewpoint with a preset."""
+"""Combine the cameras in a .blend file into one pan-tilt-zoom camera, in which each camera is a viewpoint with a preset."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from scope_ptz.geometry import Limits, Optics
 from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
 
 ZOOM_RANGE = 5.0
-"""Minimum ratio of the highest to the lowest zoom of the combined camera."""
+"""Minimum ratio between the combined camera's highest and lowest zoom."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileCameras:
-    """The cameras of a .blend file, as one pan-tilt-zoom camera.
+    """The cameras in a .blend file, combined into one pan-tilt-zoom camera.
 
     Attributes:
         scene: The cameras as viewpoints, each with one preset; the active camera has the home preset. There are no instances.
@@ -29,7 +29,7 @@ class FileCameras:
 
 
 def file_cameras(description: dict[str, Any]) -> FileCameras:
-    """Return the cameras of a .blend file from the result of the worker's ``open_file``."""
+    """Return the cameras in a .blend file, given the result of the worker's operation ``open_file``."""
     cameras = description["cameras"]
     widest_deg = max(camera["hfov_deg"] for camera in cameras)
     zooms = [_half_width(widest_deg) / _half_width(camera["hfov_deg"]) for camera in cameras]
@@ -55,5 +55,5 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
 
 
 def _half_width(hfov_deg: float) -> float:
-    """Return half the width of the plane at distance 1 that a picture shows."""
+    """Return half the width of the plane that a picture shows at distance 1."""
     return math.tan(math.radians(hfov_deg) / 2)

@@ -1,4 +1,4 @@
-"""Keyframes of actors: the positions on an actor's path at which it is rendered, and the view of each render."""
+"""Keyframes of actors: the positions on an actor's path at which it is rendered, and the view for each render."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
-"""Changes after which a new keyframe is needed: of the viewing angle in degrees, and of the distance as a factor.
+"""Changes that require a new keyframe: in the viewing angle, in degrees, and in the distance, as a factor.
 
 If this gives too many keyframes, both steps are increased.
 """
 
-GAIT_PHASES = 8  # pictures of a walker at each position
+GAIT_PHASES = 8  # number of pictures of a walker at each position
 MIN_SIDE_PX = 6.0  # actors that stay smaller at the closest zoom are not rendered
 MAX_SIDE_PX = 420  # maximum side of a picture
-SAMPLES = 1200  # points along a path
-MARGIN = 1.06  # factor by which a view is larger than the actor
+SAMPLES = 1200  # number of points along a path
+MARGIN = 1.06  # ratio of a view's size to the actor's
 
 Floats = NDArray[np.float64]
 
@@ -35,18 +35,18 @@ class Keyframe:
     """A picture of an actor to render: its time on the path, its gait phase, and the view.
 
     Attributes:
-        also_s: Further path times under which the pack lists the same picture: the corners of the path next to it. Without them,
-            the picture nearest in time to an actor at a corner could be one with the heading of the other leg.
+        extra_times_s: Other path times for which the pack uses the same picture: those at the adjacent corners of the path.
+            Without them, the picture nearest in time to an actor at a corner could show the actor heading along the other leg.
     """
 
     time_s: float
     phase: float
     position_m: tuple[float, float, float]
     view: Perspective
-    also_s: tuple[float, ...] = ()
+    extra_times_s: tuple[float, ...] = ()
 
     def request(self) -> dict[str, Any]:
-        """Return the keyframe as a parameter of the worker's operation ``sprites``."""
+        """Return the keyframe as a parameter for the worker's operation ``sprites``."""
         return {
             "time_s": self.time_s,
             "phase": self.phase,
@@ -58,28 +58,31 @@ class Keyframe:
 def keyframes(
     actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, limit: int
 ) -> list[Keyframe]:
-    """Return the keyframes of an actor as seen from a viewpoint. Walkers get a keyframe for every gait phase at each position.
+    """Return an actor's keyframes for a viewpoint. Walkers get a keyframe for every gait phase at each position.
 
     Each leg of the path has at least one position, even if that exceeds ``limit`` keyframes.
     """
-    places = _Places.along(actor, viewpoint)
-    per_place = GAIT_PHASES if stride_m else 1
+    samples = _PathSamples.along(actor, viewpoint)
+    pictures_per_sample = GAIT_PHASES if stride_m else 1
     coarseness = 1.0
-    while len(chosen := places.distinct(coarseness)) * per_place > limit and len(chosen) > len(actor.waypoints) - 1:
+    while len(chosen := samples.distinct(coarseness)) * pictures_per_sample > limit and len(chosen) > len(actor.waypoints) - 1:
         coarseness *= 1.15
     frames = []
-    for k, also in chosen.items():
-        view = _view(_corners(actor, places, k, sun), viewpoint, band)
+    for k, others in chosen.items():
+        view = _view(_corners(actor, samples, k, sun), viewpoint, band)
         if view is not None:
-            x, y, z = (round(float(v), 4) for v in places.positions[k])
-            times = tuple(round(float(places.times[other]), 4) for other in also)
-            frames += [Keyframe(round(float(places.times[k]), 4), p / per_place, (x, y, z), view, times) for p in range(per_place)]
+            x, y, z = (round(float(v), 4) for v in samples.positions[k])
+            times = tuple(round(float(samples.times[other]), 4) for other in others)
+            frames += [
+                Keyframe(round(float(samples.times[k]), 4), p / pictures_per_sample, (x, y, z), view, times)
+                for p in range(pictures_per_sample)
+            ]
     return frames
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
-    """Dense samples of a path: times ``(n,)``, positions ``(n, 3)``, bearings, and angles as seen from the viewpoint."""
+class _PathSamples:
+    """Dense samples along a path: times ``(n,)``, positions ``(n, 3)``, bearings, and angles as seen from the viewpoint."""
 
     times: Floats
     positions: Floats
@@ -90,7 +93,7 @@ class _Places:
     legs: NDArray[np.int64]
 
     @classmethod
-    def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _Places:
+    def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _PathSamples:
         way = np.array(actor.waypoints)
         times = np.linspace(way[0, 0], way[-1, 0], SAMPLES)
         positions = np.stack([np.interp(times, way[:, 0], way[:, k]) for k in (1, 2, 3)], axis=-1)
@@ -102,10 +105,10 @@ class _Places:
         return cls(times, positions, bearings, bearings - bearings_from_viewpoint, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Return the indices of samples that differ visibly from the previous one, at least one for each leg of the path.
+        """Return the indices of the samples that differ visibly from the previous one, at least one for each leg of the path.
 
-        Each value lists further samples that share the picture: the start of the leg for the leg's first chosen sample, and the end
-        of the leg for its last one.
+        Each value lists other samples that share the picture: the start of the leg for the leg's first chosen sample, and the end
+        of the leg for the last one.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):
@@ -130,14 +133,14 @@ class _Places:
         return chosen
 
 
-def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> Floats:
+def _corners(actor: SceneActor, samples: _PathSamples, k: int, sun: Floats | None) -> Floats:
     """Return the corners of the actor's box in the world, and the points where their shadows fall on level ground."""
-    bearing = math.radians(float(places.bearings_deg[k]))
+    bearing = math.radians(float(samples.bearings_deg[k]))
     ahead, right = np.array([math.sin(bearing), math.cos(bearing), 0.0]), np.array([math.cos(bearing), -math.sin(bearing), 0.0])
     width, length, height = actor.size_m
     corners = np.array(
         [
-            places.positions[k] + right * x * width / 2 + ahead * y * length / 2 + np.array([0.0, 0.0, z * height])
+            samples.positions[k] + right * x * width / 2 + ahead * y * length / 2 + np.array([0.0, 0.0, z * height])
             for x in (-1, 1)
             for y in (-1, 1)
             for z in (0, 1)
@@ -145,7 +148,7 @@ def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> 
     )
     if sun is None or sun[2] < 0.2:
         return corners
-    high = corners[corners[:, 2] > places.positions[k][2] + height / 2]
+    high = corners[corners[:, 2] > samples.positions[k][2] + height / 2]
     return np.concatenate([corners, high - sun * (height / sun[2])])
 
 

@@ -1,4 +1,4 @@
-"""Panoramas that the worker renders in strips. The strips are joined, and smoothed where the projection stretches them."""
+"""Render panoramas in strips. The strips are joined, and smoothed where the projection stretches them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Picture = NDArray[np.uint8]
 
 
 def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
-    """Render the base panorama of shape ``(H, W, 3)``, RGB.
+    """Render the base panorama as ``(H, W, 3)`` RGB.
 
     Each strip is cached separately, so an interrupted bake loses at most one strip.
     """
@@ -55,7 +55,7 @@ def _is_plain(strip: Strip) -> bool:
 
 
 def join_strips(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:
-    """Return the strips at full width, cross-faded where they overlap."""
+    """Join strips at full width, cross-faded where they overlap."""
     total = np.zeros((panorama.height, panorama.width, 3), dtype=np.float32)
     weights = np.zeros((panorama.height, 1, 1), dtype=np.float32)
     for strip, picture in zip(strips, pictures, strict=True):
@@ -84,7 +84,7 @@ def _widen(picture: Picture, width: int) -> Picture:
 
 
 def smooth_rows(picture: Picture, panorama: Panorama) -> Picture:
-    """Blur each row horizontally to the level of detail at the equator, which is the highest that a view can show."""
+    """Blur each row horizontally to the level of detail at the equator, which is the highest level that a view can show."""
     result = picture.copy()
     for row in range(panorama.height):
         tilt = panorama.tilt_of_row(row + 0.5)

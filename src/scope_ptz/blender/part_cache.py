@@ -1,4 +1,4 @@
-"""A cache of the parts of a bake on disk. Each part is a file named after its inputs, so that an interrupted bake can resume."""
+"""An on-disk cache for the parts of a bake. Each part is a file named after its inputs, so that an interrupted bake can resume."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Progress(Protocol):
 
 
 class PartCache:
-    """The folder with the cached parts of one version of a scene."""
+    """The folder with the cached parts for one version of a scene."""
 
     def __init__(self, root: Path, scene_key: str, progress: Progress) -> None:
         self.folder = root / scene_key
@@ -25,7 +25,7 @@ class PartCache:
         self._progress = progress
 
     def part(self, name: str, suffix: str, parameters: dict[str, Any], produce: Callable[[Path], None]) -> Path:
-        """Return the file of a part. If it is missing, call ``produce`` with the path to write."""
+        """Return a part's file. If it is missing, call ``produce`` with the path to write to."""
         stamp = digest(json.dumps([name, parameters], sort_keys=True))[:12]
         path = self.folder / f"{name.replace('/', '-')}-{stamp}{suffix}"
         if not path.exists():
@@ -35,7 +35,7 @@ class PartCache:
         return path
 
     def steps(self, part: str, total: int) -> Callable[[], None]:
-        """Return a function that must be called after each step of a part."""
+        """Return a function to call after each step of a part."""
         started, done = time.monotonic(), 0
         self._progress(part, 0, total, 0.0)
 

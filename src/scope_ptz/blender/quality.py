@@ -1,4 +1,4 @@
-"""Quality settings and size limits of a bake."""
+"""Quality settings and size limits for bakes."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from scope_ptz.errors import UnknownNameError
 
 PACK_BYTES = 6_600_000
-"""Maximum size of the pack of one viewpoint."""
+"""Maximum size of one viewpoint's pack in bytes."""
 
 NEAR_M, FAR_M = 0.3, 20000.0
 """Range of the depth encoding in metres."""
 
 WIDER_DENSITY_PX_PER_DEG = 34.0
-"""Density of the wider tiles: sufficient for views at 1.7x, and half of the density that a view at 3.5x needs."""
+"""Density of the wider tiles, which is sufficient for views at 1.7x and half of what a view at 3.5x needs."""
 
 DEPTH_STEP = 48
 """Depth codes are rounded to multiples of this, which is 0.8% of the distance and precise enough for occlusion."""
@@ -21,10 +21,10 @@ DEPTH_STEP = 48
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Settings of a bake: sizes in pixels, samples per pixel, numbers of tiles, and qualities on the encoder's own scale.
+    """Settings for a bake: sizes in pixels, samples per pixel, numbers of tiles, and qualities on the encoder's own scale.
 
-    ``wider_tiles`` is the number of tiles that cover the busiest areas at about a third of the density of the sharp tiles, so that
-    the surroundings of a sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders
+    ``wider_tiles`` is the number of tiles that cover the busiest areas at about a third of the sharp tiles' density, so that the
+    surroundings of a sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders
     with which a finished pack is compared. ``must_meet_tolerances`` is False for drafts, whose differences are only reported.
     """
 

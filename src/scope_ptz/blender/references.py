@@ -1,4 +1,4 @@
-"""Storage of live renders, so that packs can be compared with them without Blender."""
+"""Store live renders, so that later packs can be compared with them without Blender."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, writ
 
 INDEX = "references.json"
 QUALITY = 97
-"""Encoding quality of the pictures. It is high, because compression losses would count as differences of the pack."""
+"""Encoding quality of the pictures. It is high, because compression losses would count as differences from the pack."""
 
 Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
-"""Viewpoint, pose, picture of shape ``(H, W, 3)`` and instance numbers ``(H, W)``."""
+"""Viewpoint, pose, picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
 
 
 def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> None:
-    """Add a live render to a folder of references."""
+    """Add a live render to a reference folder."""
     folder.mkdir(parents=True, exist_ok=True)
     index = folder / INDEX
     entries = json.loads(index.read_text()) if index.exists() else []

@@ -1,4 +1,4 @@
-"""Conversion of projections to parameters of worker requests."""
+"""Convert projections to parameters for worker requests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scope_ptz.geometry import Equirectangular, Perspective
 
 
 def perspective_request(view: Perspective) -> dict[str, Any]:
-    """Return the parameters of a perspective view."""
+    """Return the request parameters for a perspective view."""
     return {
         "kind": "perspective",
         "pan_deg": view.pan_deg,
@@ -20,7 +20,7 @@ def perspective_request(view: Perspective) -> dict[str, Any]:
 
 
 def panorama_request(view: Equirectangular) -> dict[str, Any]:
-    """Return the parameters of a band of the sphere. The worker renders all pans, from -180 to 180 degrees."""
+    """Return the request parameters for a band of the sphere. The worker renders all pans, from -180 to 180 degrees."""
     return {
         "kind": "equirectangular",
         "top_tilt_deg": view.top_tilt_deg,

@@ -1,4 +1,4 @@
-"""Sprite sheets of actors."""
+"""Create sprite sheets for actors."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ Without this limit, the faint shade around a body would extend to the border of 
 """
 
 FEATHER_SHARE = 0.06
-"""Share of a sprite's size over which the shadow fades towards the border of its picture."""
+"""Fraction of a sprite's size over which the shadow fades towards the border of its picture."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A sprite sheet: a picture ``(H, W, 4)`` with straight alpha, distance codes ``(H, W)``, and the place of each sprite."""
+    """A sprite sheet: a picture ``(H, W, 4)`` with straight alpha, distance codes ``(H, W)``, and each sprite's position."""
 
     colour: NDArray[np.uint8]
     depth: NDArray[np.uint16]
@@ -65,7 +65,7 @@ def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
                 width=frame.view.width,
                 height=frame.view.height,
             )
-            for time_s in sorted({frame.time_s, *frame.also_s})
+            for time_s in sorted({frame.time_s, *frame.extra_times_s})
         ]
     return Sheet(colour, depth, sorted(sprites, key=lambda s: (s.path_s, s.phase)))
 
@@ -88,7 +88,7 @@ def _feather(shape: tuple[int, ...]) -> NDArray[np.float32]:
 
 
 def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
-    """Arrange rectangles in rows, in the given order. Return the left and top of each rectangle, and the size of the sheet."""
+    """Arrange rectangles in rows, in the given order. Return each rectangle's left and top, and the sheet's size."""
     places: list[tuple[int, int]] = []
     x = y = shelf = right = 0
     for width, height in sizes:

@@ -13,7 +13,7 @@ PACKAGE = "scope_studio"
 
 
 def studio_folder() -> Path:
-    """Return the folder of the ``scope_studio`` package without importing it.
+    """Return the ``scope_studio`` package's folder without importing the package.
 
     Raises:
         BlenderError: The package is not installed.
@@ -29,7 +29,7 @@ def studio_folder() -> Path:
 def scene_key(source: str) -> str:
     """Return a key for the current version of a scene's code: the scene's name and a digest.
 
-    The digest covers the scene's module and every module of ``scope_studio`` that it imports, directly or indirectly.
+    The digest covers the scene's module and every ``scope_studio`` module that it imports, directly or indirectly.
     """
     scene_module = scene_file(source)
     digest = sha256()
@@ -40,7 +40,7 @@ def scene_key(source: str) -> str:
 
 
 def scene_file(source: str) -> Path:
-    """Return the Python file of a scene, which need not exist.
+    """Return a scene's Python file, which need not exist.
 
     Args:
         source: A path that ends in ``.py``, or the name of a built-in scene.

@@ -1,4 +1,4 @@
-"""Selection of tiles: the parts of the sphere that get sharper pictures."""
+"""Select tiles: the parts of the sphere that get sharper pictures."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt
 from scope_ptz.simulator.models import SceneFile, SceneText, SceneViewpoint
 
 CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
-"""Size of the cells of the sharp tiles."""
+"""Size of the cells for sharp tiles."""
 
 WIDER_PAN_DEG, WIDER_TILT_DEG = 30.0, 20.0
-"""Size of the cells of the wider tiles."""
+"""Size of the cells for wider tiles."""
 
 OVERLAP_DEG = 0.15
-"""A tile extends this far beyond its cell, so that there is no gap between neighbours."""
+"""A tile extends this many degrees beyond its cell, so that there is no gap between neighbours."""
 
 MAX_JOINED, MAX_JOINED_TILT_DEG = 3, 35.0
-"""Maximum number of neighbouring cells that are rendered as one tile, and the maximum tilt of such cells."""
+"""Maximum number of neighbouring cells to render as one tile, and the maximum tilt of such cells."""
 
 GRID_DEG = 0.25
-"""Resolution of the map of directions to cover."""
+"""Resolution, in degrees, of the map of directions to cover."""
 
 WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
-"""Focal lengths of a frame 1280 pixels wide, at both ends of the zoom."""
+"""Focal lengths for a 1280-pixel-wide frame at both ends of the zoom range."""
 
 SMALL_SIDE_PX = 60.0
 """An instance is a target only if its longer side is shorter than this many pixels at the widest zoom."""
@@ -36,10 +36,10 @@ SMALL_SIDE_PX = 60.0
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
 """An instance is a target only if its shorter side and its area reach these numbers of pixels at the closest zoom.
 
-A smaller one could not be counted even there.
+Smaller instances could not be counted even at that zoom.
 """
 
-SMALL_CAPS_PX = 20.0
+MAX_WIDE_CAPS_PX = 20.0
 """A text is a target only if its capitals are less than this many pixels high at the widest zoom."""
 
 MIN_TELE_CAPS_PX = 12.0
@@ -53,7 +53,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """An instance or text that tiles must cover. ``directions`` has shape ``(n, 2)``: pan and tilt in degrees."""
+    """An instance or text that tiles must cover. ``directions`` has the shape ``(n, 2)``: pan and tilt in degrees."""
 
     name: str
     directions: NDArray[np.float64]
@@ -69,7 +69,7 @@ class Cell:
     span_tilt_deg: float
 
     def view(self, density_px_per_deg: float) -> Perspective:
-        """Return the smallest view that contains the cell with its overlap and has this density at its centre."""
+        """Return the smallest view that contains the cell with its overlap and has the given density at its centre."""
         edge = np.linspace(-0.5, 0.5, 17)
         pans, tilts = np.meshgrid(edge * (self.span_pan_deg + 2 * OVERLAP_DEG), edge * (self.span_tilt_deg + 2 * OVERLAP_DEG))
         axes = Perspective(self.pan_deg, self.tilt_deg, 90.0, 2, 2)
@@ -85,7 +85,8 @@ def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16]
 
     Args:
         scene: The scene.
-                viewpoint: The position of the camera.
+        viewpoint: The panorama's viewpoint.
+        ids: The panorama's instance numbers ``(H, W)``.
         projection: The panorama's projection.
     """
     found = []
@@ -122,7 +123,7 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
 
 
 def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:
-    """Return the directions of a text that is legible only with zoom; None for others. Occlusion is ignored."""
+    """Return a text's directions if the text is legible only when zoomed in; otherwise None. Occlusion is ignored."""
     centre, right, up = (np.array(v) for v in (text.centre_m, text.right, text.up))
     towards = np.array(viewpoint.position_m) - centre
     distance = float(np.linalg.norm(towards))
@@ -130,7 +131,7 @@ def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.f
     angular_height = text.cap_height_m / distance
     if cosine < math.cos(math.radians(MAX_READING_ANGLE_DEG)) or angular_height * TELE_FOCAL_PX < MIN_TELE_CAPS_PX:
         return None
-    if angular_height * WIDE_FOCAL_PX > SMALL_CAPS_PX:
+    if angular_height * WIDE_FOCAL_PX > MAX_WIDE_CAPS_PX:
         return None
     u, v = np.meshgrid(np.linspace(-0.6, 0.6, 25), np.linspace(-0.7, 0.7, 9))
     points = centre + u[..., None] * right * text.width_m + v[..., None] * up * text.height_m - viewpoint.position_m
@@ -142,17 +143,18 @@ def cover(targets: Sequence[Target]) -> list[Cell]:
     """Return grid cells that cover all targets. The grid is shifted so that the fewest cells are needed."""
     if not targets:
         return []
-    needed = _needed(targets)
+    needed = _coverage_map(targets)
     shifts = np.arange(0.0, CELL_TILT_DEG, GRID_DEG)
     return min((_cells(needed, float(shift), CELL_PAN_DEG, CELL_TILT_DEG) for shift in shifts), key=len)
 
 
-def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) -> list[Cell]:
-    """Return at most ``limit`` of the wide grid cells: those with the greatest total length of instance outlines.
+def busiest_cells(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) -> list[Cell]:
+    """Return the cells for wider tiles that contain the greatest total length of instance outlines.
 
     Args:
-    projection: The panorama's projection.
-    limit: Maximum number of cells.
+        ids: The panorama's instance numbers ``(H, W)``.
+        projection: The panorama's projection.
+        limit: Maximum number of cells.
     """
     outlines = _outlines(ids, projection)
     everywhere = np.ones_like(outlines, dtype=bool)
@@ -168,25 +170,25 @@ def busiest(ids: NDArray[np.uint16], projection: Equirectangular, limit: int) ->
 
 
 def covers(views: Sequence[Perspective], target: Target) -> bool:
-    """Return whether every direction of a target lies in at least one of the views."""
-    return bool(np.any([_inside(view, target) for view in views], axis=0).all()) if views else False
+    """Return whether every direction of a target is in at least one of the views."""
+    return bool(np.any([_inside_mask(view, target) for view in views], axis=0).all()) if views else False
 
 
-def _inside(view: Perspective, target: Target) -> Mask:
+def _inside_mask(view: Perspective, target: Target) -> Mask:
     points = np.nan_to_num(view.points(direction(target.directions[:, 0], target.directions[:, 1])), nan=-1.0)
     return np.asarray(np.all((points >= 0) & (points <= 1), axis=-1))
 
 
-def most_useful(cells: Sequence[Cell], targets: Sequence[Target], limit: int) -> list[Cell]:
+def select_most_useful(cells: Sequence[Cell], targets: Sequence[Target], limit: int) -> list[Cell]:
     """Return the ``limit`` cells that show parts of the most targets, in their original order."""
     views = [cell.view(1.0) for cell in cells]
-    shown = [sum(bool(_inside(view, target).any()) for target in targets) for view in views]
+    shown = [sum(bool(_inside_mask(view, target).any()) for target in targets) for view in views]
     selected = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:limit])
     return [cells[k] for k in selected]
 
 
 def join_in_rows(cells: Sequence[Cell]) -> list[Cell]:
-    """Join neighbouring cells of a row to reduce the number of renders.
+    """Join neighbouring cells in a row to reduce the number of renders.
 
     Rows far from the horizon are not joined, because a long cell there would fill little of its picture.
     """
@@ -207,8 +209,8 @@ def join_in_rows(cells: Sequence[Cell]) -> list[Cell]:
     return found
 
 
-def _needed(targets: Sequence[Target]) -> Mask:
-    """Return a map of the directions to cover, of shape ``(720, 1440)``; row 0 is tilt -90, column 0 is pan -180."""
+def _coverage_map(targets: Sequence[Target]) -> Mask:
+    """Return a map of the directions to cover, with the shape ``(720, 1440)``; row 0 is tilt -90, column 0 is pan -180."""
     grid = np.zeros((round(180 / GRID_DEG), round(360 / GRID_DEG)), dtype=bool)
     for target in targets:
         rows = np.clip(((target.directions[:, 1] + 90) / GRID_DEG).astype(int), 0, grid.shape[0] - 1)
@@ -217,7 +219,7 @@ def _needed(targets: Sequence[Target]) -> Mask:
 
 
 def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
-    """Return the length of the instance outlines in each grid square, on the grid of ``_needed``.
+    """Return the length of the instance outlines in each grid square, on the grid of ``_coverage_map``.
 
     The panorama must span 360 degrees.
     """

@@ -1,4 +1,4 @@
-"""Tolerances for the comparison of a pack with live renders."""
+"""Tolerances for comparing a pack with live renders."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from statistics import mean
 from scope_ptz.blender.verify import PoseReport
 
 WIDE_SSIM_MEAN, WIDE_SSIM_MIN = 0.93, 0.88
-"""Minimum similarity of whole views at the widest zoom: mean, and single view."""
+"""Minimum similarity of whole views at the widest zoom: of the mean, and of each view."""
 
 TILE_SSIM_MIN, TILE_SHARPNESS_MIN = 0.90, 0.60
-"""Minimum similarity and sharpness of zoomed views, in the part that tiles cover."""
+"""Minimum similarity and sharpness of zoomed-in views, in the part that tiles cover."""
 
 WIDE_IOU_MEAN, TELE_IOU_MEAN = 0.97, 0.93
-"""Minimum mean IoU of the boxes of instances over 400 pixels, at the widest zoom and zoomed in."""
+"""Minimum mean box IoU for instances with more than 400 pixels, at the widest zoom and zoomed in."""
 
 
 def missed_tolerances(reports: Sequence[PoseReport]) -> list[str]:
@@ -24,12 +24,12 @@ def missed_tolerances(reports: Sequence[PoseReport]) -> list[str]:
     shortfalls = []
     if wide and (average := mean(r.ssim for r in wide)) < WIDE_SSIM_MEAN:
         shortfalls.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is required")
-    shortfalls += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is required" for r in wide if r.ssim < WIDE_SSIM_MIN]
+    shortfalls += [f"{_describe_view(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is required" for r in wide if r.ssim < WIDE_SSIM_MIN]
     shortfalls += [
-        f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is required in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN
+        f"{_describe_view(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is required in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN
     ]
     shortfalls += [
-        f"{_where(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is required in tiles"
+        f"{_describe_view(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is required in tiles"
         for r in tiled
         if r.sharpness_ratio < TILE_SHARPNESS_MIN
     ]
@@ -40,6 +40,6 @@ def missed_tolerances(reports: Sequence[PoseReport]) -> list[str]:
     return shortfalls
 
 
-def _where(report: PoseReport) -> str:
+def _describe_view(report: PoseReport) -> str:
     pose = report.pose
     return f"{report.viewpoint} at pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f}, {pose.zoom:.2f}x"

@@ -1,4 +1,4 @@
-"""Comparison of packs with live Blender renders of the same poses. The poses are drawn at random from a seed."""
+"""Compare packs with live Blender renders at the same poses. The poses are random, determined by a seed."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 
 LIVE_SEED = 7
-"""Seed of the live renders. It differs from the seed of bakes, because identical noise would increase the similarity."""
+"""Seed for live renders. It differs from the seed for bakes, because identical noise would increase the similarity."""
 
 MIN_BOX_PIXELS = 400  # boxes of smaller instances are not compared
 
 FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
-"""Categories of plants, which are the hardest to re-project."""
+"""Plant categories, which are the hardest to re-project."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseReport:
-    """The comparison of one pose: SSIM, sharpness relative to the live render, and mean IoU of boxes (None without boxes).
+    """The comparison at one pose: SSIM, sharpness relative to the live render, and mean box IoU (None without boxes).
 
-    ``tile_share`` is the fraction of the view that is covered by sufficiently dense tiles. If it is above 0 and the zoom
-    above 1, similarity and sharpness refer to that part.
+    ``tile_share`` is the fraction of the view that is covered by sufficiently dense tiles. If it is above 0 and the zoom is above
+    1, similarity and sharpness refer to that part.
     """
 
     viewpoint: str
@@ -49,9 +49,9 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` poses at 2x to 5x that show tiles. Viewpoints take turns.
+    """Draw ``wide`` poses at the widest zoom, and ``zoomed`` poses at 2x to 5x that show tiles. Viewpoints alternate.
 
-    Half of the poses show what is hard to re-project: a sign, foliage, or the ground far below. The others are spread over all
+    Half of the poses show content that is hard to re-project: a sign, foliage, or the ground far below. The other poses cover all
     pans and tilts at the widest zoom, and show random tiles when zoomed in.
     """
     rng, limits = random.Random(seed), Limits()
@@ -79,9 +79,9 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
 
 
 def _hard_place(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
-    """Return pan and tilt of foliage, a sign or the ground, depending on ``turn``.
+    """Return the pan and tilt of foliage, a sign or the ground, depending on ``turn``.
 
-    Return None if ``turn`` is odd, or if there is no such place.
+    Return None if ``turn`` is odd or if there is no such place.
     """
     place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
     kind = turn // 2 % 3
@@ -103,11 +103,11 @@ def _hard_place(scene: Scene, viewpoint: str, turn: int, rng: random.Random, lim
 
 
 def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
-    """Compare the pack's view of a pose with a live render: a picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
+    """Compare the pack's view at a pose with a live render: a picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
     height, width = ids.shape
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
     opened = scene.viewpoint(viewpoint)
-    tiled = _in_tiles(opened.manifest.tiles, view)
+    tiled = _tile_mask(opened.manifest.tiles, view)
     mask = tiled if tiled.any() and pose.zoom > 1.0 else None
     stored = colour_view(opened, view)
     ious = list(box_ious(id_view(opened, view), ids, MIN_BOX_PIXELS).values())
@@ -132,17 +132,24 @@ def verify(
     height: int = 720,
     keep: Path | None = None,
 ) -> list[PoseReport]:
-    """Compare packs with live renders at each pose. The worker must have loaded the scene. Moving actors are not rendered.
+    """Compare packs with live renders at each pose. The worker must have loaded the scene. Actors are not rendered.
 
     Args:
-        keep: A folder to save the live renders in, so that later packs can be compared without Blender.
+        scene: The scene with its packs.
+        worker: The worker that renders.
+        poses: The viewpoints and poses to compare.
+        progress: Called after every step.
+        samples: Samples per pixel in the live renders.
+        width: Width of the views in pixels.
+        height: Height of the views in pixels.
+        keep: A folder in which to save the live renders, so that later packs can be compared without Blender.
     """
     reports = []
     with TemporaryDirectory() as folder:
         step = PartCache(Path(folder), "verify", progress).steps("verify", len(poses))
         for name, pose in poses:
             view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
-            colour, ids = _live(worker, name, view, samples, Path(folder))
+            colour, ids = _render_live(worker, name, view, samples, Path(folder))
             reports.append(compare(scene, name, pose, colour, ids))
             if keep is not None:
                 keep_reference(keep, name, pose, colour, ids)
@@ -150,7 +157,7 @@ def verify(
     return reports
 
 
-def _live(
+def _render_live(
     worker: BlenderWorker, viewpoint: str, view: Perspective, samples: int, folder: Path
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
     common: dict[str, Any] = {"viewpoint": viewpoint, "projection": perspective_request(view)}
@@ -161,8 +168,8 @@ def _live(
         return read_colour(picture), file["ids"]
 
 
-def _in_tiles(tiles: Sequence[Tile], view: Perspective) -> NDArray[np.bool_]:
-    """Return a mask ``(H, W)`` of the pixels of a view that are covered by a tile that is dense enough for it."""
+def _tile_mask(tiles: Sequence[Tile], view: Perspective) -> NDArray[np.bool_]:
+    """Return a mask ``(H, W)`` of the pixels in a view that are covered by a tile that is dense enough for the view."""
     x, y = np.meshgrid((np.arange(view.width) + 0.5) / view.width, (np.arange(view.height) + 0.5) / view.height)
     directions = view.directions(np.stack([x, y], axis=-1))
     inside = np.zeros((view.height, view.width), dtype=bool)

@@ -1,1 +1,1 @@
-"""Cameras, simulated and real, which all implement one contract."""
+"""Simulated and real cameras, which all implement the same contract."""

@@ -1,4 +1,4 @@
-"""The camera contract: one small interface for the simulator and for real cameras."""
+"""The camera contract: one small interface for simulated and real cameras."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Camera(ABC):
     """A pan-tilt-zoom camera. All methods raise ``CameraError`` when the camera fails.
 
     Attributes:
-        clock: The clock of the camera's world: real time, or the time of a simulated scene.
+        clock: The camera's clock: real time, or the time of a simulated scene.
     """
 
     clock: Clock
@@ -45,8 +45,8 @@ class Camera(ABC):
     async def move(self, pose: Pose) -> Arrival:
         """Move to an absolute pose, clamped to the limits, and return when the picture has settled.
 
-        Pan is not wrapped before it is clamped: with limits at -179 and 179, a request for 190 stops at 179 and never turns the
-        long way round.
+        Pan is clamped without being wrapped first. With limits of -179 and 179, a request for 190 stops at 179 instead of turning
+        the long way round to -170.
         """
 
     @abstractmethod
@@ -74,10 +74,10 @@ class Camera(ABC):
         """Stop any motion immediately."""
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
-        """Move at constant velocities until the next command. The call returns immediately.
+        """Start moving at constant velocities, and return immediately.
 
-        The camera stops on its own after ``timeout_s`` without another command, so a lost controller cannot leave it moving.
-        Velocities are capped at the top speed, and an axis stops at its limit.
+        The camera stops on its own after ``timeout_s`` without another command, so it cannot keep moving after its controller is
+        lost. Velocities are capped at the top speed, and an axis stops at its limit.
 
         Args:
             pan_dps: Degrees per second to the right.
@@ -93,15 +93,15 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot be driven at a velocity; move it to a pose.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Turn until a point of the current picture is in its centre, and zoom by a factor (click-to-centre and area zoom).
+        """Centre a point of the current picture, and zoom by a factor (click-to-centre and area zoom).
 
         Args:
             x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
             y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
-            zoom_factor: Factor by which the focal length changes; 2.0 shows half of the picture's width.
+            zoom_factor: Factor by which to change the focal length; 2.0 shows half of the picture's width.
 
         Raises:
-            InputError: The point is not within the picture, or the factor is not above 0.
+            InputError: The point is outside the picture, or the factor is not above 0.
         """
         return await self.move(self.info.towards(await self.pose(), x, y, zoom_factor))
 
@@ -117,7 +117,7 @@ class Camera(ABC):
         """Set the focus and return when it has settled.
 
         Args:
-            action: The focus action; ``info.capabilities.focus`` lists those that the camera offers.
+            action: A focus action from ``info.capabilities.focus``.
             step: Length of a step as a fraction of the range, for "near" and "far".
 
         Raises:
@@ -131,7 +131,7 @@ class Camera(ABC):
         """Set the iris.
 
         Args:
-            action: The iris action; ``info.capabilities.iris`` lists those that the camera offers.
+            action: An iris action from ``info.capabilities.iris``.
             step: Length of a step as a fraction of the range, for "open" and "close".
 
         Raises:
@@ -142,9 +142,9 @@ class Camera(ABC):
         raise CameraError(f"The driver of {self.info.name} cannot set the iris.")
 
     async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
-        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer skips frames and gets the newest.
+        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer misses frames and gets the newest.
 
-        Use it with ``contextlib.aclosing``, so that the stream is released when the consumer stops early.
+        Wrap the generator in ``contextlib.aclosing``, so that the stream is released even if the consumer stops early.
         """
         if not (math.isfinite(rate_hz) and rate_hz > 0):
             raise InputError(f"The frame rate must be above 0 frames per second; got {rate_hz}.")
@@ -155,7 +155,7 @@ class Camera(ABC):
 
     @property
     def frames_problem(self) -> str:
-        """Why ``frames`` is interrupted, for example by an outage of the network; empty while frames arrive."""
+        """The reason why ``frames`` is interrupted, such as a network outage; empty while frames are arriving."""
         return ""
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - part of the contract
@@ -173,24 +173,24 @@ class Camera(ABC):
 
         Raises:
             UnknownNameError: There is no such preset.
-            CameraError: The camera cannot remove this preset, or cannot remove any.
+            CameraError: The camera cannot remove this preset, or does not support removing presets.
         """
         if name not in (known := [preset.name for preset in await self.presets()]):
             raise UnknownNameError("preset", name, known)
         raise CameraError(f"{self.info.name} cannot remove presets.")
 
     control_lock: ControlLock | None = None
-    """The lock that ``control`` acquires. If it is None, ``control`` creates one that only users of this object respect.
+    """The lock that ``control`` acquires. If it is None, ``control`` creates one that applies to this object only.
 
-    If other programs can reach the camera, the code that opens it sets a lock that works across processes.
+    If other processes can reach the camera, the code that opens it must set a lock that works across processes.
     """
 
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
-        """Return a context in which ``holder`` has exclusive control of the camera.
+        """Return a context manager that gives ``holder`` exclusive control of the camera.
 
         Raises:
-            ControlHeldError: Someone else has control. The message names them.
+            ControlHeldError: Someone else has control. The message names the holder if known.
         """
         from scope_ptz.camera.control import ControlLock
 
@@ -204,12 +204,12 @@ class Camera(ABC):
             lock.release()
 
     async def close(self) -> None:
-        """Release the camera's resources. By default, there are none."""
+        """Release the camera's resources. The default implementation does nothing."""
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
-        """Return a context that freezes the time of a simulated world, so that all frames of a sweep show the same instant.
+        """Return a context manager that freezes scene time, so that all frames of a sweep show the same instant.
 
-        For a real camera it has no effect.
+        It has no effect on a real camera.
         """
         yield

@@ -1,4 +1,4 @@
-"""A camera in live Blender: Cycles renders every frame when it is requested."""
+"""A camera in live Blender: Cycles renders each frame on request."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from scope_ptz.simulator.models import SceneFile
 
 
 class BlenderCamera(Camera):
-    """A pan-tilt-zoom camera in a scene that a Blender process has loaded. Moves to a pose take no time.
+    """A pan-tilt-zoom camera in a scene that a Blender process has loaded. Moves to a pose are instantaneous.
 
-    Moving actors appear where they are at the clock's time. The caller closes the worker.
+    Moving actors appear at their positions at the clock's time. The caller closes the worker.
 
     Args:
         worker: The running Blender process, with the scene loaded.
         scene: The scene's viewpoints and presets.
-        viewpoint: The viewpoint of the camera; by default, that of the home preset.
+        viewpoint: The initial viewpoint; by default, that of the home preset.
         samples: Cycles samples per pixel. Packs are baked with 16.
         clock: The scene's clock.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
-        optics: The lens; the default is that of the simulated camera, an AXIS M5075-G.
+        optics: The optics; by default, those of the simulated camera, an AXIS M5075-G.
         limits: Limits of motion; by default, those of the simulated camera.
-        has_truth: Whether frames record their origin, so that the ground truth of a pack can be applied to them.
+        has_truth: Whether frames record their origin, so that a pack's ground truth can be applied to them.
     """
 
     clock: SceneClock
@@ -80,7 +80,7 @@ class BlenderCamera(Camera):
 
     @property
     def viewpoint(self) -> str:
-        """Name of the current optical centre."""
+        """Name of the current viewpoint."""
         return self._viewpoint
 
     @property
@@ -133,7 +133,7 @@ class BlenderCamera(Camera):
         """Render a view, or return the last picture if nothing has changed since it was rendered."""
         key = (viewpoint, view, time_s)
         if self._last is None or self._last[0] != key:
-            # Rendering takes seconds. A cancelled render is abandoned; it ends when the worker is closed.
+            # Rendering takes seconds. A cancelled render is abandoned; it keeps running until it finishes or the worker is closed.
             self._last = key, await to_thread.run_sync(self._render, viewpoint, view, time_s, abandon_on_cancel=True)
         return self._last[1]
 

@@ -1,4 +1,4 @@
-"""A camera's optional capabilities, beyond moving to a pose and taking a picture, and argument checks for them."""
+"""Optional camera capabilities beyond moving to a pose and taking a picture, with checks for their arguments."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from scope_ptz.camera.lens import FocusAction, IrisAction
 from scope_ptz.errors import InputError
 
 MAX_PRESET_NAME = 31
-"""Maximum length of a preset name in characters. AXIS cameras have this limit, and it applies to all cameras."""
+"""Maximum length of a preset name in characters: the limit of AXIS cameras, applied to all cameras."""
 
 MAX_DRIVE_TIMEOUT_S = 10.0
-"""Maximum time in seconds that a driven camera keeps moving without another command."""
+"""Maximum time in seconds for which a driven camera keeps moving without another command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +29,10 @@ class Capabilities:
     """The capabilities of a camera beyond moving to a pose and taking a picture.
 
     Attributes:
-        top_speed: The highest velocity of ``drive``; an axis with 0 cannot be driven.
+        top_speed: The maximum velocity for ``drive``; an axis with a maximum of 0 cannot be driven.
         edits_presets: Whether presets can be saved and removed.
-        focus: The actions of ``set_focus``; empty if the focus cannot be set.
-        iris: The actions of ``set_iris``; empty if the iris cannot be set.
+        focus: The supported actions of ``set_focus``; empty if the focus cannot be set.
+        iris: The supported actions of ``set_iris``; empty if the iris cannot be set.
     """
 
     top_speed: Velocity = field(default_factory=Velocity)

@@ -7,22 +7,22 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """The time of the camera's world, in seconds."""
+    """A camera's clock: real time, or the time of a simulated scene."""
 
     def now_s(self) -> float: ...
 
     async def sleep(self, seconds: float) -> None:
-        """Wait for a number of seconds of the camera's world."""
+        """Wait for a number of seconds on this clock."""
         ...
 
 
 def elapsed_s(clock: Clock) -> float:
-    """Return the elapsed seconds of a clock, which advance even if scene time is stopped or runs at another speed."""
+    """Return a clock's elapsed seconds, which advance even if scene time is paused or runs at a different speed."""
     return float(getattr(clock, "elapsed_s", clock.now_s)())
 
 
 class WallClock:
-    """A clock for real cameras. It starts at zero and runs in real time."""
+    """A clock for real cameras, which starts at zero and runs in real time."""
 
     def __init__(self) -> None:
         self._started_s = monotonic()

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def user_name() -> str:
-    """Return the name of the user that runs this process.
+    """Return the name of the user who runs this process.
 
-    If the account has no name, as in some containers, return the user number.
+    If the account has no name, as in some containers, return the user id.
     """
     try:
         return getpass.getuser()
@@ -31,12 +31,12 @@ def user_name() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Holder:
-    """The controller of a camera.
+    """The holder of control over a camera.
 
     Attributes:
-        name: Name of the controller, such as "console: anna".
-        process: The user, process number and machine.
-        since: When control was taken, as an ISO 8601 time in UTC.
+        name: The holder's name, such as "console: anna".
+        process: The user, process id and machine.
+        since: The time at which control was taken, in UTC as ISO 8601.
     """
 
     name: str
@@ -51,28 +51,28 @@ class ControlHeldError(CameraError):
     """Someone else controls the camera.
 
     Attributes:
-        holder: The controller; None if its name is unknown.
+        holder: The holder of control; None if unknown.
     """
 
     def __init__(self, camera: str, holder: Holder | None) -> None:
         self.holder = holder
-        who = str(holder) if holder else "someone whose name is unknown"
-        super().__init__(f"{camera} is controlled by {who}. Wait until control is released, or ask them to release it.")
+        controller = str(holder) if holder else "an unknown controller"
+        super().__init__(f"{camera} is controlled by {controller}. Wait until control is released, or ask them to release it.")
 
 
 class ControlLock:
-    """The right to move one camera.
+    """An exclusive lock on the right to move a camera.
 
     Args:
         camera: The camera's name, for messages.
-        key: Identifies the device, for example by its address and channel. Locks with the same key and folder exclude each
-            other across processes; None excludes only other users of this object.
-        folder: The folder of the lock files. It is required with a key.
+        key: Identifies the device, for example by its address and channel. Locks with the same key and folder exclude each other
+            across processes. If None, the lock excludes only other users of this object.
+        folder: The folder for lock files. Required if ``key`` is given.
     """
 
     def __init__(self, camera: str, key: str | None = None, folder: Path | None = None) -> None:
         if (key is None) != (folder is None):
-            raise ValueError("a control lock needs both a key and a folder, or neither")
+            raise ValueError("a control lock requires both a key and a folder, or neither")
         self._camera = camera
         self._holder: Holder | None = None
         self._path = None if folder is None or key is None else folder / f"{hashlib.sha256(key.encode()).hexdigest()[:24]}.lock"
@@ -80,14 +80,14 @@ class ControlLock:
 
     @property
     def holder(self) -> Holder | None:
-        """The controller that holds the camera through this object."""
+        """The holder of control through this object; None if there is none."""
         return self._holder
 
     def acquire(self, name: str) -> None:
         """Take control.
 
         Raises:
-            ControlHeldError: Someone else has control. The message names them.
+            ControlHeldError: Someone else has control. The message names the holder if known.
             OutputError: The lock file cannot be written.
         """
         if self._holder is not None:
@@ -99,7 +99,7 @@ class ControlLock:
         self._holder = holder
 
     def release(self) -> None:
-        """Release control. Calling it again has no effect."""
+        """Release control. Calling this again has no effect."""
         self._holder = None
         if self._file is not None:
             self._file.release()
@@ -109,23 +109,23 @@ class ControlLock:
         from filelock import FileLock, Timeout
 
         lock = FileLock(path, timeout=0, thread_local=False)
-        note = path.with_suffix(".json")
+        holder_path = path.with_suffix(".json")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             lock.acquire()
-            note.write_text(json.dumps(asdict(holder)), encoding="utf-8")
+            holder_path.write_text(json.dumps(asdict(holder)), encoding="utf-8")
         except Timeout:
-            raise ControlHeldError(self._camera, _read_holder(note)) from None
+            raise ControlHeldError(self._camera, _read_holder(holder_path)) from None
         except OSError as error:
             lock.release()
             raise OutputError(f"The control lock {path} cannot be written: {error.strerror or error}.") from error
         self._file = lock
 
 
-def _read_holder(note: Path) -> Holder | None:
-    """Return the controller that the note beside a lock file names; None if the note is missing or damaged."""
+def _read_holder(holder_path: Path) -> Holder | None:
+    """Read the holder's file next to a lock file. Return None if it is missing or damaged."""
     try:
-        found = json.loads(note.read_text(encoding="utf-8"))
-        return Holder(str(found["name"]), str(found["process"]), str(found["since"]))
+        content = json.loads(holder_path.read_text(encoding="utf-8"))
+        return Holder(str(content["name"]), str(content["process"]), str(content["since"]))
     except (OSError, ValueError, KeyError, TypeError):
         return None

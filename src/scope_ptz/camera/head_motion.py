@@ -1,4 +1,4 @@
-"""Compute the pose of a motorised head at any time: at rest, moving to a pose, or driven at a velocity."""
+"""Compute the pose of a motorised head at any time: at rest, while moving to a pose, or while driven at a velocity."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.motion import Head
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
 
-_MAX_OCTAVES = 30.0  # far beyond any lens; without it, a zoom that is driven for minutes would overflow
+_MAX_OCTAVES = 30.0  # maximum zoom change of a drive, far beyond any lens; prevents overflow if the zoom is driven for minutes
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class _Move:
 
 @dataclass(frozen=True, slots=True)
 class _Drive:
-    """A drive that starts at a pose and a speed, accelerates to a target speed, and begins to brake after ``hold_s`` seconds."""
+    """A drive that starts at a pose and velocity, accelerates to a target velocity, and starts braking after ``hold_s`` seconds."""
 
     start: Pose
     speed: Velocity
@@ -31,9 +31,9 @@ class _Drive:
 
 
 class HeadMotion:
-    """The current command of a motorised head, and the pose that results from it.
+    """The current command of a motorised head, and the resulting pose.
 
-    Times are seconds on one clock, which the caller reads. Every command replaces the previous one.
+    All times are in seconds on the same clock, which the caller reads. Each command replaces the previous one.
 
     Args:
         head: The motors.
@@ -43,19 +43,19 @@ class HeadMotion:
 
     def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
         self._head, self._limits = head, limits
-        # A single attribute, so that another thread that reads a pose never sees half a command.
+        # A single attribute, so that a thread that reads the pose never sees a partly updated command.
         self._current: tuple[_Move | _Drive, float] = _Move(head, pose, pose), 0.0
         self.commands = 0
-        """Number of commands so far. A change means that another command has replaced an earlier one."""
+        """Number of commands so far. A caller can compare it to detect that its command has been replaced."""
 
     def move(self, pose: Pose, now_s: float, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
-        """Start moving from the current pose to a pose, which must be within the limits.
+        """Start moving from the current pose to a target pose, which must be within the limits.
 
         Args:
             pose: The target pose.
             now_s: The current time.
             speed_fraction: Fraction of the top speeds at which the axes move.
-            zoom_fraction: Fraction of the top speed for zoom, if it differs from that for pan and tilt.
+            zoom_fraction: Fraction of the top zoom speed; None to use ``speed_fraction``.
         """
         head = self._head if speed_fraction == 1.0 else self._head.at_speed(speed_fraction)
         if zoom_fraction is not None:
@@ -71,20 +71,20 @@ class HeadMotion:
         self.drive(Velocity(), now_s, 0.0)
 
     def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
-        """Stop pan and tilt if ``pan_tilt`` is true, and the zoom if ``zoom`` is true.
+        """Stop pan and tilt if ``pan_tilt`` is true, and zoom if ``zoom`` is true.
 
-        The other axes keep their velocity and timeout, or their destination.
+        The other axes keep their velocity and timeout, or their target.
         """
         command, since_s = self._current
         if isinstance(command, _Drive):
-            target, left_s = command.target, since_s + command.hold_s - now_s
-            if left_s > 0:
+            target, remaining_s = command.target, since_s + command.hold_s - now_s
+            if remaining_s > 0:
                 pan_dps, tilt_dps = (0.0, 0.0) if pan_tilt else (target.pan_dps, target.tilt_dps)
-                self.drive(Velocity(pan_dps, tilt_dps, 0.0 if zoom else target.zoom_rate), now_s, left_s)
-        elif self.moving(now_s):
-            here, end = self.pose(now_s), command.end
-            aim = here if pan_tilt else end
-            self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
+                self.drive(Velocity(pan_dps, tilt_dps, 0.0 if zoom else target.zoom_rate), now_s, remaining_s)
+        elif self.is_moving(now_s):
+            current, end = self.pose(now_s), command.end
+            aim = current if pan_tilt else end
+            self._replace(_Move(command.head, current, Pose(aim.pan_deg, aim.tilt_deg, current.zoom if zoom else end.zoom)), now_s)
 
     def jump_to(self, pose: Pose, now_s: float) -> None:
         """Jump to a pose immediately."""
@@ -96,18 +96,18 @@ class HeadMotion:
         time_s = now_s - since_s
         if isinstance(command, _Move):
             return command.head.at(command.start, command.end, time_s)
-        pan, tilt, octaves = (distance for distance, _ in self._driven(command, time_s))
+        pan, tilt, octaves = (distance for distance, _ in self._drive_progress(command, time_s))
         zoom = command.start.zoom * 2.0 ** min(max(octaves, -_MAX_OCTAVES), _MAX_OCTAVES)
         reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
 
     def velocity(self, now_s: float) -> Velocity:
-        """Return the velocity of a driven head; zero during a move to a pose, so that the next command starts from rest."""
+        """Return the velocity of a driven head. It is zero during a move to a pose, so the next command starts from rest."""
         command, since_s = self._current
         if isinstance(command, _Move):
             return Velocity()
         pose = self.pose(now_s)
-        pan, tilt, zoom = (speed for _, speed in self._driven(command, now_s - since_s))
+        pan, tilt, zoom = (speed for _, speed in self._drive_progress(command, now_s - since_s))
         limits = self._limits
         return Velocity(
             0.0
@@ -124,26 +124,26 @@ class HeadMotion:
         return command.end if isinstance(command, _Move) else None
 
     def commanded_velocity(self, now_s: float) -> Velocity:
-        """Return the commanded velocity of a driven head; zero after its timeout, and during a move to a pose."""
+        """Return the commanded velocity of a driven head. It is zero after the timeout and during a move to a pose."""
         command, since_s = self._current
         return command.target if isinstance(command, _Drive) and now_s - since_s < command.hold_s else Velocity()
 
     def end_time_s(self) -> float:
-        """Return the time at which the current command ends. For a move to a pose, this includes the settling time."""
+        """Return the time at which the current command ends, including the settling time of a move to a pose."""
         command, since_s = self._current
         if isinstance(command, _Move):
             return since_s + command.head.duration_s(command.start, command.end)
-        head, at_end = self._head, self._driven(command, command.hold_s)
+        head, at_end = self._head, self._drive_progress(command, command.hold_s)
         motors = (head.pan, head.tilt, head.zoom)
         braking_s = max(motor.braking_s(speed) for motor, (_, speed) in zip(motors, at_end, strict=True))
         return since_s + command.hold_s + braking_s
 
-    def moving(self, now_s: float) -> bool:
-        """Return whether a command is still being carried out."""
+    def is_moving(self, now_s: float) -> bool:
+        """Return whether a command is still in progress."""
         return now_s < self.end_time_s()
 
-    def _driven(self, command: _Drive, time_s: float) -> tuple[tuple[float, float], ...]:
-        """Return the distance and speed of pan, tilt and zoom (in octaves) since a command began."""
+    def _drive_progress(self, command: _Drive, time_s: float) -> tuple[tuple[float, float], ...]:
+        """Return the distance travelled and the current speed on each axis, ``time_s`` seconds into a drive. Zoom is in octaves."""
         head, speed, target = self._head, command.speed, command.target
         return (
             head.pan.after_command(speed.pan_dps, target.pan_dps, command.hold_s, time_s),
@@ -157,5 +157,5 @@ class HeadMotion:
 
 
 def _pushes_against_limit(speed: float, value: float, low: float, high: float) -> bool:
-    """Return whether a motor pushes against a limit."""
+    """Return whether a motor is pushing against a limit."""
     return (speed > 0 and value >= high) or (speed < 0 and value <= low)

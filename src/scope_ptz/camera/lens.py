@@ -8,10 +8,10 @@ from typing import Literal, get_args
 from scope_ptz.errors import CameraError, InputError
 
 FocusAction = Literal["auto", "manual", "once", "near", "far"]
-"""Focus continuously, hold the focus, focus once and hold (one-push), or step nearer or farther and hold."""
+"""Focus continuously, hold the focus, focus once and hold it (one-push), or step nearer or farther and hold it."""
 
 IrisAction = Literal["auto", "manual", "open", "close"]
-"""Let the camera set the iris, hold it, or step it open or closed and hold it."""
+"""Let the camera control the iris, hold the iris, or step it open or closed and hold it."""
 
 FOCUS_ACTIONS: tuple[FocusAction, ...] = get_args(FocusAction)
 IRIS_ACTIONS: tuple[IrisAction, ...] = get_args(IrisAction)
@@ -22,13 +22,13 @@ DEFAULT_STEP = 0.05
 
 @dataclass(frozen=True, slots=True)
 class LensState:
-    """The state that a lens reports. None means that the camera does not report the value.
+    """The reported state of a lens. A value is None if the camera does not report it.
 
     Attributes:
         autofocus: Whether the camera focuses automatically.
-        focus: Position of the focus from 0 (nearest) to 1 (farthest).
-        autoiris: Whether the camera sets its iris automatically.
-        iris: Opening of the iris from 0 (closed) to 1 (open).
+        focus: Focus position, from 0 (nearest) to 1 (farthest).
+        autoiris: Whether the camera controls its iris automatically.
+        iris: Iris opening, from 0 (closed) to 1 (open).
     """
 
     autofocus: bool | None = None
@@ -57,12 +57,12 @@ def check_iris(camera: str, action: str, offered: tuple[IrisAction, ...], step: 
     _check(camera, "iris", action, IRIS_ACTIONS, offered, step)
 
 
-def _check(camera: str, what: str, action: str, known: tuple[str, ...], offered: tuple[str, ...], step: float) -> None:
+def _check(camera: str, setting: str, action: str, known: tuple[str, ...], offered: tuple[str, ...], step: float) -> None:
     if action not in known:
-        raise InputError(f"The {what} can be set to {', '.join(known)}; got {action[:40]!r}.")
+        raise InputError(f"The {setting} can be set to {', '.join(known)}; got {action[:40]!r}.")
     if not 0 < step <= 1:
-        raise InputError(f"A step of the {what} must be above 0 and at most 1 (the whole range); got {step}.")
+        raise InputError(f"A {setting} step must be above 0 and at most 1 (the whole range); got {step}.")
     if not offered:
-        raise CameraError(f"The {what} of {camera} cannot be set.")
+        raise CameraError(f"The {setting} of {camera} cannot be set.")
     if action not in offered:
-        raise CameraError(f"The {what} of {camera} cannot be set to '{action}'. It offers {', '.join(offered)}.")
+        raise CameraError(f"The {setting} of {camera} cannot be set to '{action}'. Supported actions: {', '.join(offered)}.")

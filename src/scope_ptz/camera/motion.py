@@ -1,4 +1,4 @@
-"""The motors of a pan-tilt-zoom head: each axis accelerates, runs at its top speed, and brakes."""
+"""Motors of a pan-tilt-zoom head, which accelerate, run at constant speed, and brake."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from scope_ptz.geometry import Pose
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """A motor, described by its top speed in units/s and its acceleration in units/s².
+    """A motor with a top speed in units/s and an acceleration in units/s².
 
-    The unit is the degree for pan and tilt, and the octave (a doubling of magnification) for zoom.
+    The units are degrees for pan and tilt, and octaves (doublings of magnification) for zoom.
     """
 
     speed: float
     acceleration: float
 
     def duration_s(self, distance: float) -> float:
-        """Return the time in seconds to move a distance, from rest to rest."""
+        """Return the time in seconds to move a distance from rest to rest."""
         d = abs(distance)
         if d < self.speed**2 / self.acceleration:
             return 2 * math.sqrt(d / self.acceleration)
         return d / self.speed + self.speed / self.acceleration
 
     def distance_after(self, distance: float, time_s: float) -> float:
-        """Return how much of ``distance`` is covered after ``time_s``, with the same sign."""
+        """Return the signed distance covered ``time_s`` after the start of a move by ``distance``."""
         d, total = abs(distance), self.duration_s(distance)
         t = min(max(time_s, 0.0), total)
         if t >= total:
@@ -45,9 +45,9 @@ class Motor:
         """Return the distance and the speed ``time_s`` after a velocity command.
 
         Args:
-            speed: The speed when the command arrived.
-            target_speed: The commanded speed, which is capped at the motor's top speed.
-            hold_s: Seconds that the command lasts. Then the motor brakes.
+            speed: The speed when the command arrives.
+            target_speed: The commanded speed; capped at the motor's top speed.
+            hold_s: Seconds for which the command lasts; then the motor brakes.
             time_s: Seconds since the command.
         """
         target = min(max(target_speed, -self.speed), self.speed)
@@ -58,11 +58,11 @@ class Motor:
         return distance, speed
 
     def braking_s(self, speed: float) -> float:
-        """Return the time in seconds to brake from a speed to a standstill."""
+        """Return the time in seconds to brake to a standstill."""
         return abs(speed) / self.acceleration
 
     def _ramp(self, speed: float, target: float, time_s: float) -> tuple[float, float]:
-        """Return the distance and the speed after accelerating towards a target speed and then holding it."""
+        """Return the distance and the speed ``time_s`` after starting to accelerate to a target speed, which is then held."""
         ramp_s = abs(target - speed) / self.acceleration
         if time_s < ramp_s:
             reached = speed + math.copysign(self.acceleration * time_s, target - speed)
@@ -72,9 +72,9 @@ class Motor:
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """The motors of a camera. Zoom is in octaves (doublings of magnification), which matches how operators perceive it.
+    """The motors of a camera. Zoom is in octaves (doublings of magnification), which match how operators perceive zooming.
 
-    ``settle_s`` is the time from the end of a move until the picture is still.
+    ``settle_s`` is the time in seconds from the end of a move until the picture has settled.
     """
 
     pan: Motor
@@ -83,18 +83,18 @@ class Head:
     settle_s: float
 
     def at_speed(self, fraction: float) -> Head:
-        """Return a head whose top speeds are reduced to a fraction, above 0 and at most 1, of the original ones."""
+        """Return a head with its top speeds reduced to a fraction, above 0 and at most 1."""
         pan, tilt, zoom = (replace(motor, speed=motor.speed * fraction) for motor in (self.pan, self.tilt, self.zoom))
         return Head(pan, tilt, zoom, self.settle_s)
 
     def duration_s(self, start: Pose, end: Pose) -> float:
-        """Return the seconds until all axes have stopped and the picture has settled; 0 if nothing moves."""
+        """Return the time in seconds until all axes have stopped and the picture has settled; 0 if nothing moves."""
         pan, tilt, octaves = _distances(start, end)
         moving = max(self.pan.duration_s(pan), self.tilt.duration_s(tilt), self.zoom.duration_s(octaves))
         return moving + self.settle_s if moving > 0 else 0.0
 
     def at(self, start: Pose, end: Pose, time_s: float) -> Pose:
-        """Return the pose ``time_s`` after the start of a move. Once all axes have arrived, it is exactly ``end``."""
+        """Return the pose ``time_s`` after the start of a move. It is exactly ``end`` once all axes have arrived."""
         pan, tilt, octaves = _distances(start, end)
         if time_s >= self.duration_s(start, end) - self.settle_s:
             return end
@@ -106,7 +106,7 @@ class Head:
 
 
 def top_speed(head: Head) -> Velocity:
-    """Return the highest velocity of a head."""
+    """Return the top speed of a head on each axis."""
     return Velocity(head.pan.speed, head.tilt.speed, head.zoom.speed)
 
 
@@ -115,4 +115,4 @@ def _distances(start: Pose, end: Pose) -> tuple[float, float, float]:
 
 
 AXIS_M5075_G_HEAD = Head(pan=Motor(100.0, 400.0), tilt=Motor(100.0, 400.0), zoom=Motor(1.5, 6.0), settle_s=0.1)
-"""The motors of the AXIS M5075-G. The pan speed is from the data sheet; tilt, zoom, acceleration and settling are estimates."""
+"""The motors of the AXIS M5075-G. The pan speed is from the data sheet; the other values are estimates."""

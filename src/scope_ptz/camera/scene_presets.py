@@ -1,4 +1,4 @@
-"""The presets of a scene, and the preset that is a camera's home."""
+"""The presets of a simulated camera, including its home preset."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ def preset_pose(preset: ScenePreset) -> Pose:
 
 
 def camera_home_preset(scene: SceneFile, viewpoint: str | None = None) -> ScenePreset:
-    """Return the preset that is a camera's home.
+    """Choose a camera's home preset.
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands; None for the viewpoint of the scene's home preset.
+        viewpoint: The camera's viewpoint; None for that of the scene's home preset.
 
     Returns:
-        The scene's home preset or, for another viewpoint, the first preset there. If there is none, a new preset that points
-        straight ahead.
+        The scene's home preset if it is at this viewpoint; otherwise the first preset at the viewpoint, or a new preset that points
+            straight ahead if there is none.
 
     Raises:
         UnknownNameError: The scene has no such viewpoint.
@@ -39,11 +39,11 @@ def camera_home_preset(scene: SceneFile, viewpoint: str | None = None) -> SceneP
 
 
 class ScenePresets:
-    """The presets of one simulated camera: those of its scene, and those saved since it was opened.
+    """A simulated camera's presets: those of its scene, and those saved since the camera was opened.
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands; None for the viewpoint of the scene's home preset.
+        viewpoint: The camera's viewpoint; None for that of the scene's home preset.
 
     Attributes:
         home: The camera's home preset.
@@ -77,7 +77,7 @@ class ScenePresets:
         check_preset_name(name)
         if name == self.home.name:
             raise CameraError(f"The preset '{name}' is the home preset and cannot be replaced. Choose another name.")
-        # Names in scene files are kebab-case. Operators may choose any name, so it is not validated again.
+        # Scene files require kebab-case names, but operators may choose any name, so the model is constructed without validation.
         self._presets[name] = ScenePreset.model_construct(
             name=name, viewpoint=viewpoint, description=description, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom
         )

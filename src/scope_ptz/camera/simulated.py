@@ -1,4 +1,4 @@
-"""A simulated camera, which renders views of a viewpoint's stored panorama and moves like a motorised head."""
+"""A simulated camera, which renders views from a viewpoint's stored panorama and moves like a motorised head."""
 
 from __future__ import annotations
 
@@ -22,38 +22,38 @@ from scope_ptz.simulator.prefetch import Prefetch
 from scope_ptz.simulator.views import RENDERING_VERSION, picture
 
 COMMAND_POLL_S = 0.05
-"""Interval, in seconds, at which a moving camera checks for a new command."""
+"""Interval in seconds at which a moving camera checks for a new command."""
 
 VIEWPOINT_SWITCH_S = 0.5
-"""Time, in seconds, to switch to another viewpoint, like switching between two cameras of an installation."""
+"""Time in seconds to switch to another viewpoint, as an operator would switch between two cameras."""
 
 
-_RENDERING: RunVar[CapacityLimiter] = RunVar("scope_ptz_rendering")
+_RENDER_LIMITER: RunVar[CapacityLimiter] = RunVar("scope_ptz_rendering")
 
 
 def _render_limiter() -> CapacityLimiter:
-    """Return the limiter of concurrent rendering. Without it, many simultaneous requests would all be late."""
+    """Return the limiter for concurrent rendering. Without it, many simultaneous requests would slow each other down."""
     try:
-        return _RENDERING.get()
+        return _RENDER_LIMITER.get()
     except LookupError:
         limiter = CapacityLimiter(2 * (os.cpu_count() or 1))
-        _RENDERING.set(limiter)
+        _RENDER_LIMITER.set(limiter)
         return limiter
 
 
 class SimulatedCamera(Camera):
-    """An AXIS M5075-G in a scene, or the camera from which a scene was captured. Many cameras can share one scene.
+    """An AXIS M5075-G in a scene, or a twin of the camera from which a scene was captured. Many cameras can share a scene.
 
-    On the given clock, moves take as long as those of a real head. In evaluations, a move only advances the clock; in interactive
-    use, it also takes real time.
+    On the scene clock, moves take as long as with a real head. In evaluations, a move only advances the clock; in interactive use,
+    it also takes real time.
 
     Args:
         scene: The scene.
-        viewpoint: Where the camera stands; the default is the viewpoint of the scene's home preset.
+        viewpoint: The initial viewpoint; by default, that of the scene's home preset.
         clock: The scene's clock.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
-        head: The motors; the default is those of the AXIS M5075-G.
+        head: The motors; by default, those of the AXIS M5075-G.
     """
 
     clock: SceneClock
@@ -71,7 +71,7 @@ class SimulatedCamera(Camera):
         self.clock = clock or SceneClock()
         self._scene = scene
         self._presets = ScenePresets(scene.file, viewpoint)
-        # Only the name is stored. Opening a viewpoint would release another one's layers, and a camera that only moves needs none.
+        # Only the name is stored, because opening a viewpoint would release the layers of another, and moving requires no layers.
         self._viewpoint = self._presets.home.viewpoint
         self._info = CameraInfo(
             name=f"{_device_name(scene)} in {scene.file.title}",
@@ -91,7 +91,7 @@ class SimulatedCamera(Camera):
 
     @property
     def viewpoint(self) -> str:
-        """Name of the current optical centre."""
+        """Name of the current viewpoint."""
         return self._viewpoint
 
     @property
@@ -100,7 +100,7 @@ class SimulatedCamera(Camera):
         return self._presets
 
     def prefetch(self) -> Prefetch:
-        """Read the current viewpoint's files in the background, so that later frames do not have to wait for them."""
+        """Start reading the current viewpoint's files in the background, so that later frames do not have to wait for them."""
         return Prefetch(self._scene.viewpoint(self._viewpoint), self._info.frame_width, self._info.optics, self._info.limits)
 
     async def pose(self) -> Pose:
@@ -108,7 +108,7 @@ class SimulatedCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         end, clamped = self._info.limits.clamp(pose)
-        await self._run(end)
+        await self._move_to(end)
         return Arrival(self._pose_now(), clamped)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
@@ -139,7 +139,7 @@ class SimulatedCamera(Camera):
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        """Stop any motion immediately. A simulated head has no braking distance."""
+        """Stop any motion immediately, without a braking distance."""
         self._motion.jump_to(self._pose_now(), self.clock.elapsed_s())
 
     @contextmanager
@@ -159,10 +159,10 @@ class SimulatedCamera(Camera):
         await self.clock.sleep(VIEWPOINT_SWITCH_S)
         return Arrival(end, clamped)
 
-    async def _run(self, end: Pose) -> None:
-        """Move until the picture has settled or another command arrives. A cancelled move stops where it is.
+    async def _move_to(self, end: Pose) -> None:
+        """Move, and wait until the picture has settled or another command arrives. If cancelled, the camera stops where it is.
 
-        While time is frozen, moves take no time, so a sweep that someone watches takes only as long as its pictures.
+        While time is frozen, moves are instantaneous, so an interactive sweep takes only as long as its pictures.
         """
         motion = self._motion
         if self.clock.held:
@@ -171,8 +171,8 @@ class SimulatedCamera(Camera):
         motion.move(end, self.clock.elapsed_s())
         command = motion.commands
         try:
-            while motion.commands == command and (left_s := motion.end_time_s() - self.clock.elapsed_s()) > 1e-9:
-                await self.clock.sleep(min(left_s, COMMAND_POLL_S))
+            while motion.commands == command and (remaining_s := motion.end_time_s() - self.clock.elapsed_s()) > 1e-9:
+                await self.clock.sleep(min(remaining_s, COMMAND_POLL_S))
         except BaseException:
             if motion.commands == command:
                 await self.stop()

@@ -1,4 +1,4 @@
-"""A camera spec: the text that selects a camera, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
+"""Camera specs: texts that select a camera, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class CameraSpec:
-    """A parsed camera spec, which camera factories, including those of plug-ins, receive.
+    """A parsed camera spec, as passed to camera factories and plug-ins.
 
     Attributes:
         scheme: The camera type, in lower case: ``sim``, ``blender``, or the name of a plug-in.
         address: The text after the scheme, without leading slashes or options.
         options: The ``NAME=VALUE`` pairs after a question mark, as in ``blender:yard.blend?samples=4``.
-        name: The name of the camera in ``scope.yaml``; empty if it is not named there.
+        name: The camera's name in ``scope.yaml``; empty if it has none.
     """
 
     scheme: str

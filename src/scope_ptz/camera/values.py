@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CameraInfo:
-    """Information about a camera that is known before it moves.
+    """A camera's properties, which are known before it moves.
 
     Attributes:
-        name: The camera's name, which traces record.
+        name: The camera's name, as recorded in traces.
         limits: Limits of pan, tilt and zoom.
-        optics: The lens, which relates zoom to field of view.
+        optics: The optics, which relate zoom to field of view.
         frame_width: Width of a frame in pixels.
         frame_height: Height of a frame in pixels.
         simulated: Whether the pictures are rendered rather than taken by a real camera.
         capabilities: The camera's optional capabilities.
         rendering: Version of the simulator's rendering; None for other cameras.
-        assumed: Values that the driver assumes until they are measured, such as "field of view".
-        firmware: Version of the device's firmware; empty if it reports none.
-        dry_run: Whether commands are only reported and not carried out, so that every frame shows the initial view.
+        assumed: Names of values that the driver assumes until they are measured, such as "field of view".
+        firmware: Firmware version; empty if the device reports none.
+        dry_run: Whether commands are only reported and not carried out, so that the view does not change.
     """
 
     name: str
@@ -46,25 +46,25 @@ class CameraInfo:
     dry_run: bool = False
 
     def towards(self, pose: Pose, x: float, y: float, zoom_factor: float = 1.0) -> Pose:
-        """Return the pose that centres a point of the picture taken at ``pose``. It may be beyond the limits.
+        """Return the pose that centres a point of the picture taken at ``pose``. The result may be beyond the limits.
 
         Args:
             pose: The current pose.
             x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
             y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
-            zoom_factor: Factor by which the focal length changes.
+            zoom_factor: Factor by which to change the focal length.
 
         Raises:
-            InputError: The point is not within the picture, or the factor is not above 0.
+            InputError: The point is outside the picture, or the factor is not above 0.
         """
         return towards_point(self.optics, self.limits, (self.frame_width, self.frame_height), pose, x, y, zoom_factor)
 
 
 @dataclass(frozen=True, slots=True)
 class FrameOrigin:
-    """The origin of a simulated frame.
+    """The scene, viewpoint, pose and time from which a simulated frame was rendered.
 
-    Only the simulator and ground-truth perception read it; frames of real cameras have none.
+    Only the simulator and ground-truth perception use it. Frames from real cameras have none.
     """
 
     scene: str
@@ -75,15 +75,15 @@ class FrameOrigin:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A picture with the geometry that maps any of its pixels to a direction.
+    """A picture with the geometry that maps its pixels to directions.
 
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
-        pose: The camera's pose at exposure; for a stitched panorama the pose at the start of the sweep.
+        pose: The camera's pose at the time of exposure; for a stitched panorama, the pose at the start of the sweep.
         hfov_deg: Horizontal field of view in degrees.
-        time_s: Time of exposure on the camera's clock, in seconds.
+        time_s: Time of exposure in seconds on the camera's clock.
         projection: The mapping between pixels and directions.
-        origin: Where a simulated frame comes from; None for real cameras.
+        origin: The origin of a simulated frame; None for real cameras.
     """
 
     image: NDArray[np.uint8]
@@ -111,18 +111,18 @@ class Frame:
         return f"<Frame {self.width}x{self.height}, {pose}, hfov_deg={self.hfov_deg:g}, time_s={self.time_s:g}>"
 
     def _repr_html_(self) -> str:
-        """Return the HTML that a notebook displays: the picture, with pose and field of view below."""
+        """Return HTML for notebooks: the picture, with its pose and field of view in the caption."""
         from scope_ptz.camera.notebook import figure_html
 
         pose = self.pose.as_dict()
-        where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
-        place = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
-        return figure_html(self.image, f"{place}{where} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
+        pose_text = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
+        scene_text = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
+        return figure_html(self.image, f"{scene_text}{pose_text} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
 
 
 @dataclass(frozen=True, slots=True)
 class PresetInfo:
-    """A named pose. ``description`` may be empty."""
+    """A preset's name and its description, which may be empty."""
 
     name: str
     description: str = ""
@@ -130,13 +130,13 @@ class PresetInfo:
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """The end of a move.
+    """The result of a move.
 
     Attributes:
-        pose: The pose reached.
-        clamped: The axes that a limit stopped.
-        limited_by: What else stopped the camera early, as a noun phrase such as "the keep-out region 'window'"; empty if nothing
-            did.
+        pose: The pose that the camera reached.
+        clamped: The axes that stopped at a limit.
+        limited_by: Anything else that stopped the camera early, as a noun phrase such as "the keep-out region 'window'"; empty if
+            nothing did.
     """
 
     pose: Pose

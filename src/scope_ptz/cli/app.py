@@ -99,7 +99,7 @@ def ask(
 @app.command(rich_help_panel="Talk to a camera")
 @command
 def chat(session: SessionFlags, models: PairFlags) -> int:
-    """Give several instructions in one conversation. Type /help there for its commands."""
+    """Give several instructions in one conversation. Type /help in the chat to list its commands."""
     from scope_ptz.cli.chat import chat as run
 
     return run(session, models.options())
@@ -254,7 +254,7 @@ def profile(
     ] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Measure a pair on your own servers: speed, well-formed calls, perception latency, and the paper's real-time criterion."""
+    """Measure a planner and a vision model on your own servers: speed, valid calls, and the paper's real-time criterion."""
     from scope_ptz.cli.profile import Workload
     from scope_ptz.cli.profile import profile as run
 

@@ -1,4 +1,4 @@
-"""``scope ask``, and the session class that ``scope chat`` also uses."""
+"""``scope ask``, and the session class that it shares with ``scope chat``."""
 
 from __future__ import annotations
 
@@ -46,15 +46,15 @@ class Session:
         self.opened, self.camera = opened, opened.camera
         self.runs_dir = flags.runs_dir or load_settings().runs_dir
         self.planned: list[str] = []
-        """The commands that a dry run has reported since this list was last cleared."""
+        """The commands that a dry run has reported since the list was last cleared."""
 
     @classmethod
     async def open(cls, flags: SessionFlags, models: ModelOptions, *, realtime: bool) -> Session:
         """Open the camera and connect to the models.
 
         Args:
-            flags: Where the camera starts, and the limits of runs.
-            models: The planner and perception.
+            flags: The options for the camera, its start pose and the limits of runs.
+            models: The options for the planner and perception.
             realtime: Whether moves take as long as with a real camera.
         """
         choice = await resolve_models(models)
@@ -77,7 +77,7 @@ class Session:
     async def run(
         self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
     ) -> RunResult:
-        """Carry out one instruction and write its trace."""
+        """Carry out one instruction, and write the trace of the run."""
         self.opened.record_instruction(instruction)
         labels = RunLabels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
         budgets = Budgets(max_steps=self.flags.max_steps, time_s=self.flags.time_budget)
@@ -141,7 +141,7 @@ def _program() -> str:
 
 
 def make_filmstrip(trace: Trace) -> Path | None:
-    """Draw a run's filmstrip, unless the planner asked for clarification or refused without making a call."""
+    """Draw the filmstrip of a run, unless the planner asked for clarification or refused without making a call."""
     if not trace.calls and (trace.ended is None or trace.ended.outcome in ("clarification", "refused")):
         return None
     return write_filmstrip(trace)
@@ -162,16 +162,16 @@ def _report(folder: RunFolder, planned: list[str] | None, *, as_json: bool) -> i
         note = trace.started.labels.perception_note if filmstrip or planned is not None else ""
         show_end(console, trace.ended, note, folder.path, filmstrip)
     code = exit_code(trace.ended.outcome)
-    return FAILED if code == 0 and planned is None and has_failed_look(trace.calls) else code
+    return FAILED if code == 0 and planned is None and has_failed_perception(trace.calls) else code
 
 
-def has_failed_look(calls: Sequence[Called]) -> bool:
-    """Return whether a run never got a result of a perception tool that it called, so that its answer lacks what was asked."""
+def has_failed_perception(calls: Sequence[Called]) -> bool:
+    """Return whether a perception tool was called in a run but never returned a result."""
     from scope_ptz.tools.registry import TOOLS
 
     failed = {c.outcome.call.name for c in calls if c.outcome.error is not None}
-    worked = {c.outcome.call.name for c in calls if c.outcome.error is None}
-    return bool((failed - worked) & set(TOOLS.perceiving))
+    succeeded = {c.outcome.call.name for c in calls if c.outcome.error is None}
+    return bool((failed - succeeded) & set(TOOLS.perceiving))
 
 
 def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, Any]:
@@ -195,7 +195,7 @@ def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, 
 
 
 def _no_perception() -> Perception:
-    """Return a placeholder for a camera without ground truth or a vision model. Every perception call raises an error."""
+    """Return the placeholder for missing perception, which raises an error for every perception call."""
     from scope_ptz.perception.no_perception import NoPerception
 
     return NoPerception("Name a vision model with --perception; `scope models --role perception` lists them.")

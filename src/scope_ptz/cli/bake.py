@@ -52,7 +52,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
     _make_folder(folder.parent)
     command = _command(settings, console)
-    with _Bars(console) as bars:
+    with _ProgressBars(console) as bars:
         baked = bake(
             source,
             folder,
@@ -63,7 +63,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
             progress=bars,
         )
     for pack in baked.packs:
-        line = f"{pack.folder}: {pack.weight_bytes / 1e6:.2f} MB, {pack.tiles} tiles"
+        line = f"{pack.folder}: {pack.size_bytes / 1e6:.2f} MB, {pack.tiles} tiles"
         console.print(Text(line), soft_wrap=True)
         if pack.uncovered:
             console.print(Text(f"  not covered by a tile: {', '.join(pack.uncovered)}", style="yellow"))
@@ -73,19 +73,19 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
 
 
 def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> int:
-    """Compare the packs of a scene with live renders of random poses, and return 1 if they differ too much."""
+    """Compare a scene's packs with live renders at random poses. Return the exit code, which is 1 if they differ too much."""
     settings, console = load_settings(), Console(highlight=False)
     _check_scene_name(name)
     scene = open_scene(name)
     command = _command(settings, console)
-    with _Bars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
+    with _ProgressBars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
         worker.request("load_scene", {"source": name})
         reports = verify(scene, worker, draw_poses(scene, seed, wide, zoomed), bars, keep=keep)
     return FAILED if _show_comparison(console, reports) else 0
 
 
 def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[str]:
-    """Print the comparison of each pose, and return a sentence for each missed tolerance."""
+    """Print the comparison at each pose, and return a sentence about each missed tolerance."""
     table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
     for report in reports:
         figures = (
@@ -108,8 +108,8 @@ def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[st
     return shortfalls
 
 
-class _Bars:
-    """Progress bars, one for each part of a bake, with the remaining time."""
+class _ProgressBars:
+    """Progress bars with the remaining time, one for each part of a bake."""
 
     def __init__(self, console: Console) -> None:
         self._progress = Progress(
@@ -118,7 +118,7 @@ class _Bars:
         )  # fmt: skip
         self._tasks: dict[str, TaskID] = {}
 
-    def __enter__(self) -> _Bars:
+    def __enter__(self) -> _ProgressBars:
         self._progress.start()
         return self
 

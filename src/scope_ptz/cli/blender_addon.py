@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def build(out: Path, *, as_json: bool) -> None:
-    """Write the zip file of the add-on, and print how to install it."""
+    """Write the add-on's zip file, and print how to install it."""
     from scope_ptz.blender.addon_zip import write_addon_zip
     from scope_ptz.cli.exit import put, put_json
 

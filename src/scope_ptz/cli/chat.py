@@ -1,4 +1,4 @@
-"""``scope chat``: a conversation of several runs that share a camera and a history."""
+"""``scope chat``: a conversation in which several runs share a camera and a history."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from scope_ptz.cli.ask import Session, make_filmstrip
 from scope_ptz.cli.display import LiveView, show_end, show_planned
 from scope_ptz.cli.exit import has_input, print_error
 from scope_ptz.cli.options import SessionFlags
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import InputError
 from scope_ptz.factory.models import ModelOptions
 from scope_ptz.planner.base import PastTurn
@@ -41,7 +41,7 @@ def chat(flags: SessionFlags, models: ModelOptions) -> int:
     """Carry out instructions until /quit or the end of the input, and return the exit code.
 
     The main thread reads lines, and another thread executes them, so that Ctrl-C always reaches the main thread.
-    During a run, Ctrl-C cancels the run. At the prompt, it ends the program.
+    During a run, Ctrl-C cancels the run. At the prompt, Ctrl-C ends the program.
     """
     if not has_input():
         raise InputError("The standard input is closed, so a chat is not possible. Use `scope ask` for one instruction.")
@@ -89,7 +89,7 @@ def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
 
 
 class _Chat:
-    """A conversation: its turns so far, and the folder of saved pictures, if any."""
+    """A conversation, with its turns so far and the folder of saved pictures, if any."""
 
     def __init__(self, session: Session) -> None:
         self.session, self.console = session, Console(highlight=False)
@@ -119,7 +119,7 @@ class _Chat:
             name = await self.pictures.save_picture(await self.session.camera.frame())
             self.console.print(Text(f"Saved {self.pictures.path / name}"), soft_wrap=True)
         else:
-            raise InputError(f"There is no command {plain(line.split()[0])}. Type /help for the commands.")
+            raise InputError(f"There is no command {sanitize(line.split()[0])}. Type /help to list the commands.")
 
     async def _instruct(self, instruction: str) -> None:
         folder = RunFolder.create(self.session.runs_dir, instruction)
@@ -140,7 +140,7 @@ class _Chat:
 
 @contextmanager
 def _line_editing() -> Iterator[None]:
-    """Enable line editing and a history that persists between chats, if there is a terminal and ``readline``."""
+    """Enable line editing and a persistent history, if standard input is a terminal and ``readline`` is available."""
     try:
         import readline
     except ImportError:  # on Windows, the console itself supports line editing

@@ -1,4 +1,4 @@
-"""Terminal output of a run: live steps, and a summary at the end."""
+"""Terminal output of runs: live steps and a final summary."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.text import Text
 
 from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
-from scope_ptz.cli.texts import arguments_text, plain, seconds, shortened
+from scope_ptz.cli.texts import arguments_text, sanitize, seconds_text, shorten
 from scope_ptz.planner.base import CallTools, ToolCall
 
 MAX_PLANNED = 12  # maximum number of dry-run commands to print
@@ -30,35 +30,35 @@ _OUTCOME_WORDS = {
 
 
 class LiveView:
-    """A listener that prints each step as it happens."""
+    """A run listener that prints each step as it happens."""
 
     def __init__(self, console: Console) -> None:
         self.console = console
         self._status: Status | None = None
 
     def __call__(self, record: Started | Decided | Called | Ended) -> None:
-        self._wait_for(None)
+        self._show_status(None)
         match record:
             case Started():
                 self._start(record)
             case Decided(decision=CallTools(calls=calls)):
-                self._wait_for(calls[0])
+                self._show_status(calls[0])
             case Called():
                 self._call(record)
 
-    def _wait_for(self, call: ToolCall | None) -> None:
+    def _show_status(self, call: ToolCall | None) -> None:
         if self._status is not None:
             self._status.stop()
             self._status = None
         if call is not None and self.console.is_terminal:
-            line = Text.assemble("  ", (plain(call.name), "bold"), "  ", (arguments_text(call.arguments), "dim"))
+            line = Text.assemble("  ", (sanitize(call.name), "bold"), "  ", (arguments_text(call.arguments), "dim"))
             self._status = self.console.status(line, spinner="dots")
             self._status.start()
 
     def _start(self, record: Started) -> None:
-        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(record.instruction)), "bold")))
+        self.console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(record.instruction)), "bold")))
         about = f"{record.camera} · planner {record.planner} · perception {record.perception}"
-        self.console.print(Padding(Text(plain(about), style="dim"), (0, 0, 0, 2)))
+        self.console.print(Padding(Text(sanitize(about), style="dim"), (0, 0, 0, 2)))
         self.console.print()
 
     def _call(self, record: Called) -> None:
@@ -70,30 +70,30 @@ class LiveView:
         table.add_column(justify="right", no_wrap=True)
         table.add_row(
             Text(str(record.step), style="cyan"),
-            Text(plain(call.name), style="bold"),
+            Text(sanitize(call.name), style="bold"),
             Text(arguments_text(call.arguments)),
-            Text(seconds(record.timings.total_s), style="dim"),
+            Text(seconds_text(record.timings.total_s), style="dim"),
         )
         if outcome.error is not None:
-            table.add_row("", "", Text(plain(shortened(outcome.error)), style="red"), "")
+            table.add_row("", "", Text(sanitize(shorten(outcome.error)), style="red"), "")
         elif outcome.result is not None:
-            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MAX_MESSAGE_CHARS)), style="green"), "")
+            table.add_row("", "", Text(sanitize(shorten(str(outcome.result["message"]), MAX_MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
 
 
 def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None = None, filmstrip: Path | None = None) -> None:
-    """Print the answer, its evidence, the timings, and the run folder.
+    """Print the answer, the perception note, the timings, and the paths of the run folder and the filmstrip.
 
     Args:
-        console: Where to print.
+        console: The console to print on.
         ended: The run's last record.
-        note: A note about the perception backend, if it is not a model.
-        folder: The run folder. If None, only the answer is printed.
+        note: A note about the perception backend, if it is not a model; otherwise empty.
+        folder: The run folder. If None, only the answer and the note are printed.
         filmstrip: The run's filmstrip, if there is one.
     """
     title, style = _OUTCOME_WORDS[ended.outcome]
     console.print()
-    console.print(Text.assemble((f"{title}: ", style), (plain(ended.text), "bold")))
+    console.print(Text.assemble((f"{title}: ", style), (sanitize(ended.text), "bold")))
     if note:
         console.print(Text(note, style="yellow"))
     if folder is None:
@@ -105,23 +105,23 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
 
 
 def show_planned(console: Console, planned: list[str]) -> None:
-    """Print the commands that a dry run did not execute. A long list is shortened to its first commands and the last one.
+    """Print the commands that a dry run did not execute. A long list is shortened to the first commands and the last command.
 
     Args:
-        console: Where to print.
+        console: The console to print on.
         planned: A sentence about each command.
     """
     console.print()
     console.print(Text("Dry run: the camera has not moved." + (" Planned commands:" if planned else ""), style="yellow"))
     shown = planned if len(planned) <= MAX_PLANNED else planned[: MAX_PLANNED - 1]
     for sentence in shown:
-        console.print(Text(f"  {plain(sentence)}"))
+        console.print(Text(f"  {sanitize(sentence)}"))
     if len(shown) < len(planned):
-        console.print(Text(f"  ... and {len(planned) - len(shown) - 1} more, ending with: {plain(planned[-1])}"))
+        console.print(Text(f"  ... and {len(planned) - len(shown) - 1} more, ending with: {sanitize(planned[-1])}"))
 
 
 def timings_text(timings: Timings) -> str:
-    """Return a sentence that breaks down the duration by stage."""
+    """Return a sentence with the total duration and its breakdown by stage."""
     parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
-    split = ", ".join(f"{name} {seconds(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
-    return f"{seconds(timings.total_s)} in total: {split}."
+    breakdown = ", ".join(f"{name} {seconds_text(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
+    return f"{seconds_text(timings.total_s)} in total: {breakdown}."

@@ -1,4 +1,4 @@
-"""``scope doctor``: report what is installed and what is missing, or check that a model server meets the requirements of SCOPE."""
+"""``scope doctor``: report what is installed and what is missing, or check that a model server meets SCOPE's requirements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rich.text import Text
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.exit import FAILED, put_json, run_async
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import ConfigError, InputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models
@@ -43,8 +43,8 @@ class Finding:
 
     Attributes:
         what: What was checked.
-        verdict: ``optional`` for an absent part that only some commands need; ``missing`` for a required part that is absent or
-            broken.
+        verdict: ``ok``; ``optional`` for an absent part that only some commands need; ``missing`` for a required part that is
+            absent or broken.
         detail: What was found.
         remedy: How to fix it, if necessary.
     """
@@ -56,7 +56,7 @@ class Finding:
 
 
 def check_installation(*, as_json: bool) -> int:
-    """Print all findings, and return 1 if a required part is missing."""
+    """Check the installation, print the findings, and return the exit code, which is 1 if a required part is missing."""
     findings = list(examine(load_settings()))
     if as_json:
         put_json([asdict(finding) for finding in findings])
@@ -71,7 +71,7 @@ def check_installation(*, as_json: bool) -> int:
 
 
 def examine(settings: ScopeSettings) -> Iterator[Finding]:
-    """Check Python, packages, scenes, run folders, Blender and plug-ins, and yield the findings."""
+    """Check Python, packages, scenes, the runs folder, Blender and plug-ins, and yield the findings."""
     yield Finding("scope-ptz", "ok", f"{__version__} in {Path(__file__).parents[1]}")
     is_supported = sys.version_info >= (3, 11)
     yield Finding(
@@ -80,14 +80,14 @@ def examine(settings: ScopeSettings) -> Iterator[Finding]:
         platform.python_version(),
         "" if is_supported else "Install Python 3.11 or later.",
     )
-    yield _packages()
-    yield from _scenes(settings)
-    yield _runs_dir(settings.runs_dir)
-    yield _blender(settings)
-    yield from _plugins()
+    yield _check_packages()
+    yield from _check_scenes(settings)
+    yield _check_runs_dir(settings.runs_dir)
+    yield _check_blender(settings)
+    yield from _check_plugins()
 
 
-def _plugins() -> Iterator[Finding]:
+def _check_plugins() -> Iterator[Finding]:
     """Load and test each installed plug-in."""
     from scope_ptz.factory.plugin_checks import check_plugin
     from scope_ptz.factory.plugins import list_plugins
@@ -101,7 +101,7 @@ def _plugins() -> Iterator[Finding]:
         )
 
 
-def _packages() -> Finding:
+def _check_packages() -> Finding:
     try:
         needed = [r for r in requires("scope-ptz") or [] if "extra ==" not in r]
     except PackageNotFoundError:
@@ -118,7 +118,7 @@ def _packages() -> Finding:
     return Finding("packages", "ok", ", ".join(found))
 
 
-def _scenes(settings: ScopeSettings) -> Iterator[Finding]:
+def _check_scenes(settings: ScopeSettings) -> Iterator[Finding]:
     from scope_ptz.simulator.pack import find_scenes, load_scene
 
     search: tuple[Path, ...] = ()
@@ -139,14 +139,14 @@ def _scenes(settings: ScopeSettings) -> Iterator[Finding]:
         yield Finding(f"scene {DEFAULT_SCENE}", "missing", "not found", f"Reinstall, or bake it: scope scene bake {DEFAULT_SCENE}")
 
 
-def _runs_dir(path: Path) -> Finding:
+def _check_runs_dir(path: Path) -> Finding:
     existing = next(folder for folder in (path, *path.absolute().parents) if folder.exists())
     if existing.is_dir() and os.access(existing, os.W_OK):
-        return Finding("run folders", "ok", f"{path.absolute()} can be written")
-    return Finding("run folders", "missing", f"{path.absolute()} cannot be written", "Set SCOPE_RUNS_DIR, or give --runs-dir.")
+        return Finding("run folders", "ok", f"{path.absolute()} is writable")
+    return Finding("run folders", "missing", f"{path.absolute()} is not writable", "Set SCOPE_RUNS_DIR, or give --runs-dir.")
 
 
-def _blender(settings: ScopeSettings) -> Finding:
+def _check_blender(settings: ScopeSettings) -> Finding:
     from scope_ptz.blender.environment import BPY_VERSION, environment_python, is_ready
 
     configured = settings.blender_python or settings.blender
@@ -163,7 +163,7 @@ def _blender(settings: ScopeSettings) -> Finding:
 
 
 def check_servers(options: ModelOptions, *, as_json: bool) -> int:
-    """Check the model servers, print each result, and return 1 if any check failed."""
+    """Check the model servers, print each result, and return the exit code, which is 1 if any check failed."""
     results: list[tuple[str, ServerCheck]] = []
     console = Console(highlight=False)
 
@@ -183,7 +183,7 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
 
 
 async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
-    """Yield the name of the server and the result for each check."""
+    """Run the server checks, and yield the name of the server and the result of each check."""
     if planner.endpoint is not None:
         from scope_ptz.endpoints.chat_server_checks import UNKNOWN_MODEL_CHECK, check_chat
         from scope_ptz.planner.chat.planning_checks import check_planning
@@ -210,5 +210,5 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
 
 def _show_check(console: Console, server: str, check: ServerCheck) -> None:
     mark, style = _MARKS[check.verdict]
-    head = Text.assemble((f"{mark}  ", style), (f"{plain(server)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
-    console.print(head + Text(plain(check.detail)), soft_wrap=True)
+    head = Text.assemble((f"{mark}  ", style), (f"{sanitize(server)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
+    console.print(head + Text(sanitize(check.detail)), soft_wrap=True)

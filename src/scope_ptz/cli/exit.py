@@ -1,10 +1,10 @@
 """Exit codes, error messages, and robust standard streams.
 
-A command that fails prints one line on stderr. Bad input never shows a traceback. The exit codes are:
+A command that fails prints one line on stderr. Invalid input never causes a traceback. The exit codes are:
 
 0    done
 1    failed: step limit, budget, planner, camera, perception, Blender, full disk, or a replay with differences
-2    wrong input or configuration, or a missing or damaged pack or trace
+2    invalid input or configuration, or a missing or damaged pack or trace
 3    the planner needs clarification
 4    the planner refused the instruction
 130  cancelled (Ctrl-C, or the signals TERM and HUP)
@@ -27,18 +27,18 @@ from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, T
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
 _TERMINATION_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-"""Signals that ask a program to end. Windows has no HUP."""
+"""Signals that request termination. HUP does not exist on Windows."""
 
-_FORCE_EXIT_PRESSES = 3  # this many presses of Ctrl-C end the program without clean-up
+_FORCE_EXIT_PRESSES = 3  # number of Ctrl-C presses after which the program ends without clean-up
 EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
-_BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
+_CODE_BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
 _ASCII = {"›": ">", "°": " deg", "·": "-", "“": '"', "”": '"', "‘": "'", "’": "'", "…": "...", "×": "x", "–": "-", "—": "-"}
 
 
 def exit_code(outcome: str) -> int:
     """Return the exit code for a run's outcome."""
-    return _BY_OUTCOME.get(outcome, FAILED)
+    return _CODE_BY_OUTCOME.get(outcome, FAILED)
 
 
 def put(text: str) -> None:
@@ -56,8 +56,8 @@ def print_error(message: str) -> None:
     sys.stderr.write(f"scope: {message}\n")
 
 
-class _LogLines(logging.Handler):
-    """Prints the package's warnings as lines on stderr."""
+class _WarningHandler(logging.Handler):
+    """A logging handler that prints the package's warnings on stderr."""
 
     def emit(self, record: logging.LogRecord) -> None:
         print_error(record.getMessage())
@@ -65,8 +65,8 @@ class _LogLines(logging.Handler):
 
 def _show_warnings() -> None:
     logger = logging.getLogger("scope_ptz")
-    if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
-        logger.addHandler(_LogLines(logging.WARNING))
+    if not any(isinstance(handler, _WarningHandler) for handler in logger.handlers):
+        logger.addHandler(_WarningHandler(logging.WARNING))
         # Set the level of this logger, because libraries such as the evaluation engine change the root logger's level.
         logger.setLevel(logging.WARNING)
         logger.propagate = False
@@ -77,7 +77,7 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
     """Convert SCOPE's errors and Ctrl-C to a message on stderr and an exit code.
 
     Args:
-        as_json: Also print the error as a JSON object on stdout.
+        as_json: Whether to print the error as a JSON object on stdout too.
     """
     _show_warnings()
     try:
@@ -95,19 +95,19 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
 
 
 def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
-    """Run a coroutine function, and cancel it at the first Ctrl-C. The signals TERM and HUP do the same.
+    """Run a coroutine function, and cancel it on the first Ctrl-C or signal TERM or HUP.
 
-    The function can then stop the camera and record how it ended. A second Ctrl-C is ignored, and a third one ends the program
-    immediately.
+    After the cancellation, the function can stop the camera and record how the run ended. A second Ctrl-C is ignored, and a third
+    ends the program immediately.
 
     Returns:
-        Whether it was cancelled.
+        Whether the function was cancelled.
     """
     import asyncio
 
     import anyio
 
-    async def supervised() -> bool:
+    async def run_supervised() -> bool:
         loop, presses = asyncio.get_running_loop(), 0
         with anyio.CancelScope() as scope:
 
@@ -123,14 +123,14 @@ def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
                 await work()
         return scope.cancelled_caught
 
-    return anyio.run(supervised)
+    return anyio.run(run_supervised)
 
 
 def run_async(work: Callable[[], Awaitable[None]]) -> None:
-    """Run a coroutine function. Ctrl-C cancels it, as in ``run_until_interrupted``.
+    """Run a coroutine function, which Ctrl-C cancels as in ``run_until_interrupted``.
 
     Raises:
-        KeyboardInterrupt: It was cancelled.
+        KeyboardInterrupt: The function was cancelled.
     """
     if run_until_interrupted(work):
         raise KeyboardInterrupt
@@ -138,28 +138,28 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 
 @contextmanager
 def handle_interrupts(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
-    """Replace the handlers of Ctrl-C and of the signals TERM and HUP within the block.
+    """Replace the handlers for Ctrl-C and the signals TERM and HUP within a block.
 
-    A signal that is already ignored, such as HUP under ``nohup``, stays ignored. Outside the main thread, no handler changes.
+    A signal that is already ignored, such as HUP under ``nohup``, stays ignored. Outside the main thread, no handlers are replaced.
     """
     main = threading.current_thread() is threading.main_thread()
-    found = {number: signal.getsignal(number) for number in _TERMINATION_SIGNALS if main}
-    before = {number: current for number, current in found.items() if current not in (signal.SIG_IGN, None)}
+    current_handlers = {number: signal.getsignal(number) for number in _TERMINATION_SIGNALS if main}
+    replaced = {number: current for number, current in current_handlers.items() if current not in (signal.SIG_IGN, None)}
     try:
-        for number in before:
+        for number in replaced:
             signal.signal(number, handler)
         yield
     finally:
-        for number, current in before.items():
+        for number, current in replaced.items():
             signal.signal(number, current)
 
 
 @contextmanager
 def safe_streams() -> Iterator[None]:
-    """Make standard streams safe even if they are closed, cannot be written, are broken pipes, or do not use UTF-8.
+    """Make standard streams safe to use even if they are closed, not writable, broken pipes, or not UTF-8.
 
-    A closed stream is replaced by the null device. Output to a broken pipe (``scope tools | head``) is dropped silently and does
-    not change the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
+    A closed stream is replaced with the null device. Output to a broken pipe (``scope tools | head``) is discarded silently and
+    does not affect the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
     """
     _open_closed_descriptors()
     previous = sys.stdin, sys.stdout, sys.stderr
@@ -184,12 +184,12 @@ def safe_streams() -> Iterator[None]:
 
 
 def has_input() -> bool:
-    """Return whether the program has a standard input; False if it was closed at the start."""
+    """Return whether standard input is available. It is not if it was closed when the program started."""
     return getattr(sys.stdin, "name", None) != os.devnull
 
 
 class _Output:
-    """A text stream that never raises when writing fails. ``failure`` is the first error other than a broken pipe."""
+    """A text stream that never raises an error when it is written to. ``failure`` is the first error other than a broken pipe."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -199,17 +199,17 @@ class _Output:
         try:
             return self._stream.write(text)
         except OSError as error:
-            self._give_up(error)
+            self._discard_output(error)
             return len(text)
 
     def flush(self) -> None:
         try:
             self._stream.flush()
         except OSError as error:
-            self._give_up(error)
+            self._discard_output(error)
 
-    def _give_up(self, error: OSError) -> None:
-        """Redirect all further and buffered output to the null device."""
+    def _discard_output(self, error: OSError) -> None:
+        """Redirect buffered and further output to the null device."""
         if not isinstance(error, BrokenPipeError) and self.failure is None:
             self.failure = error
         with suppress(OSError, ValueError):
@@ -222,7 +222,7 @@ class _Output:
 
 
 def _open_closed_descriptors() -> None:
-    """Open the null device for closed standard descriptors, so that no other file gets their numbers and receives output."""
+    """Open the null device for closed standard descriptors, so that no other file can get their numbers and receive output."""
     for descriptor in range(3):
         try:
             os.fstat(descriptor)
@@ -232,7 +232,7 @@ def _open_closed_descriptors() -> None:
 
 
 def _set_error_handlers(stdin: TextIO, *outputs: _Output) -> None:
-    """Set the error handlers: outputs replace characters that they cannot encode, and the input replaces invalid bytes."""
+    """Make outputs replace characters that they cannot encode, and make the input replace invalid bytes."""
     codecs.register_error("scope-ascii", _ascii_replacement)
     for output in outputs:
         if not _is_unicode(output) and hasattr(output, "reconfigure"):
@@ -246,7 +246,7 @@ def _set_error_handlers(stdin: TextIO, *outputs: _Output) -> None:
 
 
 def _ascii_replacement(error: UnicodeError) -> tuple[str, int]:
-    """Replace characters with an ASCII equivalent or a question mark. This is a codec error handler."""
+    """Replace characters with ASCII equivalents or question marks. This is a codec error handler."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
@@ -257,7 +257,7 @@ def _is_unicode(stream: Any) -> bool:
 
 
 def decode_arguments(arguments: list[str]) -> list[str]:
-    """Decode the arguments that the locale's encoding could not decode as UTF-8."""
+    """Decode arguments as UTF-8 if the locale's encoding could not decode them."""
     return [os.fsencode(text).decode("utf-8", "replace") if _has_surrogates(text) else text for text in arguments]
 
 
@@ -266,6 +266,6 @@ def _has_surrogates(text: str) -> bool:
 
 
 def _ignore_interrupts() -> None:
-    """Ignore Ctrl-C from now on. The program is about to end, and another Ctrl-C would only show a traceback."""
+    """Ignore Ctrl-C from now on, because the program is about to end, and another Ctrl-C would only cause a traceback."""
     with suppress(ValueError):  # signal handlers can only be set in the main thread
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""Files of instructions, one JSON object per line."""
+"""Read instruction files, which contain one JSON object per line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.errors import InputError
 
 
 class InstructionLine(BaseModel):
-    """One line of a file of instructions. Other fields are ignored, so that a task file can also be used."""
+    """A line in an instruction file. Additional fields are ignored, so that task files can also be used."""
 
     model_config = ConfigDict(strict=True)
 
@@ -21,7 +21,7 @@ class InstructionLine(BaseModel):
 
 
 def read_instructions(source: Path) -> Iterator[tuple[int, InstructionLine | InputError]]:
-    """Yield the number of each non-empty line, with its parsed content or an error.
+    """Yield the number of each non-empty line, and its parsed content or an error.
 
     Args:
         source: The file; "-" means standard input.

@@ -1,4 +1,4 @@
-"""Groups of commands that are loaded when one of them is used or listed, so that other commands start fast."""
+"""Command groups that are loaded when one of their commands is used or listed, so that other commands start fast."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 
 class LazyGroup(TyperGroup):
-    """A group whose commands are those of a Typer app in another module. Subclasses set ``module`` and ``attribute``."""
+    """A command group with the commands of a Typer app in another module. Subclasses set ``module`` and ``attribute``."""
 
     module = ""
     """Name of the module to import."""

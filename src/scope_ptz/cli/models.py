@@ -1,4 +1,4 @@
-"""``scope models``: list the known models, their memory needs, and the commands that serve them."""
+"""``scope models``: list models, their memory requirements, and the commands for serving them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from scope_ptz.cli.exit import put, put_json
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry import Model, Registry, Role, load_registry
 from scope_ptz.registry.model_entries import RUNTIME_GB, WINDOW
@@ -23,8 +23,8 @@ _WIDE, _PIPE = 120, 180  # minimum terminal width for the wide table, and the wi
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
 
 
-def registry() -> Registry:
-    """Return the registry of the shipped models and the user's own."""
+def load_model_registry() -> Registry:
+    """Load the registry with the built-in models and the user's models."""
     return load_registry(load_settings().models_file())
 
 
@@ -32,15 +32,15 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
     """Print the models.
 
     Args:
-        role: List only models for this role.
-        memory_gb: List only models that fit into this many GB. A line below the table names models that fit with smaller weights.
+        role: Role of the models to list; None for all roles.
+        memory_gb: Maximum memory of the models to list, in GB. A line below the table names models that fit with smaller weights.
         as_json: Print JSON instead of a table.
     """
-    known_models, requested_role = registry(), _parse_role(role)
+    known_models, requested_role = load_model_registry(), _parse_role(role)
     suitable = [m for m in known_models.models.values() if requested_role is None or requested_role in m.roles]
     listed = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
     if as_json:
-        put_json([describe(known_models, model) for model in listed], indent=2)
+        put_json([model_data(known_models, model) for model in listed], indent=2)
         return
     console = _console()
     wide = console.width >= _WIDE
@@ -72,13 +72,13 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
             names = ", ".join(f"{m.name} ({m.min_memory_server()[1]:.1f} GB)" for m in smaller)
             console.print(Text(f"With smaller weights, {memory_gb:g} GB is enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
-    _name_plugins(console, requested_role)
+    _print_plugin_names(console, requested_role)
     if console.is_terminal:
         console.print(Text("Bold: models of the paper. More: `scope models show NAME`, `scope models pairs`.", style="dim"))
 
 
 def list_plugins(*, as_json: bool) -> None:
-    """Print the installed plug-ins: cameras, planners and perception backends of other packages."""
+    """Print the installed plug-ins: cameras, planners and perception backends from other packages."""
     from scope_ptz.factory.plugins import list_plugins as installed
 
     rows = [{"kind": p.kind, "name": p.name, "package": p.package, "factory": p.target, "problem": p.problem} for p in installed()]
@@ -90,26 +90,26 @@ def list_plugins(*, as_json: bool) -> None:
         return
     table = Table("kind", "name", "package", "factory", "problem", box=None)
     for row in rows:
-        table.add_row(*(plain(value) for value in row.values()))
+        table.add_row(*(sanitize(value) for value in row.values()))
     _console().print(table)
 
 
-def _name_plugins(console: Console, role: Role | None) -> None:
-    """Print the names of plug-ins that can be used like the listed models."""
-    from scope_ptz.factory.plugins import plugins_of
+def _print_plugin_names(console: Console, role: Role | None) -> None:
+    """Print the names of the plug-ins that can be used like the listed models."""
+    from scope_ptz.factory.plugins import list_plugins_of_kind
 
     for kind in ("planner", "perception") if role is None else (role,):
-        names = [f"{plugin.name} ({plugin.package})" for plugin in plugins_of(kind) if not plugin.problem]
+        names = [f"{plugin.name} ({plugin.package})" for plugin in list_plugins_of_kind(kind) if not plugin.problem]
         if names:
-            console.print(Text(plain(f"Plug-ins for --{kind}: {', '.join(names)}")), soft_wrap=True)
+            console.print(Text(sanitize(f"Plug-ins for --{kind}: {', '.join(names)}")), soft_wrap=True)
 
 
 def show_model(name: str, *, as_json: bool) -> None:
-    """Print all registry data of a model."""
-    known = registry()
+    """Print all registry data about a model."""
+    known = load_model_registry()
     model = known.model(name)
     if as_json:
-        put_json(describe(known, model), indent=2)
+        put_json(model_data(known, model), indent=2)
         return
     put(f"{model.title} ({model.name})")
     facts = [
@@ -129,7 +129,7 @@ def show_model(name: str, *, as_json: bool) -> None:
     ]
     for label, value in facts:
         if value:
-            put(f"  {label:12}{plain(value)}")
+            put(f"  {label:12}{sanitize(value)}")
     for server in model.serve:
         _show_serving(known, model, server)
     put(MEMORY_NOTE)
@@ -148,8 +148,8 @@ def _show_serving(known: Registry, model: Model, server: str) -> None:
 
 
 def serve_command(name: str, server: str | None) -> None:
-    """Print only the commands that serve a model, so that a shell can run the output."""
-    known = registry()
+    """Print only the commands for serving a model, so that a shell can run the output."""
+    known = load_model_registry()
     model = known.model(name)
     if server is None:
         if not model.serve:
@@ -161,7 +161,7 @@ def serve_command(name: str, server: str | None) -> None:
 
 def list_pairs(*, as_json: bool) -> None:
     """Print the known pairs of planner and perception models."""
-    known = registry()
+    known = load_model_registry()
     rows = [
         {
             "name": p.name, "planner": p.planner, "perception": p.perception, "origin": p.origin, "paper_average": p.paper_average,
@@ -182,8 +182,8 @@ def list_pairs(*, as_json: bool) -> None:
     console.print(Text("Any PLANNER+PERCEPTION of `scope models` works, and so does one model that does both.", style="dim"))
 
 
-def describe(known: Registry, model: Model) -> dict[str, Any]:
-    """Return a model as JSON data, with memory and commands for each server."""
+def model_data(known: Registry, model: Model) -> dict[str, Any]:
+    """Return a model as JSON data, including the memory and commands for each server."""
     data = model.model_dump(mode="json", exclude={"serve", "key_file", "memory_gb", "kv_kib"})
     servings = {
         server: {

@@ -1,14 +1,14 @@
-"""Options that several commands share, and the decorator that adds them to a command.
+"""Options shared by several commands, and the decorator that adds them to a command.
 
-A group of options is a frozen dataclass whose fields are annotated with a ``typer.Option``. A command includes a group by
-annotating one parameter with it, and ``command`` expands the group into the flat signature that Typer reads::
+An option group is a frozen dataclass whose fields are annotated with ``typer.Option``. To include a group in a command, annotate a
+parameter with the dataclass. The decorator ``command`` expands the group into the flat signature that Typer expects::
 
     @app.command()
     @command
     def ask(instruction: Instruction, session: SessionFlags, models: PairFlags, as_json: JsonOption = False) -> int:
         ...
 
-If such a parameter has a default, it is an instance of the group, and its values are the defaults of the options in that command.
+If such a parameter has a default, it must be an instance of the group, which contains the default values of the options.
 """
 
 from __future__ import annotations
@@ -75,13 +75,13 @@ class StartFlags:
 
         Args:
             realtime: Whether moves take as long as with a real camera.
-            dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each.
+            dry_run: Function that is called with a sentence about each command instead of executing it; None for no dry run.
         """
         from scope_ptz.builtin_names import DEFAULT_SCENE
         from scope_ptz.factory.cameras import open_camera
 
         if self.camera is not None and self.scene is not None:
-            raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
+            raise InputError("Give either --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
         spec = self.camera or f"sim:{DEFAULT_SCENE if self.scene is None else self.scene}"
         return await open_camera(
             spec, viewpoint=self.viewpoint, preset=self.preset, time_s=self.at, realtime=realtime, dry_run=dry_run
@@ -127,7 +127,7 @@ class SessionFlags(StartFlags):
     seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
 
     def in_real_time(self, *, as_json: bool = False) -> bool:
-        """Return whether moves take real time: as requested, or by default only for output on a terminal."""
+        """Return whether moves take real time: as requested or, by default, if the output is a terminal."""
         return self.realtime if self.realtime is not None else sys.stdout.isatty() and not as_json
 
 
@@ -228,13 +228,13 @@ class ModelFlags:
         typer.Option(
             "--timeout",
             min=0.1,
-            help="Timeout of one request to a model server in seconds, including retries.",
+            help="Timeout in seconds for a request to a model server, including retries.",
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.models.resolve_models`` accepts.
+        """Convert the flags to options for ``factory.models.resolve_models``.
 
         Args:
             pair: Name of a pair, for commands that take it as an argument.
@@ -273,10 +273,10 @@ class _PairFlag:
 
 @dataclass(frozen=True, kw_only=True)
 class PairFlags(ModelFlags, _PairFlag):
-    """The options of ``ModelFlags`` and ``--pair``, which comes first in the help."""
+    """The options of ``ModelFlags``, preceded by ``--pair`` in the help."""
 
     def options(self, pair: str | None = None) -> ModelOptions:
-        """Return these flags as the options that ``factory.models.resolve_models`` accepts."""
+        """Convert the flags to options for ``factory.models.resolve_models``."""
         return super().options(pair or self.pair)
 
 
@@ -307,7 +307,7 @@ class JudgeFlags:
     judge_timeout: Annotated[
         float,
         typer.Option(
-            "--judge-timeout", min=0.1, help="Timeout of one judgement in seconds, including retries.", rich_help_panel=JUDGE_PANEL
+            "--judge-timeout", min=0.1, help="Timeout in seconds for a judgement, including retries.", rich_help_panel=JUDGE_PANEL
         ),
     ] = 300.0
     judge_option: Annotated[
@@ -326,7 +326,7 @@ TokensFile = Annotated[Path | None, typer.Option("--tokens", help="File with the
 
 @dataclass(frozen=True, kw_only=True)
 class ServerFlags:
-    """Options for a server: what it serves, where it listens, and what it does with unused cameras."""
+    """Options for a server: what to serve, where to listen, and what to do with unused cameras."""
 
     cameras: Annotated[
         list[str] | None, typer.Option("--camera", help="Camera in scope.yaml, or scene, to serve (default: all; repeatable).")
@@ -353,11 +353,11 @@ class ServerFlags:
 
 
 def command(function: Callable[..., int | None]) -> Callable[..., None]:
-    """Convert a function with option groups to one that Typer can register.
+    """Convert a function with option groups to a function that Typer can register.
 
-    Each parameter annotated with a group becomes one keyword parameter per field of the group. The returned number becomes the exit
-    code. SCOPE's own errors become one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the command has a parameter
-    ``as_json`` that is set, the error is also printed as JSON.
+    Each parameter annotated with a group is expanded to one keyword parameter per field of the group. The returned number becomes
+    the exit code. SCOPE's errors are converted to one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the
+    parameter ``as_json`` is set, errors are also printed as JSON.
     """
     hints = get_type_hints(function, include_extras=True)
     groups: dict[str, type[Any]] = {}
@@ -366,7 +366,7 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
         kind = hints[parameter.name]
         if isinstance(kind, type) and is_dataclass(kind):
             groups[parameter.name] = kind
-            flat += _expand(kind, None if parameter.default is Parameter.empty else parameter.default)
+            flat += _expand_group(kind, None if parameter.default is Parameter.empty else parameter.default)
         else:
             flat.append(parameter.replace(annotation=kind, kind=Parameter.KEYWORD_ONLY))
 
@@ -383,7 +383,7 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
     return run
 
 
-def _expand(group: type[Any], defaults: Any) -> list[Parameter]:
+def _expand_group(group: type[Any], defaults: Any) -> list[Parameter]:
     hints = get_type_hints(group, include_extras=True)
     return [
         Parameter(

@@ -1,6 +1,6 @@
 """Command groups that skip unnecessary conversions of parameter values.
 
-Typer validates every parameter with pydantic, even one that was not given. Importing pydantic and building the validators takes
+Typer validates every parameter with pydantic, even if no value was given. Importing pydantic and building the validators takes
 longer than everything else that ``scope tools`` does.
 """
 
@@ -15,17 +15,17 @@ class LeanGroup(TyperGroup):
     """A command group that skips unnecessary conversions of parameter values, including those of its commands."""
 
     def get_params(self, ctx: Any) -> Any:
-        return _lean(super().get_params(ctx))
+        return _skip_conversions(super().get_params(ctx))
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         command = super().get_command(ctx, cmd_name)
         if command is not None and not isinstance(command, LeanGroup) and "get_params" not in vars(command):
             params_of = command.get_params
-            vars(command)["get_params"] = lambda context: _lean(params_of(context))
+            vars(command)["get_params"] = lambda context: _skip_conversions(params_of(context))
         return command
 
 
-def _lean(parameters: list[Any]) -> list[Any]:
+def _skip_conversions(parameters: list[Any]) -> list[Any]:
     for parameter in parameters:
         if not isinstance(parameter.process_value, _Conversion):
             parameter.process_value = _Conversion(parameter)

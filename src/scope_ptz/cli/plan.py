@@ -9,7 +9,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from scope_ptz.cli.exit import BAD_INPUT, print_error, put_json
-from scope_ptz.cli.texts import arguments_text, plain, shortened
+from scope_ptz.cli.texts import arguments_text, sanitize, shorten
 from scope_ptz.errors import InputError
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
@@ -20,9 +20,9 @@ _INDENT = 5
 
 
 def plan(instruction: str | None, presets: str | None, source: Path | None, *, as_json: bool) -> int:
-    """Plan one instruction or a file of them, and return the exit code."""
+    """Plan one instruction or an instruction file, and return the exit code."""
     if (instruction is None) == (source is None):
-        raise InputError("Give an instruction, or a file of them with --from.")
+        raise InputError("Give either an instruction, or an instruction file with --from.")
     if source is not None:
         if presets is not None:
             raise InputError("--presets cannot be used with --from. Give the presets of each instruction in the file.")
@@ -60,23 +60,23 @@ def _show(planned: Plan, *, as_json: bool) -> None:
         put_json(planned.as_dict())
         return
     console = Console(highlight=False)
-    console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(planned.instruction)), "bold")))
+    console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(planned.instruction)), "bold")))
     number = 0
     for line in planned.outline.lines:
         numbered = isinstance(line, OutlineCall) or not line.heading.startswith(("otherwise", "if that never"))
         number += numbered
         _show_line(console, line, f"{number:3d}  " if numbered else " " * _INDENT)
     if planned.clarification is not None:
-        console.print(Text(plain(shortened(planned.clarification)), style="yellow"))
+        console.print(Text(sanitize(shorten(planned.clarification)), style="yellow"))
 
 
 def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
-    """Print a line of the outline with its inner lines indented below it. Long lines wrap at their own indentation."""
+    """Print a line of the outline, with its inner lines indented below it. Long lines are wrapped with their indentation."""
     grid = Table.grid(Column(width=len(lead), no_wrap=True), Column())
     if isinstance(line, OutlineCall):
         grid.add_row(Text(lead, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))
     else:
-        grid.add_row(Text(lead, "cyan"), Text(plain(line.heading), "yellow"))
+        grid.add_row(Text(lead, "cyan"), Text(sanitize(line.heading), "yellow"))
     console.print(grid)
     for inner in line.lines if isinstance(line, OutlineBlock) else ():
         _show_line(console, inner, " " * (len(lead) + 4))

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.exit import FAILED, put_json, run_async
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera
@@ -35,20 +35,20 @@ from scope_ptz.planner.profile.speed import Speed, Spread, speed_of
 if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
 
-REAL_TIME_S = 0.5  # the paper's criterion: a control loop of about 2 Hz, so at most 500 ms per inference
-_EXTRA_PAN_DEG = 7.0  # difference in pan between two frames of the same preset; used if there are more frames than presets
+REAL_TIME_S = 0.5  # the paper's criterion in seconds per inference, for a control loop of about 2 Hz
+_EXTRA_PAN_DEG = 7.0  # pan offset between frames at the same preset, which is used if there are more frames than presets
 
 
 @dataclass(frozen=True, slots=True)
 class Workload:
-    """The instructions and frames with which a pair is measured.
+    """The instructions and frames for measuring a pair.
 
     Attributes:
-        instructions: A file to use instead of the packaged instructions.
+        instructions: An instruction file to use instead of the packaged instructions.
         limit: Maximum number of instructions, sampled evenly.
         frames: Number of frames for perception.
-        scene: Scene to take the frames from.
-        prompts: Whether to measure the effect of small edits of the prompt and the instruction.
+        scene: Scene from which to take the frames.
+        prompts: Whether to measure the effect of small edits to the prompt and the instruction.
     """
 
     instructions: Path | None = None
@@ -61,7 +61,7 @@ class Workload:
 class RoleMeasurements(BaseModel):
     """The measurements of a planner or a perception backend.
 
-    ``meets_real_time`` is None if all requests, or all requests of one skill, failed.
+    ``meets_real_time`` is None if all requests, or all requests for one skill, failed.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -79,13 +79,13 @@ class RoleMeasurements(BaseModel):
 
 
 def profile(options: ModelOptions, workload: Workload, *, as_json: bool) -> int:
-    """Measure a pair and print the report.
+    """Measure a pair, and print the report.
 
     Returns:
-        0 whether or not the criterion is met; 1 if it cannot be evaluated because requests failed.
+        The exit code: 1 if the real-time criterion cannot be evaluated because requests failed, otherwise 0.
     """
     report: dict[str, Any] = {}
-    rows = _rows(workload)
+    rows = _load_instructions(workload)
 
     async def work() -> None:
         choice = await resolve_models(options)
@@ -109,7 +109,7 @@ def profile(options: ModelOptions, workload: Workload, *, as_json: bool) -> int:
     return FAILED if report["real_time"] == "unknown" else 0
 
 
-def _rows(workload: Workload) -> tuple[InstructionRow, ...]:
+def _load_instructions(workload: Workload) -> tuple[InstructionRow, ...]:
     rows = load_rows() if workload.instructions is None else read_rows(workload.instructions)
     if workload.limit is not None and workload.limit < len(rows):
         rows = tuple(rows[i * len(rows) // workload.limit] for i in range(workload.limit))
@@ -122,7 +122,7 @@ async def _measure_planner(choice: ResolvedPlanner, rows: tuple[InstructionRow, 
     planner, trials = make_planner(choice), []
     try:
         first = await ask_once(planner, rows[0])  # loads the model, opens the connection, and fills the prefix cache
-        with _bar("planner", len(rows)) as advance:
+        with _progress_bar("planner", len(rows)) as advance:
             for row in rows:
                 trials.append(await ask_once(planner, row))
                 advance()
@@ -137,7 +137,7 @@ async def _measure_planner(choice: ResolvedPlanner, rows: tuple[InstructionRow, 
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
-        **_against_criterion(speed.turn_s.median if speed.turn_s else None),
+        **_criterion_fields(speed.turn_s.median if speed.turn_s else None),
     )
 
 
@@ -146,7 +146,7 @@ async def _measure_perception_backend(choice: ResolvedPerception, workload: Work
     frames = await _frames(workload.scene, workload.frames)
     perception = make_perception(choice, None, 0)
     try:
-        with _bar("perception", len(frames) * len(perception.skills)) as advance:
+        with _progress_bar("perception", len(frames) * len(perception.skills)) as advance:
             speed = await measure_perception(perception, frames, advance)
     finally:
         await perception.close()
@@ -159,16 +159,16 @@ async def _measure_perception_backend(choice: ResolvedPerception, workload: Work
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
-        **_against_criterion(speed.slowest_median_s),
+        **_criterion_fields(speed.slowest_median_s),
     )
 
 
-def _against_criterion(median_s: float | None) -> dict[str, Any]:
+def _criterion_fields(median_s: float | None) -> dict[str, Any]:
     return {"slowest_median_s": median_s, "meets_real_time": None if median_s is None else median_s <= REAL_TIME_S}
 
 
 async def _frames(scene_name: str, count: int) -> list[Frame]:
-    """Return frames of a scene's presets. If ``count`` exceeds the number of presets, further frames have a shifted pan."""
+    """Take frames at a scene's presets. If ``count`` exceeds the number of presets, further frames are shifted in pan."""
     from scope_ptz.geometry import Pose
 
     async with await open_camera(f"sim:{scene_name}") as opened:
@@ -203,7 +203,7 @@ def _verdict(meets_real_time: list[bool | None]) -> str:
 
 
 @contextmanager
-def _bar(title: str, total: int) -> Iterator[Callable[[], None]]:
+def _progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
     """Show a progress bar if stderr is a terminal, and yield the function that advances it."""
     console = Console(stderr=True)
     columns = (*Progress.get_default_columns(), TextColumn(title))
@@ -243,7 +243,7 @@ def _show_role(console: Console, role: str, measured: RoleMeasurements) -> None:
     computed = f"; computed: {measured.computed_memory_gb:g} GB" if measured.computed_memory_gb is not None else ""
     console.print(f"  {'memory':16}{reported}{computed}")
     for name, value in measured.serving.items():
-        console.print(Text(plain(f"  {name}: {value}"), style="dim"), soft_wrap=True)
+        console.print(Text(sanitize(f"  {name}: {value}"), style="dim"), soft_wrap=True)
 
 
 def _show_planner(console: Console, speed: Speed) -> None:
@@ -278,7 +278,7 @@ def _show_failures(console: Console, failures: dict[str, int], first: str) -> No
     if failures:
         console.print(Text(f"  {'failures':16}{', '.join(f'{n} {kind}' for kind, n in failures.items())}", style="red"))
     if failures and first:
-        console.print(Text(f"  {'first failure':16}{plain(first)}", style="red"), soft_wrap=True)
+        console.print(Text(f"  {'first failure':16}{sanitize(first)}", style="red"), soft_wrap=True)
 
 
 def _show_prompts(console: Console, result: Sensitivity) -> None:

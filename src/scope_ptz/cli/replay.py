@@ -1,4 +1,4 @@
-"""``scope replay``: show a recorded run, and repeat it if it was made with a simulated camera."""
+"""``scope replay``: show a recorded run, and repeat it if it used a simulated camera."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.ask import summary
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.exit import BAD_INPUT, FAILED, put_json, run_async
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
@@ -26,7 +26,7 @@ _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 
 
 def replay(run: Path, *, as_json: bool) -> int:
-    """Show and repeat a run, and return the exit code: 0 only if calls were repeated and gave the same results."""
+    """Show and repeat a run. Return the exit code, which is 0 only if calls were repeated and gave the same results."""
     trace = read_trace(run)
     reason = "" if trace.calls else _NO_CALLS
     result: Replay | None = None
@@ -64,7 +64,7 @@ async def _repeat(trace: Trace) -> Replay:
 
 
 def _ignore(report: str) -> None:
-    """Ignore a report of the dry run, because the results of the calls contain the same information."""
+    """Ignore a dry-run report, because the results of the calls contain the same information."""
 
 
 async def _move_to_start(camera: SimulatedCamera, started: Started) -> None:
@@ -87,7 +87,7 @@ def _show(trace: Trace, result: Replay | None, reason: str) -> None:
     for call in trace.calls:
         view(call)
         if difference := differences.get((call.step, call.index)):
-            console.print(Text(f"     differs: {plain(difference)}", style="bold red"))
+            console.print(Text(f"     differs: {sanitize(difference)}", style="bold red"))
     if trace.ended is None:
         console.print(Text("The trace ends here: the run was interrupted.", style="bold red"))
     else:
@@ -99,14 +99,14 @@ def _show(trace: Trace, result: Replay | None, reason: str) -> None:
 
 def _verdict(result: Replay | None, reason: str) -> str:
     if result is None:
-        return f"Shown from the trace only, not repeated: {plain(reason)}"
+        return f"Shown from the trace only, not repeated: {sanitize(reason)}"
     count = len(result.comparisons)
     if not result.matches:
         differing = sum(1 for c in result.comparisons if c.difference)
-        tail = f"; {plain(result.outcome_difference)}" if result.outcome_difference else ""
+        tail = f"; {sanitize(result.outcome_difference)}" if result.outcome_difference else ""
         return f"Repeated without models: {differing} of {count} calls gave different results{tail}."
     if reason:
-        return f"Shown from the trace only: {plain(reason)}."
+        return f"Shown from the trace only: {sanitize(reason)}."
     return f"Repeated without models: all {count} calls gave the same results."
 
 

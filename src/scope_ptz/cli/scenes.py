@@ -16,7 +16,7 @@ from rich.text import Text
 
 from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import StartFlags
-from scope_ptz.cli.texts import plain
+from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import InputError, OutputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.scenes import open_scene, scene_search
@@ -26,13 +26,13 @@ from scope_ptz.simulator.card import capture_summary, card, folder_bytes, markdo
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene, find_scenes
 
-MAX_NAMED = 8  # maximum number of names in each list of the short card; the rest is only counted
+MAX_NAMED = 8  # maximum number of names in each list on the short card; the others are only counted
 
 
 def list_scenes(*, as_json: bool) -> int:
-    """Print every scene with its viewpoints and sizes, and the errors of those that cannot be loaded."""
+    """Print every scene with its viewpoints and sizes, and the errors for scenes that cannot be loaded."""
     folders = dict(sorted(find_scenes(scene_search(load_settings())).items()))
-    scenes = [_facts(name, folder) for name, folder in folders.items()]
+    scenes = [_scene_data(name, folder) for name, folder in folders.items()]
     if as_json:
         put_json(scenes)
         return 0
@@ -48,11 +48,11 @@ def list_scenes(*, as_json: bool) -> int:
     console.print(table)
     for scene in scenes:
         if "error" in scene:
-            console.print(Text(plain(f"{scene['name']} cannot be loaded: {scene['error']}"), style="red"), soft_wrap=True)
+            console.print(Text(sanitize(f"{scene['name']} cannot be loaded: {scene['error']}"), style="red"), soft_wrap=True)
     return 0
 
 
-def _facts(name: str, folder: Path) -> dict[str, Any]:
+def _scene_data(name: str, folder: Path) -> dict[str, Any]:
     """Return a scene as JSON data. ``error`` is present only if the scene cannot be loaded."""
     try:
         file = open_scene(name).file
@@ -70,7 +70,7 @@ def _facts(name: str, folder: Path) -> dict[str, Any]:
 
 
 def print_markdown(name: str, sheet: Path | None) -> None:
-    """Print a scene's card as a Markdown page that links to its contact sheet."""
+    """Print a scene's card as a Markdown page with a link to the contact sheet."""
     put(markdown(open_scene(name), None if sheet is None else str(sheet)).rstrip("\n"))
 
 
@@ -79,14 +79,14 @@ def show_scene(name: str, sheet: Path | None, *, open_sheet: bool | None, everyt
 
     Args:
         name: The scene.
-        sheet: PNG file for the contact sheet; None writes it to the cache folder.
-        open_sheet: Whether to open the sheet in a picture viewer; None opens it if there is a terminal and a desktop.
-        everything: Whether to print the whole card instead of one that fits on a screen.
+        sheet: PNG file for the contact sheet; None for a file in the cache folder.
+        open_sheet: Whether to open the sheet in a picture viewer; None to open it if there is a terminal and a desktop.
+        everything: Whether to print the whole card instead of a short card that fits on a screen.
     """
     scene = open_scene(name)
     file, console = scene.file, Console(highlight=False)
-    made = f"Blender {file.blender_version}" if file.captured is None else "captured"
-    console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, {made})", "dim")))
+    origin = f"Blender {file.blender_version}" if file.captured is None else "captured"
+    console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, {origin})", "dim")))
     if everything:
         _print_card(console, scene)
     else:
@@ -109,7 +109,7 @@ def _print_card(console: Console, scene: Scene) -> None:
 
 
 def _print_short_card(console: Console, scene: Scene) -> None:
-    """Print the viewpoints with their presets, and summaries of objects and texts."""
+    """Print the viewpoints with their presets, and summaries of the objects and texts."""
     file = scene.file
     width = max(len(preset.name) for preset in file.presets)
     for viewpoint in file.viewpoints:
@@ -122,10 +122,10 @@ def _print_short_card(console: Console, scene: Scene) -> None:
         for preset in file.presets:
             if preset.viewpoint == viewpoint.name:
                 home = " (home)" if preset.name == file.home_preset else ""
-                line = f"{_pose(preset)}{home}  {preset.description}"
+                line = f"{_pose_text(preset)}{home}  {preset.description}"
                 _print_line(console, Text.assemble("  ", (f"{preset.name:{width}}", "bold"), "  ", line))
     if file.captured is not None:
-        console.print(Text.assemble(("Captured", "bold cyan"), " " + plain(capture_summary(file.captured))))
+        console.print(Text.assemble(("Captured", "bold cyan"), " " + sanitize(capture_summary(file.captured))))
         return
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     counts = [f"{count} {category}" for category, count in categories.most_common()]
@@ -144,7 +144,7 @@ def _print_line(console: Console, text: Text) -> None:
     console.print(text, no_wrap=True, overflow="ellipsis")
 
 
-def _pose(preset: ScenePreset) -> str:
+def _pose_text(preset: ScenePreset) -> str:
     return f"pan {preset.pan_deg:g}°, tilt {preset.tilt_deg:g}°, zoom {preset.zoom:g}x"
 
 
@@ -172,12 +172,12 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
 
 def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, float | None, float | None], out: Path) -> None:
-    """Save the view of a camera as a picture file.
+    """Save a camera's view as a picture file.
 
     Args:
-        flags: The camera and its start.
-        name: The scene of a simulated camera, if ``flags`` has neither scene nor camera.
-        pose: Pan and tilt in degrees, and zoom; None keeps the value at the start.
+        flags: The options for the camera and its start pose.
+        name: The scene of a simulated camera, if ``flags`` contains neither scene nor camera.
+        pose: Pan and tilt in degrees, and zoom; None to keep the value of the start pose.
         out: The picture file.
     """
     from PIL import Image
@@ -189,7 +189,7 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
     async def work() -> None:
         async with await start.open() as opened:
             current = await opened.camera.pose()
-            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(current), strict=True))
+            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _pose_values(current), strict=True))
             try:
                 arrival = await opened.camera.move(Pose(pan, tilt, zoom))
             except ValueError as error:
@@ -202,7 +202,7 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
     run_async(work)
 
 
-def _parts(pose: Pose) -> tuple[float, float, float]:
+def _pose_values(pose: Pose) -> tuple[float, float, float]:
     return pose.pan_deg, pose.tilt_deg, pose.zoom
 
 

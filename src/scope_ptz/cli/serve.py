@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from scope_ptz.serve.site.site import Site
 
 SWITCH_INTERVAL_S = 0.001
-"""Seconds for which a thread may run before others get a turn. With the default of 5 ms, rendering would delay a ``stop``."""
+"""Maximum time in seconds that a thread runs before others get a turn. The default of 5 ms would delay ``stop`` calls."""
 
 
 Serving = Literal["api", "page", "mcp"]
-"""What a server offers: the HTTP API with MCP, the operator's page in addition, or only MCP."""
+"""What a server offers: "api" (the HTTP API and MCP), "page" (also the operator's page), or "mcp" (only MCP)."""
 
 _PACKAGES = ("fastapi", "mcp", "mcp_types", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets")
 
@@ -35,26 +35,26 @@ def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> N
     from scope_ptz.settings import load_settings
 
     _prepare_process()
-    with _name_missing_extra("console" if kind == "page" else "serve"):
+    with _explain_missing_package("console" if kind == "page" else "serve"):
         from scope_ptz.serve.security.access import Access
         from scope_ptz.serve.security.origins import is_loopback
 
-        serving = _serving(kind)
-    site = _site(flags)
+        serve_site = _server_function(kind)
+    site = _site_factory(flags)
     host, names = flags.host, flags.name or []
-    needed = flags.tokens is not None or not is_loopback(host) or bool(names)
-    access = Access(host, _tokens(flags.tokens or load_settings().tokens) if needed else None, tuple(names))
+    needs_tokens = flags.tokens is not None or not is_loopback(host) or bool(names)
+    access = Access(host, _tokens(flags.tokens or load_settings().tokens) if needs_tokens else None, tuple(names))
 
     async def work() -> None:
         import anyio
 
         opened = site()
-        async with serving(opened, access, flags.port) as bound:
-            shown = f"[{host}]" if ":" in host else host
-            url = f"http://{shown}:{bound}"
-            allowed = "with tokens" if needed else "on this machine only"
+        async with serve_site(opened, access, flags.port) as bound_port:
+            address = f"[{host}]" if ":" in host else host
+            url = f"http://{address}:{bound_port}"
+            allowed = "with tokens" if needs_tokens else "on this machine only"
             if as_json:
-                put_json({"url": url, "cameras": list(opened.stations), "pairs": list(opened.pairs.names), "tokens": needed})
+                put_json({"url": url, "cameras": list(opened.stations), "pairs": list(opened.pairs.names), "tokens": needs_tokens})
             elif kind == "page":
                 put(f"Open {url} in a browser ({allowed}). Press Ctrl-C to stop.")
             elif kind == "mcp":
@@ -78,9 +78,9 @@ def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> 
     """Serve cameras to MCP clients, on standard input and output or over HTTP.
 
     Args:
-        flags: The options of the server. On standard input and output, those about the network do not apply.
+        flags: The server options. Network options do not apply to standard input and output.
         transport: ``stdio`` or ``http``.
-        role: The role of the client on standard input and output. Over HTTP, tokens determine the roles.
+        role: The client's role on standard input and output. Over HTTP, tokens determine the roles.
         as_json: Whether to print the address as JSON.
     """
     if transport not in ("stdio", "http"):
@@ -91,17 +91,17 @@ def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> 
         run_server(flags, kind="mcp", as_json=as_json)
         return
     if as_json:
-        raise InputError("--json applies to --transport http, because standard output carries protocol messages.")
+        raise InputError("--json requires --transport http, because standard output carries protocol messages with stdio.")
     from scope_ptz.cli.exit import run_async
     from scope_ptz.settings import load_settings
 
     _prepare_process()
-    with _name_missing_extra("serve"):
+    with _explain_missing_package("serve"):
         from scope_ptz.serve.mcp.stdio import serve_stdio
     if sys.stdin.isatty():
         sys.stderr.write("This command speaks MCP on standard input and output. Configure it in an assistant; see docs/mcp.md.\n")
-    # Desktop programs start commands in any folder, which may not be writable.
-    site = _site(flags, load_settings().user_runs_folder())
+    # Desktop programs may start this command in a folder that is not writable.
+    site = _site_factory(flags, load_settings().user_runs_folder())
     run_async(lambda: serve_stdio(site(), role="operator" if role == "operator" else "viewer"))
 
 
@@ -113,8 +113,8 @@ def _prepare_process() -> None:
 
 
 @contextmanager
-def _name_missing_extra(extra: str) -> Iterator[None]:
-    """Convert the error about a missing package of the server to a message that names the extra with the package.
+def _explain_missing_package(extra: str) -> Iterator[None]:
+    """Convert the error for a missing package to a message that states how to install the package.
 
     Raises:
         InputError: A package is missing.
@@ -124,11 +124,13 @@ def _name_missing_extra(extra: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if (package := (error.name or "").split(".")[0]) not in _PACKAGES:
             raise
-        raise InputError(f"The server needs {package}. Install it with: pip install 'scope-ptz[{extra}]'.") from error
+        raise InputError(
+            f"The server requires the package {package}. Install it with: pip install 'scope-ptz[{extra}]'."
+        ) from error
 
 
-def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:
-    """Return the function that serves a site with access rules on a port, and yields the port."""
+def _server_function(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:
+    """Return a context manager function that serves a site on a port with access rules, and yields the bound port."""
     if kind == "page":
         from scope_ptz.console.server import serve_console
 
@@ -141,33 +143,36 @@ def _serving(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContex
 
     @asynccontextmanager
     async def only_mcp(site: Site, access: Access, port: int) -> AsyncIterator[int]:
-        async with serve_mcp(site, access) as route, serve(site, access, port=port, app=mcp_application(access, route)) as bound:
-            yield bound
+        async with (
+            serve_mcp(site, access) as route,
+            serve(site, access, port=port, app=mcp_application(access, route)) as bound_port,
+        ):
+            yield bound_port
 
     return only_mcp
 
 
-def _site(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site]:
-    """Check the options of a site, and return a function that creates it, to be called in the event loop.
+def _site_factory(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site]:
+    """Check the options for a site, and return a function that creates it. Call the function in the event loop.
 
     Args:
-        flags: The options.
-        runs_dir: The default of the runs folder; None for that of the settings.
+        flags: The server options.
+        runs_dir: The default runs folder; None to use the folder in the settings.
     """
     from scope_ptz.serve.site.site import Site, SiteOptions, idle_returns, site_cameras
     from scope_ptz.serve.site.station import IdleReturn
     from scope_ptz.settings import load_settings
 
     settings, cameras = load_settings(), flags.cameras or []
-    chosen = site_cameras(cameras, settings)
+    served_cameras = site_cameras(cameras, settings)
     idle = None if flags.idle_after is None else IdleReturn(flags.idle_after, flags.idle_preset)
     folder, pairs = flags.runs_dir or runs_dir or settings.runs_dir, tuple(flags.pair or ())
     options = SiteOptions(folder, tuple(cameras), pairs, idle=idle, idle_by_camera=idle_returns())
-    return lambda: Site(chosen, options)
+    return lambda: Site(served_cameras, options)
 
 
 async def _end_of_input() -> None:
-    """Wait until the standard input is closed, which also happens when the program that started the server crashes."""
+    """Wait until standard input is closed, which also happens if the program that started the server crashes."""
     import asyncio
     import os
     import threading
@@ -187,12 +192,12 @@ async def _end_of_input() -> None:
 
 
 def add_token(name: str, role: str, tokens: Path | None, *, as_json: bool) -> None:
-    """Create a token and print it."""
+    """Create and print a token."""
     from scope_ptz.cli.exit import put, put_json
 
     if role not in ("viewer", "operator"):
         raise InputError(f"--role must be viewer or operator; got '{role[:40]}'.")
-    file = _file(tokens)
+    file = _token_file(tokens)
     secret = file.add(name, "operator" if role == "operator" else "viewer")
     if as_json:
         put_json({"name": name, "role": role, "token": secret, "file": str(file.path)})
@@ -205,22 +210,22 @@ def list_tokens(tokens: Path | None, *, as_json: bool) -> None:
     """Print the names and roles of tokens."""
     from scope_ptz.cli.exit import put, put_json
 
-    entries = _file(tokens).tokens
+    entries = _token_file(tokens).tokens
     if as_json:
-        put_json([{"name": each.name, "role": each.role, "created": each.created.isoformat()} for each in entries])
+        put_json([{"name": token.name, "role": token.role, "created": token.created.isoformat()} for token in entries])
         return
-    for each in entries:
-        put(f"{each.name:<30} {each.role:<9} {each.created:%Y-%m-%d}")
+    for token in entries:
+        put(f"{token.name:<30} {token.role:<9} {token.created:%Y-%m-%d}")
     if not entries:
         put("No tokens. Create one with `scope token add NAME --role operator`.")
 
 
 def remove_token(name: str, tokens: Path | None) -> None:
     """Remove a token. A running server rejects it from the next request onwards."""
-    _file(tokens).remove(name)
+    _token_file(tokens).remove(name)
 
 
-def _file(tokens: Path | None) -> TokenFile:
+def _token_file(tokens: Path | None) -> TokenFile:
     from scope_ptz.settings import load_settings
 
     return _tokens(tokens or load_settings().tokens)

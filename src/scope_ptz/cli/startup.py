@@ -11,15 +11,15 @@ from types import ModuleType
 from typing import Any
 
 _HELP_OPTIONS = {"-h", "--help"}
-_DEFERRED = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
+_DEFERRED_CLASSES = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
 
 
 @contextmanager
 def pause_garbage_collection() -> Iterator[None]:
     """Pause the garbage collector while modules are imported.
 
-    Imports create many objects and hardly any garbage, so collections are wasted there: they would take a tenth of the run time of
-    ``scope ask``.
+    Imports create many objects but hardly any garbage, so garbage collection during imports is useless. It would take a tenth of
+    the run time of ``scope ask``.
     """
     if not gc.isenabled():
         yield
@@ -34,12 +34,12 @@ def pause_garbage_collection() -> Iterator[None]:
 def prepare_help(arguments: list[str]) -> None:
     """Import the modules that render help pages, if help is requested.
 
-    Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use them, but importing them takes half the
-    run time of ``scope --help``. Therefore, they are imported on first use.
+    Typer also imports Rich's modules for Markdown and tracebacks. Help pages do not use these modules, but importing them takes
+    half the run time of ``scope --help``, so they are imported on first use.
     """
     if arguments and _HELP_OPTIONS.isdisjoint(arguments):
         return
-    deferred = {module: _deferred_module(module, name) for module, name in _DEFERRED.items() if module not in sys.modules}
+    deferred = {module: _deferred_module(module, name) for module, name in _DEFERRED_CLASSES.items() if module not in sys.modules}
     sys.modules.update(deferred)
     try:
         import_module("typer.rich_utils")
@@ -54,6 +54,6 @@ def _deferred_module(module: str, name: str) -> ModuleType:
     def make(cls: type, *args: Any, **kwargs: Any) -> Any:  # noqa: ARG001 - the signature of __new__
         return getattr(import_module(module), name)(*args, **kwargs)
 
-    stand_in = ModuleType(module)
-    setattr(stand_in, name, type(name, (), {"__new__": make}))
-    return stand_in
+    proxy = ModuleType(module)
+    setattr(proxy, name, type(name, (), {"__new__": make}))
+    return proxy

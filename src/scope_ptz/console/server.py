@@ -38,7 +38,7 @@ PAGE_POLICY = "; ".join(
         "form-action 'self'",
     )
 )
-"""The content security policy of the page, which neither loads from nor sends to other hosts."""
+"""The page's content security policy. The page neither loads from nor sends to other hosts."""
 
 _SETTINGS: dict[str, Any] = {
     "browser.gatherUsageStats": False,
@@ -57,7 +57,7 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
 
     Args:
         site: The cameras, models and runs to serve. This function enters the site's context.
-        access: The access rules. The server listens on their host.
+        access: The access rules, including the host on which to listen.
         port: The port; 0 for any free one.
 
     Raises:
@@ -75,7 +75,7 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
 
 
 class _Assets(StaticFiles):
-    """Serves the page's scripts and styles. Browsers check on each load whether a file has changed."""
+    """Serves the page's scripts and styles. Each time the page is loaded, browsers check whether a file has changed."""
 
     async def get_response(self, path: str, scope: MutableMapping[str, Any]) -> Response:
         response = await super().get_response(path, scope)

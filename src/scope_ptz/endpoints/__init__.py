@@ -1,4 +1,4 @@
-"""Model servers: addresses, requests and failures.
+"""Clients for model servers: endpoints, requests and failures.
 
-No HTTP library is imported before the first request, so that commands that use no server start fast.
+HTTP libraries are not imported before the first request, so that commands that do not use a server start quickly.
 """

@@ -1,4 +1,4 @@
-"""Read the replies of a server: limit their size, decode them, and make them safe to store and print."""
+"""Read a server's replies: limit their size, decode them, and make them safe to store and print."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 _MAX_QUOTED_BYTES = 80
-"""Maximum number of bytes of an unreadable body that the error message quotes."""
+"""Maximum number of bytes of an invalid body to quote in an error message."""
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -30,27 +30,27 @@ def content_type(response: Response) -> str:
 
 
 def is_json(media_type: str) -> bool:
-    """Return whether a media type is JSON; a missing one counts as JSON."""
+    """Return whether a media type is JSON. A missing media type counts as JSON."""
     return not media_type or _JSON_TYPE.match(media_type) is not None
 
 
-def wrong_type(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
-    """Return the failure for a reply with the wrong content type."""
+def wrong_type_failure(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
+    """Return a failure for a reply with the wrong content type."""
     return ServerFailure(
         FailureKind.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
     )
 
 
-def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
-    """Return the failure for a reply larger than ``MAX_BODY_BYTES``."""
+def too_large_failure(endpoint: Endpoint, status: int) -> ServerFailure:
+    """Return a failure for a reply larger than ``MAX_BODY_BYTES``."""
     return ServerFailure(FailureKind.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
 
 
 async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes, None]:
-    """Yield the decompressed body in pieces, up to ``MAX_BODY_BYTES``.
+    """Yield the decompressed body in chunks.
 
     Raises:
-        ServerFailure: The body is too large, or the server stops sending after the first piece.
+        ServerFailure: The body exceeds ``MAX_BODY_BYTES``, or the server stopped sending after the first chunk.
     """
     import httpx2
 
@@ -59,7 +59,7 @@ async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes
         async for chunk in response.aiter_bytes():
             received += len(chunk)
             if received > MAX_BODY_BYTES:
-                raise too_large(endpoint, response.status_code)
+                raise too_large_failure(endpoint, response.status_code)
             yield chunk
     except httpx2.ReadTimeout:
         if not received:
@@ -72,25 +72,25 @@ async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
     """Read the body of a response as a JSON object.
 
     Raises:
-        ServerFailure: The content type is wrong, or the body is empty, too large, not a JSON object, or an error message.
+        ServerFailure: The content type is wrong, or the body is empty, is too large, is not a JSON object, or is an error message.
     """
     media_type = content_type(response)
     if not is_json(media_type):
-        raise wrong_type(media_type, endpoint, response.status_code)
+        raise wrong_type_failure(media_type, endpoint, response.status_code)
     body = b"".join([chunk async for chunk in chunks(response, endpoint)])
     return load_object(body, endpoint, response.status_code)
 
 
 def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
-    """Parse a JSON object from bytes. The API key and characters that are unsafe in files or terminals are removed.
+    """Parse a JSON object from bytes. The API key and characters that are unsafe in files or terminals are replaced.
 
     Raises:
-        ServerFailure: The body is empty, not a JSON object, or an error message.
+        ServerFailure: The body is empty, is not a JSON object, or is an error message.
     """
     if not body.strip():
         raise ServerFailure(FailureKind.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
-        # Parsing is not strict, because some servers leave raw line breaks in strings.
+        # Non-strict parsing accepts raw line breaks in strings, which some servers send.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
         detail = f"{_json_error(error)} in '{one_line_excerpt(body[:_MAX_QUOTED_BYTES].decode(errors='replace'), endpoint.secret)}'"
@@ -99,7 +99,7 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
         raise ServerFailure(
             FailureKind.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__} instead of an object"
         )
-    content: dict[str, Any] = _safe(data) if _UNSAFE_ESCAPE.search(body) else data
+    content: dict[str, Any] = _make_safe(data) if _UNSAFE_ESCAPE.search(body) else data
     failure = error_body(content, endpoint, status)
     if failure is not None:
         raise failure
@@ -112,16 +112,16 @@ def _json_error(error: Exception) -> str:
     return "not JSON: nested too deeply" if isinstance(error, RecursionError) else "not UTF-8, or a number has too many digits"
 
 
-def _safe(value: Any) -> Any:
+def _make_safe(value: Any) -> Any:
     if isinstance(value, str):
         return safe_text(value)
     if isinstance(value, list):
-        return [_safe(item) for item in value]
+        return [_make_safe(item) for item in value]
     if isinstance(value, dict):
-        return {safe_text(name): _safe(item) for name, item in value.items()}
+        return {safe_text(name): _make_safe(item) for name, item in value.items()}
     return value
 
 
 def safe_text(text: str) -> str:
-    """Replace control characters, which terminals interpret, and lone surrogates, which UTF-8 cannot encode."""
+    """Replace control characters, which terminals interpret, and lone surrogates, which cannot be encoded as UTF-8."""
     return _UNSAFE.sub("\ufffd", text)

@@ -1,4 +1,4 @@
-"""A circuit breaker: after several failures, calls to an unavailable server fail immediately instead of waiting for a timeout."""
+"""A circuit breaker, which makes calls to an unavailable server fail immediately instead of waiting for a timeout."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ UNAVAILABLE = frozenset(
     }
 )
 UNAVAILABLE_STATUS = frozenset({502, 503, 504})
-"""Failures (``UNAVAILABLE``) and status codes that show that the server, or the connection to it, is not working."""
+"""Status codes that, like the failures in ``UNAVAILABLE``, show that the server or the connection to it is not working."""
 
 
 class Breaker:
-    """A circuit breaker. It opens after ``threshold`` consecutive failures of the server and then blocks requests.
+    """A circuit breaker, which opens after ``threshold`` consecutive server failures and then blocks requests.
 
-    After ``pause_s`` seconds it permits one request as a probe. If that fails too, the pause doubles, up to ``max_pause_s``.
+    After ``pause_s`` seconds, it permits one request as a probe. If the probe fails too, the pause doubles, up to ``max_pause_s``.
     """
 
     def __init__(
@@ -44,14 +44,15 @@ class Breaker:
         self._last: ServerFailure | None = None
 
     @property
-    def last(self) -> ServerFailure | None:
+    def last_failure(self) -> ServerFailure | None:
         """The last failure; None after a success."""
         return self._last
 
     def admit(self) -> float | None:
-        """Admit a request and return None, or return the seconds until one may be sent.
+        """Admit a request and return None, or return the number of seconds until a request may be sent.
 
-        After an admission, the caller must report the outcome with ``succeeded``, ``failed`` or ``abandoned``.
+        If the request is admitted, the caller must report its outcome with ``record_success``, ``record_failure`` or
+        ``record_cancellation``.
         """
         if self._open_until is None:
             return None
@@ -61,14 +62,14 @@ class Breaker:
         self._probing = True
         return None
 
-    def succeeded(self) -> None:
-        """Report a successful request."""
+    def record_success(self) -> None:
+        """Record a successful request."""
         self._failures, self._open_until, self._pause_s, self._probing, self._last = 0, None, self.pause_s, False, None
 
-    def failed(self, failure: ServerFailure) -> None:
-        """Report a failed request. A failure that shows that the server is running counts as a success."""
+    def record_failure(self, failure: ServerFailure) -> None:
+        """Record a failed request. A failure that shows that the server is running counts as a success."""
         if failure.kind not in UNAVAILABLE and failure.status not in UNAVAILABLE_STATUS:
-            self.succeeded()
+            self.record_success()
             return
         self._last = failure
         self._failures += 1
@@ -78,6 +79,6 @@ class Breaker:
             self._open_until = self.clock() + self._pause_s
         self._probing = False
 
-    def abandoned(self) -> None:
-        """Report a cancelled request, which says nothing about the state of the server."""
+    def record_cancellation(self) -> None:
+        """Record a cancelled request, which says nothing about the state of the server."""
         self._probing = False

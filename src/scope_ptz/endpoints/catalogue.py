@@ -1,4 +1,4 @@
-"""A server's list of models, and the base URL of its API."""
+"""Find the models that a server lists, and the base URL of its API."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
 QUICK_TIMEOUTS = Timeouts(connect_s=3.0, first_byte_s=3.0, total_s=5.0)
-"""Short timeouts for optional information, such as the list of models."""
+"""Short timeouts for optional information, such as the model list."""
 
 
 async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
-    """Return the names under which a server serves models, from ``GET /models``.
+    """Return the names of the models that a server lists under ``GET /models``.
 
     Raises:
-        ServerFailure: The server is unreachable or has no list of models.
+        ServerFailure: The server is unreachable or has no model list.
     """
     return tuple(str(entry["id"]) for entry in await _entries(endpoint))
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """Return the endpoint and the models that it lists. If only the URL with ``/v1`` has a list, return the endpoint with that URL.
+    """Return the endpoint and the models that it lists. If there is only a list below ``/v1``, return the endpoint with that URL.
 
     Raises:
-        ServerFailure: Neither address has a list of models.
+        ServerFailure: Neither URL has a model list.
     """
     try:
         return endpoint, await served_models(endpoint)
@@ -56,5 +56,5 @@ async def _entries(endpoint: Endpoint) -> list[dict[str, Any]]:
     listing, _ = await Caller(quick).call(fetch)
     data = listing.get("data", listing.get("models"))
     if not isinstance(data, list):
-        raise ServerFailure(FailureKind.MALFORMED, where=quick.url, detail="no list of models")
+        raise ServerFailure(FailureKind.MALFORMED, where=quick.url, detail="no model list")
     return [entry for entry in data if isinstance(entry, dict) and isinstance(entry.get("id"), str) and entry["id"]]

@@ -1,4 +1,4 @@
-"""The chat client: the ``openai`` client with SCOPE's own retries, deadlines and reply parsing."""
+"""The chat client, which is the ``openai`` client with SCOPE's own retries, deadlines and reply parsing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import anyio
 from pydantic_core import to_json
 
-from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
+from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type_failure
 from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall, ReplyAssembler
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.events import DONE, EventParser
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 
 EVENT_STREAM = "text/event-stream"
-UNKNOWN_FIELD_STATUS = 422  # the status with which strict servers reject unknown request fields
+UNKNOWN_FIELD_STATUS = 422  # the status code with which strict servers reject unknown request fields
 DRAIN_S = 0.1
-"""Maximum seconds to read the rest of a finished stream, so that its connection can be reused."""
+"""Maximum time in seconds to read the rest of a finished stream, so that its connection can be reused."""
 
 
 class ChatClient:
-    """A client of one OpenAI-compatible server. Concurrent callers in one event loop may share it."""
+    """A client for an OpenAI-compatible server. Concurrent callers in one event loop may share it."""
 
     def __init__(self, endpoint: Endpoint, *, caller: Caller | None = None) -> None:
         self.endpoint = endpoint
@@ -45,35 +45,35 @@ class ChatClient:
         extra: dict[str, Any] | None = None,
         **options: Any,
     ) -> ChatReply:
-        """Return the model's reply.
+        """Request a chat completion, and return the model's reply.
 
         Args:
             messages: The conversation in the wire format.
-            tools: Function schemas of the offered tools.
-            stream: Whether to stream the reply, so that the time to its first token can be measured.
+            tools: The function schemas of the available tools.
+            stream: Whether to stream the reply, so that the time to the first token can be measured.
             extra: Request fields that only some servers support.
-            options: Further request fields, such as ``temperature``; fields that are None are omitted.
+            options: Other request fields, such as ``temperature``; fields that are None are omitted.
 
         Raises:
-            ServerFailure: The server gave no usable reply.
+            ServerFailure: The server did not return a usable reply.
         """
         body: dict[str, Any] = {"model": self.endpoint.model, "messages": messages}
         if tools:
             body["tools"] = tools
         body.update((name, value) for name, value in options.items() if value is not None)
         body.update(extra or {})
-        self._client()  # created before the clock starts, because importing the library takes most of a second
+        self._client()  # create the client before timing starts, because importing the library takes most of a second
         began = perf_counter()
-        reply, attempts = await (self._post_streamed(body | {"stream": True}) if stream else self._post(body))
+        reply, attempts = await (self._post_streaming(body | {"stream": True}) if stream else self._post(body))
         return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
 
     async def _post(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        # The body is serialised once for all attempts. The library's own serialiser is several times slower with pictures.
+        # Serialise the body once for all attempts. The library's own serialiser is several times slower with pictures.
         content, streaming = to_json(body, inf_nan_mode="null"), bool(body.get("stream"))
         return await self.caller.call(lambda: self._exchange(content, streaming))
 
-    async def _post_streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """Stream a reply, and ask the server to send token counts at its end.
+    async def _post_streaming(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
+        """Stream a reply, and ask the server to send token counts at the end.
 
         If the server rejects ``stream_options``, repeat the request without it, and omit it from later requests.
         """
@@ -99,7 +99,7 @@ class ChatClient:
         from openai import AsyncStream
 
         began = perf_counter()
-        # With stream=True the library does not read the body, so this client can limit its size.
+        # With stream=True, the library does not read the body, so this client can limit its size.
         answer = await self._client().post(
             "/chat/completions", cast_to=httpx2.Response, content=content, stream=True, stream_cls=AsyncStream[Any]
         )
@@ -109,7 +109,7 @@ class ChatClient:
             if media_type == EVENT_STREAM or (not media_type and streaming):
                 return await self._read_stream(response, began)
             if not is_json(media_type):
-                raise wrong_type(media_type, self.endpoint, response.status_code)
+                raise wrong_type_failure(media_type, self.endpoint, response.status_code)
             assembler = ReplyAssembler(self.endpoint)
             assembler.add(await read_object(response, self.endpoint))
             return assembler.reply()
@@ -149,12 +149,12 @@ class ChatClient:
         return assembler.reply().model_copy(update={"first_token_s": first_token_s})
 
     def _unfinished_stream(self, assembler: ReplyAssembler, head: bytes, status: int) -> ServerFailure:
-        """Return the failure for a stream that was cut off, or for a reply that is not an event stream.
+        """Return a failure for a stream that was cut off, or for a reply that is not an event stream.
 
         Args:
             assembler: The chunks received so far.
             head: The first bytes of the reply.
-            status: The HTTP status.
+            status: The HTTP status code.
         """
         where = self.endpoint.url
         if assembler.chunk_count:
@@ -172,7 +172,7 @@ class ChatClient:
 
             from scope_ptz.endpoints.transport import make_client
 
-            # The transport adds the key, and removes all headers that come from OPENAI_... variables.
+            # The transport adds the key, and removes headers that the library takes from OPENAI_... variables.
             client = make_client(self.endpoint)
             self._openai = AsyncOpenAI(
                 api_key="unused", base_url=self.endpoint.url, max_retries=0, http_client=client, timeout=client.timeout
@@ -180,7 +180,7 @@ class ChatClient:
         return self._openai
 
     async def close(self) -> None:
-        """Close the connections. The next request opens new ones."""
+        """Close the connections. The next request opens new connections."""
         if self._openai is not None:
             client, self._openai = self._openai, None
             await client.close()

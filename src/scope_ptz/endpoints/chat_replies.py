@@ -1,4 +1,4 @@
-"""Assemble a ``ChatReply`` from an OpenAI-style completion, whole or streamed.
+"""Assemble a ``ChatReply`` from an OpenAI-style completion, streamed or not.
 
 Common deviations from the format are accepted. An empty reply raises ``ServerFailure``.
 """
@@ -30,7 +30,7 @@ class ChatReply(BaseModel):
 
     Attributes:
         reasoning: The reasoning that the server returned in a separate field.
-        first_token_s: Seconds to the first token, for streamed replies only.
+        first_token_s: Seconds to the first token; None if the reply was not streamed.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -49,7 +49,7 @@ class ChatReply(BaseModel):
 
 
 class ReplyAssembler:
-    """Collects the chunks of a reply. A reply that is not streamed is a single chunk."""
+    """Assembles a reply from its chunks. A reply that is not streamed is a single chunk."""
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.endpoint = endpoint
@@ -70,12 +70,12 @@ class ReplyAssembler:
         self._usage = _object_of(data.get("usage")) or self._usage
         choices = data.get("choices")
         if choices is not None and not isinstance(choices, list):
-            raise self._malformed("'choices' is not a list")
+            raise self._malformed_reply("'choices' is not a list")
         choice = choices[0] if choices else None
         if choice is None:
             return False
         if not isinstance(choice, dict):
-            raise self._malformed("a choice is not an object")
+            raise self._malformed_reply("a choice is not an object")
         self.has_choice = True
         self.finish_reason = _text_of(choice.get("finish_reason")) or self.finish_reason
         delta = choice.get("delta")
@@ -87,7 +87,7 @@ class ReplyAssembler:
         reasoning = _text_of(message.get("reasoning_content")) or _text_of(message.get("reasoning"))
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
-            raise self._malformed("'tool_calls' is not a list")
+            raise self._malformed_reply("'tool_calls' is not a list")
         if not calls and message.get("function_call"):  # the older interface for function calls
             calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
@@ -101,12 +101,12 @@ class ReplyAssembler:
             return content or ""
         if isinstance(content, list):  # content parts, as in requests
             return "".join(_text_of(part.get("text")) for part in content if isinstance(part, dict))
-        raise self._malformed("'content' is not text")
+        raise self._malformed_reply("'content' is not text")
 
     def _add_call(self, call: Any, *, whole: bool) -> None:
         function = _object_of(call.get("function")) if isinstance(call, dict) else None
         if function is None:
-            raise self._malformed("a tool call is not an object")
+            raise self._malformed_reply("a tool call is not an object")
         index, call_id, name = call.get("index"), _text_of(call.get("id")), _text_of(function.get("name"))
         raw_arguments = function.get("arguments")
         arguments = raw_arguments if isinstance(raw_arguments, str) else "" if raw_arguments is None else json.dumps(raw_arguments)
@@ -122,10 +122,10 @@ class ReplyAssembler:
         stored["arguments"] += arguments
 
     def _slot(self, index: Any, call_id: str, name: str, arguments: str) -> int | None:
-        """Return the index in ``_calls`` of the call that a chunk continues; None if it begins a new call.
+        """Return the index in ``_calls`` of the call that a chunk continues; None if the chunk starts a new call.
 
-        Chunks of a call share an index. However, some servers send no index, send the same index for every call, or repeat id and
-        name in each chunk.
+        The chunks of a call should share an index, but some servers send no index, use the same index for every call, or repeat the
+        id and name in each chunk.
         """
         slot = self._slots.get(index) if isinstance(index, int) else len(self._calls) - 1 if self._calls else None
         if slot is None or not name:
@@ -165,7 +165,7 @@ class ReplyAssembler:
     def _clean(self, text: str) -> str:
         return safe_text(scrub(text, self.endpoint.secret))
 
-    def _malformed(self, detail: str) -> ServerFailure:
+    def _malformed_reply(self, detail: str) -> ServerFailure:
         return ServerFailure(FailureKind.MALFORMED, where=self.endpoint.url, status=200, detail=detail)
 
 
@@ -178,7 +178,7 @@ def _object_of(value: Any) -> dict[str, Any] | None:
 
 
 def _is_object(arguments: str) -> bool:
-    """Return whether arguments are a complete JSON object. If they are, a later chunk with a name begins another call."""
+    """Return whether arguments are a complete JSON object. If so, a later chunk with a name starts another call."""
     try:
         return isinstance(json.loads(arguments), dict)
     except (ValueError, RecursionError):
@@ -186,5 +186,5 @@ def _is_object(arguments: str) -> bool:
 
 
 def _count_of(value: Any) -> int:
-    """Return a token count; 0 for any value that is not one."""
+    """Return the value as a token count; 0 if it is not a valid count."""
     return value if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**53 else 0

@@ -1,4 +1,4 @@
-"""Check that a chat server works, independently of cameras and planning."""
+"""Check whether a chat server works, independently of cameras and planning."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ Verdict = Literal["ok", "partly", "failed"]
 FATAL_FAILURES = frozenset(
     {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
 )
-"""Kinds of failure after which no further check can succeed."""
+"""Failure kinds after which no further check can succeed."""
 _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
 ]
 UNKNOWN_MODEL_CHECK = "an unknown model name"
-"""Name of the last check, which is skipped if the server is unreachable or rejects the key."""
+"""The name of the last check, which is skipped if the server is unreachable or rejects the key."""
 _NO_MODEL = "no-model-has-this-name"
 
 
 class ServerCheck(BaseModel):
-    """The result of one check.
+    """The result of a check.
 
     Attributes:
-        verdict: "partly" means that SCOPE works with the server, but not as well as it could; "failed" means that it does not.
-        kind: The kind of server failure that was raised; empty if there was none.
+        verdict: "partly" means that SCOPE works with the server, but with limitations; "failed" means that it does not.
+        kind: The kind of the server failure; empty if there was none.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -50,7 +50,7 @@ Finding = tuple[Verdict, str]
 
 
 async def run_check(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
-    """Run one check. A ``ScopeError`` makes it a failed check; other errors are raised."""
+    """Run a check. A ``ScopeError`` becomes a failed check; other errors are raised."""
     began, kind = perf_counter(), ""
     try:
         verdict, detail = await check()
@@ -60,7 +60,7 @@ async def run_check(what: str, check: Callable[[], Awaitable[Finding]]) -> Serve
 
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
-    """Check a chat server, and yield each result. The checks end early if the server is unreachable or rejects the key."""
+    """Run the checks for a chat server, and yield each result. Stop early if the server is unreachable or rejects the key."""
     single_retry = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(single_retry)
     try:
@@ -82,7 +82,7 @@ async def _check_listing(endpoint: Endpoint) -> Finding:
     except ServerFailure as failure:
         if failure.kind in FATAL_FAILURES:
             raise
-        return "partly", f"{failure} The model's name must be given as an option."
+        return "partly", f"{failure} Specify the model's name with an option."
     if endpoint.model in served:
         return "ok", f"{len(served)} listed, including '{endpoint.model}'"
     return "partly", f"'{endpoint.model}' is not listed; the server lists {', '.join(served[:10]) or 'none'}"
@@ -90,15 +90,15 @@ async def _check_listing(endpoint: Endpoint) -> Finding:
 
 async def _check_answer(client: ChatClient, *, stream: bool) -> Finding:
     reply = await client.complete(_GREETING, stream=stream)
-    figures = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
+    throughput = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
     if not (reply.text or reply.reasoning):
         return "failed", "the reply is empty"
     if not reply.output_tokens:
         return "partly", "the server does not report token counts, so budgets and speeds are unknown"
     if stream and reply.first_token_s is None:
-        return "partly", f"{figures}; not streamed: it arrived in one piece"
+        return "partly", f"{throughput}; the reply was not streamed, but arrived in one piece"
     first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
-    return "ok", figures + first
+    return "ok", throughput + first
 
 
 async def _check_concurrency(client: ChatClient) -> Finding:
@@ -124,8 +124,8 @@ async def _check_unknown_model(endpoint: Endpoint) -> Finding:
         reply = await client.complete(_GREETING)
     except ServerFailure as failure:
         if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
-            return "ok", f"refused: {failure.kind.value}"
-        return "partly", f"the error does not state that the model is unknown: {failure}"
+            return "ok", f"rejected: {failure.kind.value}"
+        return "partly", f"the error does not say that the model is unknown: {failure}"
     finally:
         await client.close()
     return "partly", f"'{reply.model or 'a model'}' answered a request for an unknown model; check that it is the right model"

@@ -1,4 +1,4 @@
-"""Endpoints: the address, key and timeouts of a model server."""
+"""Endpoints: the URL, key and timeouts for a model server."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from scope_ptz.errors import ConfigError
 
 MAX_KEY_CHARS = 8192
 MAX_BODY_BYTES = 8 * 1024 * 1024
-"""Maximum size of a reply's body in bytes. Larger replies are rejected."""
+"""Maximum size of a reply body in bytes. Larger replies are rejected."""
 
 
 class Timeouts(BaseModel):
     """Timeouts in seconds.
 
     Attributes:
-        connect_s: Limit for connecting.
-        first_byte_s: Limit for the wait until the reply begins, and for each pause during the reply.
-        total_s: Limit for a call with all its retries.
+        connect_s: Timeout for connecting.
+        first_byte_s: Timeout for the start of the reply, and for each pause during the reply.
+        total_s: Timeout for a call with all of its retries.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -31,10 +31,10 @@ class Timeouts(BaseModel):
 
     @classmethod
     def within(cls, total_s: float) -> Timeouts:
-        """Return timeouts for a call that may take ``total_s`` in total.
+        """Return the timeouts for a call that may take ``total_s`` in total.
 
-        If the limit is long, up to half of it may pass before the reply begins, because slow machines need that long for the first
-        token.
+        With a long timeout, up to half of it may pass before the reply starts, because slow machines may take that long to generate
+        the first token.
         """
         default = cls()
         return cls(
@@ -49,9 +49,9 @@ class Endpoint(BaseModel):
 
     Attributes:
         url: The base URL, including ``/v1`` for OpenAI-compatible servers.
-        model: The model's name on the server; empty for servers with one model.
+        model: The model's served name; empty for servers with a single model.
         key: The API key, which is never shown.
-        timeouts: The timeouts of requests.
+        timeouts: The request timeouts.
         retries: The maximum number of retries per call.
     """
 
@@ -75,7 +75,7 @@ class Endpoint(BaseModel):
 
     @property
     def secret(self) -> str:
-        """The key in clear text; empty if there is none. Use it only in request headers and to remove the key from texts."""
+        """The key in clear text; empty if there is none. Use it only in request headers and to mask the key in text."""
         return self.key.get_secret_value() if self.key is not None else ""
 
     @property
@@ -83,30 +83,28 @@ class Endpoint(BaseModel):
         return urlsplit(self.url).hostname or ""
 
     @property
-    def loopback(self) -> bool:
-        """Whether the server is on this machine. Requests to it never use a proxy."""
+    def is_loopback(self) -> bool:
+        """Whether the server is on this machine, in which case requests never use a proxy."""
         return self.host == "localhost" or self.host.startswith("127.") or self.host == "::1"
 
 
 def validate_url(url: str) -> str:
-    """Validate an HTTP or HTTPS address, and return it without a trailing slash.
+    """Validate an HTTP or HTTPS URL, and return it without a trailing slash.
 
     Raises:
-        ConfigError: The text is not an HTTP or HTTPS address, or it contains a user, password, query or fragment.
+        ConfigError: The text is not an HTTP or HTTPS URL, or contains a user name, password, query, fragment or invalid character.
     """
     url = url.strip()
     parts = _split(url)
     if parts is None or parts.scheme not in ("http", "https") or not parts.hostname:
         shown = _without_secrets(url)
-        raise ConfigError(f"'{shown}' is not the address of a model server. Give a full address, such as http://127.0.0.1:8000/v1.")
+        raise ConfigError(f"'{shown}' is not a valid model server URL. Use a full URL, such as http://127.0.0.1:8000/v1.")
     if parts.username is not None or parts.password is not None:
-        raise ConfigError(f"The address of {parts.hostname} contains a user name or password. Set the key's variable instead.")
+        raise ConfigError(f"The URL of {parts.hostname} contains a user name or password. Set the API key's variable instead.")
     if parts.query or parts.fragment:
-        raise ConfigError(
-            f"The address {_without_secrets(url)} contains a query or fragment. Remove everything from ? or # onwards."
-        )
+        raise ConfigError(f"The URL {_without_secrets(url)} contains a query or fragment. Remove everything from ? or # onwards.")
     if any(character.isspace() or not character.isprintable() for character in url):
-        raise ConfigError("The address of a model server contains a space or an unprintable character. Remove it.")
+        raise ConfigError("The model server URL contains a space or an unprintable character. Remove the character.")
     return url.rstrip("/")
 
 
@@ -120,7 +118,7 @@ def _split(url: str) -> SplitResult | None:
 
 
 def _without_secrets(url: str) -> str:
-    """Return an address without user, password, query and fragment, so that it is safe to show."""
+    """Return a URL without user name, password, query and fragment, so that it is safe to show."""
     address = url.split("?", 1)[0].split("#", 1)[0]
     scheme, separator, rest = address.rpartition("://")
     return (scheme + separator + rest.rpartition("@")[2])[:200]
@@ -130,24 +128,24 @@ def validate_key(key: str) -> SecretStr | None:
     """Validate a key for use in a header, and return it; None if it is blank.
 
     Raises:
-        ConfigError: The text cannot be a key. The message does not show it.
+        ConfigError: The text is not a valid key. The message does not show the text.
     """
     key = key.strip()
     if not key:
         return None
     if len(key) > MAX_KEY_CHARS or not key.isascii() or not key.isprintable() or " " in key:
         raise ConfigError(
-            "The key of a model server is too long or contains invalid characters. "
+            "The model server's key is too long or contains invalid characters. "
             "Check that the file or variable contains only the key."
         )
     return SecretStr(key)
 
 
 def key_from_file(path: Path) -> SecretStr | None:
-    """Return the key in a file.
+    """Read a key from a file.
 
     Raises:
-        ConfigError: The file cannot be read, or its content cannot be a key.
+        ConfigError: The file cannot be read, or its content is not a valid key.
     """
     try:
         with path.open(encoding="utf-8") as file:

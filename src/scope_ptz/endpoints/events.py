@@ -1,4 +1,4 @@
-"""An incremental parser of server-sent events."""
+"""An incremental parser for server-sent events."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ DONE = b"[DONE]"
 
 
 class EventParser:
-    """A parser that extracts the data of events from bytes that arrive in arbitrary pieces.
+    """Extracts the data of events from bytes that arrive in arbitrary chunks.
 
-    As the standard requires, lines end with LF, CR or CRLF, comments and other fields are skipped, the data lines of an event are
-    joined, and a byte order mark is ignored. In addition, the blank line after an event or the final line ending may be missing.
+    As the standard specifies, lines end with LF, CR or CRLF, comments and other fields are skipped, an event's data lines are
+    joined, and a byte order mark is ignored. In addition, the blank line after an event and the final line ending may be missing.
     """
 
     def __init__(self) -> None:
@@ -21,11 +21,11 @@ class EventParser:
         self._start_read = False
 
     def feed(self, piece: bytes) -> list[bytes]:
-        """Add a piece, and return the data of the events that it completes."""
+        """Add a chunk, and return the data of the events that it completes."""
         text = self._incomplete + piece
         if not self._start_read:
             if codecs.BOM_UTF8.startswith(text):
-                self._incomplete = text  # a part of the byte order mark, or only the mark
+                self._incomplete = text  # all or part of the byte order mark
                 return []
             text, self._start_read = text.removeprefix(codecs.BOM_UTF8), True
         # A carriage return at the end may be the first half of CRLF.

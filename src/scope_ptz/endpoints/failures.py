@@ -1,4 +1,4 @@
-"""The kinds of model server failures, with a message and a remedy for each."""
+"""Model server failures: their kinds, with a message and a remedy for each."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.errors import ScopeError
 
-MAX_DETAIL_CHARS = 300  # longer messages from servers are truncated
+MAX_DETAIL_CHARS = 300  # longer server messages are truncated
 MIN_SCRUBBED_CHARS = 6
-"""Keys with fewer characters, such as "none" or "EMPTY", are placeholders. They are not removed from texts, because they may be
-ordinary words."""
+"""Minimum length of a key that is masked. Shorter keys, such as "none" or "EMPTY", are placeholders and may be ordinary words."""
 
 
 class FailureKind(StrEnum):
@@ -42,22 +41,22 @@ class FailureKind(StrEnum):
 
 
 _MESSAGES: dict[FailureKind, tuple[str, str]] = {
-    FailureKind.REFUSED: ("cannot be reached", "Start it, or check the address."),
-    FailureKind.DNS: ("has an unknown host name", "Check the address."),
-    FailureKind.TLS: ("has no certificate that this machine trusts", "Check the address and the certificate."),
-    FailureKind.CONNECT_TIMEOUT: ("did not accept the connection in time", "Check the address and the network."),
+    FailureKind.REFUSED: ("cannot be reached", "Start it, or check its URL."),
+    FailureKind.DNS: ("has an unknown host name", "Check the URL."),
+    FailureKind.TLS: ("did not present a certificate that this machine trusts", "Check the URL and the certificate."),
+    FailureKind.CONNECT_TIMEOUT: ("did not accept the connection in time", "Check the URL and the network."),
     FailureKind.FIRST_BYTE_TIMEOUT: (
-        "sent nothing for too long",
+        "sent no data in time",
         "It may be busy or loading. Allow more time, or use a smaller model.",
     ),
     FailureKind.TOTAL_TIMEOUT: ("did not finish in time", "Allow more time, or use a smaller model."),
-    FailureKind.UNAUTHORISED: ("refused the key", "Set the key of this server, and check its permissions."),
+    FailureKind.UNAUTHORISED: ("rejected the API key", "Set the key for this server, and check the key's permissions."),
     FailureKind.NOT_FOUND: (
         "does not know this path or model",
-        "Check the address (most servers need /v1 at the end) and the model's name.",
+        "Check the URL (most servers require /v1 at the end) and the model's name.",
     ),
-    FailureKind.RATE_LIMITED: ("limits the rate of requests", "Wait, or ask for a higher limit."),
-    FailureKind.BAD_REQUEST: ("refused the request", "Check the model's name and what the server supports."),
+    FailureKind.RATE_LIMITED: ("is limiting the request rate", "Wait, or ask for a higher limit."),
+    FailureKind.BAD_REQUEST: ("rejected the request", "Check the model's name and what the server supports."),
     FailureKind.CONTEXT_OVERFLOW: (
         "reports that the conversation exceeds the model's context",
         "Serve the model with a longer context.",
@@ -65,21 +64,21 @@ _MESSAGES: dict[FailureKind, tuple[str, str]] = {
     FailureKind.SERVER_ERROR: ("had an internal error", "Check its log."),
     FailureKind.ERROR_BODY: ("sent an error message", "Check its log."),
     FailureKind.CUT_OFF: ("did not complete its reply", "Check its log; it may have crashed."),
-    FailureKind.EMPTY: ("sent an empty reply", "Check that the model is the right one for this use."),
-    FailureKind.WRONG_CONTENT_TYPE: ("sent a reply of the wrong content type", "Check that the address is that of a model server."),
-    FailureKind.MALFORMED: ("sent an unreadable reply", "Check that the address is that of a model server."),
-    FailureKind.TOO_LARGE: ("sent a reply that is too large", "Check that the address is that of a model server."),
-    FailureKind.CIRCUIT_OPEN: ("failed repeatedly, so no request is sent for a while", "Start it, or check the address."),
+    FailureKind.EMPTY: ("sent an empty reply", "Check that the model is suitable for this use."),
+    FailureKind.WRONG_CONTENT_TYPE: ("sent a reply with the wrong content type", "Check that the URL is that of a model server."),
+    FailureKind.MALFORMED: ("sent an unreadable reply", "Check that the URL is that of a model server."),
+    FailureKind.TOO_LARGE: ("sent a reply that is too large", "Check that the URL is that of a model server."),
+    FailureKind.CIRCUIT_OPEN: ("failed repeatedly, so requests to it are paused", "Start it, or check its URL."),
 }
 
 
 class Attempt(BaseModel):
-    """One request to a model server. A call may need several requests.
+    """A request to a model server. A call may take several attempts.
 
     Attributes:
         kind: The kind of the failure; None if the request succeeded.
-        waited_s: The pause before the request, in seconds.
-        input_tokens: Input tokens of an unusable reply; usable replies contain their token counts.
+        waited_s: The pause before the request in seconds.
+        input_tokens: Input tokens of an unusable reply; usable replies contain their own token counts.
         output_tokens: Output tokens of an unusable reply.
     """
 
@@ -94,12 +93,12 @@ class Attempt(BaseModel):
 
 
 class ServerFailure(ScopeError):  # noqa: N818 - the name matches FailureKind
-    """A model server gave no usable reply.
+    """A model server did not return a usable reply.
 
     Attributes:
-        where: The server's address.
-        detail: The server's message, truncated and without keys.
-        history: All attempts of the call.
+        where: The server's URL.
+        detail: The server's message, truncated and with keys masked.
+        history: All attempts made in the call.
         tokens: Input and output tokens of an empty reply.
     """
 
@@ -117,9 +116,9 @@ class ServerFailure(ScopeError):  # noqa: N818 - the name matches FailureKind
         self.kind, self.where, self.status, self.retry_after_s, self.detail = kind, where, status, retry_after_s, detail
         self.history, self.tokens = history, tokens
         problem, remedy = _MESSAGES[kind]
-        facts = [f"HTTP {status}"] if status is not None and status != 200 else []
-        facts += [f"{len(history)} attempts"] if len(history) > 1 else []
-        aside = f" ({', '.join(facts)})" if facts else ""
+        remarks = [f"HTTP {status}"] if status is not None and status != 200 else []
+        remarks += [f"{len(history)} attempts"] if len(history) > 1 else []
+        aside = f" ({', '.join(remarks)})" if remarks else ""
         message = f": {detail.rstrip('. ')}" if detail else ""
         super().__init__(f"The model server at {where} {problem}{aside}{message}. {remedy}")
 
@@ -142,12 +141,12 @@ class ServerFailure(ScopeError):  # noqa: N818 - the name matches FailureKind
 
 
 def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
-    """Return the number of failures of each kind, including failures that a retry overcame."""
+    """Return the number of failures of each kind, including those after which a retry succeeded."""
     return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
 
 
 def scrub(text: str, secret: str) -> str:
-    """Return a server's message with the key masked, because some servers echo it."""
+    """Mask the key in a server's message, because some servers echo it."""
     if len(secret) >= MIN_SCRUBBED_CHARS and secret in text:
         return text.replace(secret, "***")
     return text
@@ -157,7 +156,7 @@ _API_KEY = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
 
 
 def one_line_excerpt(text: str, secret: str) -> str:
-    """Return a server's message on one line, truncated, with everything that looks like a key masked."""
+    """Return a server's message as a single line, truncated and with everything that looks like a key masked."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text[:4000]).split())
     line = _API_KEY.sub(r"\1***", scrub(line, secret))
     return line if len(line) <= MAX_DETAIL_CHARS else line[: MAX_DETAIL_CHARS - 1] + "…"

@@ -1,4 +1,4 @@
-"""A client for model servers with a plain JSON interface."""
+"""A client for model servers with a plain JSON API."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class JsonClient:
-    """A client that posts JSON and returns JSON objects. ``key_header`` is the name of the request header for the key."""
+    """A client that posts JSON and returns JSON objects. ``key_header`` is the name of the request header that contains the key."""
 
     def __init__(self, endpoint: Endpoint, *, key_header: str = "Authorization", caller: Caller | None = None) -> None:
         self.endpoint, self.key_header = endpoint, key_header
@@ -27,7 +27,7 @@ class JsonClient:
         """Post a JSON body, which may already be encoded as bytes. Return the reply and the attempts.
 
         Raises:
-            ServerFailure: The server gave no usable reply.
+            ServerFailure: The server did not return a usable reply.
         """
         content = body if isinstance(body, bytes) else json.dumps(body, separators=(",", ":"), allow_nan=False).encode()
         if self._client is None:
@@ -45,7 +45,7 @@ class JsonClient:
             raise status_failure(response.status_code, response.headers, response.text, self.endpoint)
 
     async def close(self) -> None:
-        """Close the connections. The next request opens new ones."""
+        """Close the connections. The next request opens new connections."""
         if self._client is not None:
             client, self._client = self._client, None
             await client.aclose()

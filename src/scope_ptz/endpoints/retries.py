@@ -1,4 +1,4 @@
-"""Calls to a model server with bounded retries and full jitter, one deadline for all attempts, and a circuit breaker."""
+"""Call a model server with bounded retries, full jitter, a deadline for all attempts together, and a circuit breaker."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ RETRYABLE = frozenset(
         FailureKind.MALFORMED,
     }
 )
-"""Kinds of failure after which a call is retried. With a wrong key, path, request or content type, a retry would fail again."""
+"""Failure kinds after which a call is retried. With a wrong key, path, request or content type, a retry would fail again."""
 
-FIRST_PAUSE_S = 0.5  # upper bound of the random pause before the first retry; it doubles with each further retry
+FIRST_PAUSE_S = 0.5  # upper bound of the random pause before the first retry; doubles with each further retry
 MAX_PAUSE_S = 8.0  # maximum of that bound
 MAX_RETRY_AFTER_S = 30.0
-"""Longest pause in seconds that a server may request. If it requests a longer one, the call fails."""
+"""Maximum pause in seconds that a server may request. If it requests a longer pause, the call fails."""
 
 
 class Caller:
-    """Makes calls to one endpoint, with retries. All calls to the endpoint, including concurrent ones, should share one caller."""
+    """Calls an endpoint with retries. All calls to an endpoint, including concurrent calls, should share one caller."""
 
     def __init__(
         self,
@@ -53,10 +53,10 @@ class Caller:
         self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
 
     async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
-        """Run ``attempt``, and retry it if the failure permits, within the limits. Return its result and all attempts.
+        """Run ``attempt``, and retry it after retryable failures. Return its result and all attempts.
 
         Raises:
-            ServerFailure: No attempt succeeded; ``history`` lists the attempts.
+            ServerFailure: No attempt succeeded. ``history`` lists the attempts.
         """
         attempts_made: list[Attempt] = []
         deadline = perf_counter() + self.endpoint.timeouts.total_s
@@ -74,9 +74,9 @@ class Caller:
     async def _try(
         self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, attempts_made: list[Attempt]
     ) -> T | ServerFailure:
-        """Make and record one attempt.
+        """Make and record an attempt.
 
-        A failure is returned instead of raised, so that no library exception is chained to it: such exceptions may quote a key.
+        A failure is returned instead of raised, so that no library exception, which may quote a key, is chained to it.
         """
         open_for_s = self.breaker.admit()
         if open_for_s is not None:
@@ -94,7 +94,7 @@ class Caller:
                     if failure is None:
                         raise
                 else:
-                    self.breaker.succeeded()
+                    self.breaker.record_success()
                     reported = True
                     attempts_made.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
                     return result
@@ -102,11 +102,11 @@ class Caller:
                 detail = f"the limit is {self.endpoint.timeouts.total_s:g} s"
                 failure = ServerFailure(FailureKind.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
             assert failure is not None  # noqa: S101 - the scope ends with a result, a failure or its deadline
-            self.breaker.failed(failure)
+            self.breaker.record_failure(failure)
             reported = True
         finally:
             if not reported:
-                self.breaker.abandoned()
+                self.breaker.record_cancellation()
         tokens_in, tokens_out = failure.tokens
         attempts_made.append(
             Attempt(
@@ -121,7 +121,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """Return the pause in seconds before the next attempt; None if no further attempt is made."""
+        """Return the pause in seconds before the next attempt; None if there is to be none."""
         if failure.kind not in RETRYABLE or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(MAX_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
@@ -131,11 +131,11 @@ class Caller:
         return requested_s + 0.1 * jitter_s if requested_s <= MAX_RETRY_AFTER_S else None
 
     def _retry_time_s(self, failure: ServerFailure) -> float:
-        """Return the seconds to reserve for another attempt. A server that sent nothing may need the full timeout again."""
+        """Return the time in seconds to reserve for another attempt. A server that sent nothing may take the full timeout again."""
         return self.endpoint.timeouts.first_byte_s if failure.kind is FailureKind.FIRST_BYTE_TIMEOUT else 0.0
 
     def _circuit_open(self, wait_s: float) -> ServerFailure:
-        last = self.breaker.last
+        last = self.breaker.last_failure
         reason = f"last failure: {last.kind.value}; " if last is not None else ""
         return ServerFailure(
             FailureKind.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{reason}the next request is possible in {wait_s:.0f} s"

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
 PATHS = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""Paths under which servers report their configuration. Most servers have the first two. The others are those of llama.cpp (props),
-Ollama (ps), SGLang (server info), vLLM (metrics) and Moondream Station (stats).
+"""Paths at which servers report their configuration.
+
+Most servers have the first two. The others are for llama.cpp (props), Ollama (ps), SGLang (server info), vLLM (metrics) and
+Moondream Station (stats).
 """
 _FIELDS = re.compile(
     r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"
@@ -32,7 +34,7 @@ _MAX_FACTS = 40  # further fields are ignored
 
 
 async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
-    """Return the server's configuration, keyed by path and field. Paths that fail are omitted."""
+    """Return a server's reported configuration, keyed by path and field. Paths that fail are omitted."""
     from scope_ptz.endpoints.transport import make_client
 
     quick_endpoint = endpoint.model_copy(update={"timeouts": QUICK_TIMEOUTS})
@@ -89,7 +91,7 @@ def _nested_fields(content: Any, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def memory_gb(facts: Mapping[str, str]) -> float | None:
-    """Return the memory that the model uses in GB, as reported by Ollama or SGLang; None for other servers."""
+    """Return the model's memory use in GB, as reported by Ollama or SGLang; None for other servers."""
     by_name = {key.split(" ", 1)[1]: value for key, value in facts.items()}
     try:
         if "size_vram" in by_name:

@@ -1,4 +1,4 @@
-"""Convert exceptions of HTTP libraries and error replies of servers to ``ServerFailure``."""
+"""Convert exceptions from HTTP libraries and error replies from servers to ``ServerFailure``."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _OVERFLOW = re.compile(
     r"|exceed\w*[^.]{0,40}(context|number of tokens|token limit)|reduce the length|tokens to keep from the initial prompt",
     re.IGNORECASE,
 )
-"""Matches context overflow messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and others, which share no error code."""
+"""Matches context overflow messages from vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and others, which share no error code."""
 
 _NO_CREDIT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
 
 
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
-    """Return the failure that an exception of a client library represents; None for other exceptions, such as bugs."""
+    """Convert an exception from a client library to a failure; None for other exceptions, such as bugs."""
     import httpx2
 
     chain = list(_chain(error))
@@ -93,13 +93,13 @@ def _body_text(response: Any) -> str:
 
 
 def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
-    """Return the failure for a reply with an error status or a redirect."""
+    """Return a failure for a redirect or a reply with an error status."""
     parsed = _ErrorBody(body)
     if 300 <= status < 400:
         kind, parsed.message = FailureKind.NOT_FOUND, f"it redirects to {headers.get('location', 'an unknown address')}"
-    elif status in (400, 413, 422, 500) and parsed.overflow:
+    elif status in (400, 413, 422, 500) and parsed.is_overflow:
         kind = FailureKind.CONTEXT_OVERFLOW
-    elif status in (401, 402, 403, 407) or (status == 429 and parsed.no_credit):
+    elif status in (401, 402, 403, 407) or (status == 429 and parsed.has_no_credit):
         kind = FailureKind.UNAUTHORISED
     elif status == 429:
         kind = FailureKind.RATE_LIMITED
@@ -114,11 +114,11 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
 
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
-    """Return the failure for an error message in a reply with a success status; None if the reply is not an error."""
+    """Return a failure for an error message in a reply with a success status; None if the reply is not an error message."""
     if not body.get("error") and body.get("object") != "error" and not _is_only_message(body):
         return None
     parsed = _ErrorBody(json.dumps(body))
-    if parsed.overflow:
+    if parsed.is_overflow:
         kind = FailureKind.CONTEXT_OVERFLOW
     elif parsed.tags & {"429", "rate_limit_exceeded"}:
         kind = FailureKind.RATE_LIMITED
@@ -134,7 +134,7 @@ _ERROR_FIELDS = _MESSAGE_FIELDS | {"code", "error", "status", "status_code", "st
 
 
 def _is_only_message(body: dict[str, Any]) -> bool:
-    """Return whether a body consists only of a message, which is how gateways and simple frameworks report errors."""
+    """Return whether a body contains only a message, which is how gateways and simple frameworks report errors."""
     return body.keys() <= _ERROR_FIELDS and any(body.get(name) for name in _MESSAGE_FIELDS)
 
 
@@ -142,7 +142,7 @@ class _ErrorBody:
     """The parsed body of an error reply.
 
     Attributes:
-        message: The messages in the usual fields; if there are none, the body without markup.
+        message: The messages in the usual fields, or the body without markup if there are none.
         tags: The error codes and types.
     """
 
@@ -160,12 +160,12 @@ class _ErrorBody:
         self.message = "; ".join(dict.fromkeys(messages)) or re.sub(r"<[^>]*>", " ", body[:4000])
 
     @property
-    def overflow(self) -> bool:
+    def is_overflow(self) -> bool:
         return any(_OVERFLOW.search(text) for text in (self.message, *self.tags))
 
     @property
-    def no_credit(self) -> bool:
-        """Whether the account's credit is used up, so that waiting does not help."""
+    def has_no_credit(self) -> bool:
+        """Whether the account has run out of credit, so that waiting does not help."""
         return any(_NO_CREDIT.search(text) for text in (self.message, *self.tags))
 
 
@@ -174,7 +174,7 @@ def _as_text(value: Any) -> str:
 
 
 def retry_after_s(headers: Mapping[str, str]) -> float | None:
-    """Return the pause in seconds that the Retry-After header requests; None if it is absent or invalid."""
+    """Return the pause in seconds requested by the Retry-After header; None if it is missing or invalid."""
     milliseconds = _number(headers.get("retry-after-ms"))
     if milliseconds is not None:
         return milliseconds / 1000

@@ -1,4 +1,4 @@
-"""The HTTP client that all model clients use. This module imports an HTTP library, so import it only before a request."""
+"""The HTTP client for all model clients. This module imports an HTTP library, so import it only when sending a request."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import httpx2
 
-from scope_ptz.endpoints.bodies import too_large
+from scope_ptz.endpoints.bodies import too_large_failure
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.version import __version__
@@ -16,16 +16,16 @@ _ALLOWED_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
 )
 _MAX_COMPRESSION = 128
-"""Compressed bodies are limited to ``MAX_BODY_BYTES`` divided by this factor, because decompression enlarges them."""
+"""Assumed maximum compression ratio. Compressed bodies are limited to ``MAX_BODY_BYTES`` divided by this number."""
 
 
 def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> httpx2.AsyncClient:
-    """Return a client that applies the endpoint's timeouts, and sends no credentials except the endpoint's key.
+    """Create a client that applies the endpoint's timeouts and sends no credentials except the endpoint's key.
 
-    It follows no redirects, because the key must only be sent to the address that the user gave.
+    It does not follow redirects, because the key must be sent only to the URL that the user specified.
 
     Raises:
-        ServerFailure: The environment variables for the proxy or the certificates are invalid.
+        ServerFailure: The environment's proxy or certificate settings are invalid.
     """
     secret = endpoint.secret
     own_headers = {"user-agent": f"scope-ptz/{__version__}"}
@@ -33,7 +33,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
         own_headers[key_header] = f"Bearer {secret}" if key_header == "Authorization" else secret
 
     async def replace_headers(request: httpx2.Request) -> None:
-        # The openai client adds headers from OPENAI_... variables, which are credentials for another server.
+        # The openai client adds headers from OPENAI_... variables, which contain credentials for another server.
         for name in [name for name in request.headers if name.lower() not in _ALLOWED_HEADERS]:
             del request.headers[name]
         request.headers.update(own_headers)
@@ -45,7 +45,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
     try:
         return _create_client(endpoint, {"request": [replace_headers], "response": [limit_body]})
     except (ValueError, OSError, ImportError, httpx2.InvalidURL) as error:
-        # The original message is not shown, because a proxy's address may contain a password.
+        # Do not show the original message, because a proxy URL may contain a password.
         detail = f"the environment's proxy or certificate settings cannot be used ({type(error).__name__})"
         raise ServerFailure(FailureKind.REFUSED, where=endpoint.url, detail=detail) from None
 
@@ -56,15 +56,15 @@ def _create_client(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]
         timeout=httpx2.Timeout(timeouts.first_byte_s, connect=timeouts.connect_s, pool=timeouts.total_s),
         limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
         headers={"accept-encoding": "identity"},
-        trust_env=not endpoint.loopback,  # requests to this machine never use a proxy
-        verify=endpoint.url.startswith("https:"),  # certificates load slowly and are needed for HTTPS only
+        trust_env=not endpoint.is_loopback,  # requests to this machine never use a proxy
+        verify=endpoint.url.startswith("https:"),  # certificates load slowly and are required only for HTTPS
         follow_redirects=False,
         event_hooks=hooks,
     )
 
 
 class _LimitedBody(httpx2.AsyncByteStream):
-    """A response body that raises ``ServerFailure`` when it exceeds its size limit, even if the library itself reads it."""
+    """A response body that raises ``ServerFailure`` if it exceeds its size limit, even if a library reads it."""
 
     def __init__(self, stream: httpx2.AsyncByteStream, response: httpx2.Response, endpoint: Endpoint) -> None:
         compressed = response.headers.get("content-encoding", "identity") != "identity"
@@ -75,7 +75,7 @@ class _LimitedBody(httpx2.AsyncByteStream):
         async for chunk in self._stream:
             self._bytes_left -= len(chunk)
             if self._bytes_left < 0:
-                raise too_large(self._endpoint, self._status)
+                raise too_large_failure(self._endpoint, self._status)
             yield chunk
 
     async def aclose(self) -> None:

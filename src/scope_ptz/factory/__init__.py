@@ -1,4 +1,4 @@
-"""Creation of cameras, planners, perception backends and evaluation contexts from specs and options.
+"""Create cameras, planners, perception backends and evaluation contexts from specs and options.
 
 No other package creates these objects.
 """

@@ -1,6 +1,6 @@
 """Run an evaluation and write its log, independently of any user interface.
 
-The command line and the Python interface call ``evaluate``, and receive its progress through an ``EvaluationProgress``.
+The command line and the Python API call ``evaluate``, and receive its progress through an ``EvaluationProgress``.
 """
 
 from __future__ import annotations
@@ -37,33 +37,33 @@ def require_engine() -> None:
     from importlib.util import find_spec
 
     if find_spec("inspect_ai") is None:
-        raise ConfigError("Evaluations need Inspect AI. Install it with: pip install 'scope-ptz[bench]'")
+        raise ConfigError("Evaluations require Inspect AI. Install it with: pip install 'scope-ptz[bench]'")
 
 
 async def evaluate(options: EvaluationOptions, *, progress: EvaluationProgress | None = None) -> EvaluationResult:
-    """Run an evaluation, resume an interrupted one, or read one that is complete; then request missing judgements.
+    """Run an evaluation, resume an interrupted one, or read a completed one; then request missing judgements.
 
     Args:
-        options: What to evaluate.
-        progress: Receives notes, the estimate, and the start and end of every run.
+        options: The tasks, models and settings.
+        progress: Receives notes, the estimate, and the start and end of each run.
 
     Returns:
-        The evaluation as stored in its log, and a tally of the judgements. Its trials include runs that failed because of
-        infrastructure; calling this function again repeats those runs.
+        The evaluation as stored in its log, and a tally of the judgements. Its trials include runs with infrastructure failures,
+        which are repeated when this function is called again.
 
     Raises:
         ConfigError: The evaluation engine is not installed, or models are not configured.
         InputError: Options contradict each other or name something unknown.
-        OutputError: The log folder cannot be written.
-        ScopeError: Too many consecutive runs failed because of infrastructure.
+        OutputError: The log folder cannot be written to.
+        ScopeError: Too many consecutive runs had infrastructure failures.
     """
     require_engine()
-    from scope_ptz.bench.engine.runs import exclusive
+    from scope_ptz.bench.engine.runs import evaluation_lock
     from scope_ptz.factory.evaluation_session import EvaluationSession
 
     pair = await resolve_models(options.models)
     session = EvaluationSession(options, pair, progress or EvaluationProgress())
-    with exclusive(options.out, session.identity):
+    with evaluation_lock(options.out, session.identity):
         stored = await session.stored_logs()
         try:
             if stored and stored[0].finished:

@@ -33,20 +33,20 @@ from scope_ptz.simulator.pack import Scene
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
     from scope_ptz.bench.judging.server import JudgeServer
-    from scope_ptz.factory.validation_perception import CachedTruth
+    from scope_ptz.factory.validation_perception import TruthCache
     from scope_ptz.perception.base import Perception
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
 MAX_CACHED_VIEWS = 150
-"""Maximum number of views whose ground truth is cached. Runs are ordered by viewpoint, so consecutive runs need the same views."""
+"""Maximum number of views with cached ground truth. Runs are ordered by viewpoint, so consecutive runs share views."""
 
 
 class ThreadedPlanner(Planner):
-    """A planner whose steps run in a worker thread, so that they do not block the other runs.
+    """A planner whose steps run in a worker thread, so that they do not block other runs.
 
     Args:
-        decide: Returns the next decision for a state.
+        decide: A function that returns the next decision for a state.
         name: The planner's name.
     """
 
@@ -57,7 +57,7 @@ class ThreadedPlanner(Planner):
         return await to_thread.run_sync(self._decide, state)
 
 
-def planner_for(resolved: ResolvedPlanner) -> Planner:
+def evaluation_planner(resolved: ResolvedPlanner) -> Planner:
     """Create a planner for an evaluation. The grammar planner runs in a worker thread, so that it does not block other runs."""
     if resolved.plugin is not None or resolved.instance is not None:
         return make_planner(resolved)
@@ -68,8 +68,8 @@ def planner_for(resolved: ResolvedPlanner) -> Planner:
     return make_planner(resolved)
 
 
-def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, truth: CachedTruth) -> Perception:
-    """Create the perception backend of an evaluation. ``truth`` caches the ground truth of each view."""
+def evaluation_perception(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, truth: TruthCache) -> Perception:
+    """Create the perception backend for an evaluation. ``truth`` caches the ground truth of each view."""
     return make_perception(resolved, scenes, seed, truth.read)
 
 
@@ -79,24 +79,24 @@ def eval_context(
     planner: Planner | None = None,
     perception: ResolvedPerception | None = None,
 ) -> EvalContext:
-    """Build the context of an evaluation.
+    """Create the context for an evaluation.
 
     Args:
         seed: Seed for every random choice.
-        planner: The planner; None creates the one that the engine requests by name.
-        perception: The resolved perception backend, which is created immediately so that errors are reported before the first
-            run; None creates the one that the engine requests by name.
+        planner: The planner; None to create the one that the engine requests by name.
+        perception: The resolved perception backend, which is created immediately so that errors are reported before the first run;
+            None to create the one that the engine requests by name.
     """
-    from scope_ptz.factory.validation_perception import CachedTruth
+    from scope_ptz.factory.validation_perception import TruthCache
 
-    scenes, cache = Library(scene_search(load_settings())), CachedTruth(MAX_CACHED_VIEWS)
-    backend = perception_for(perception, scenes, seed, cache) if perception is not None else None
+    scenes, cache = Library(scene_search(load_settings())), TruthCache(MAX_CACHED_VIEWS)
+    backend = evaluation_perception(perception, scenes, seed, cache) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:
-        return planner or planner_for((await resolve_models(_model_options(request, "planner"))).planner)
+        return planner or evaluation_planner((await resolve_models(_model_options(request, "planner"))).planner)
 
     async def requested_perception(request: ModelRequest) -> Perception:
-        return backend or perception_for(
+        return backend or evaluation_perception(
             (await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, cache
         )
 
@@ -113,19 +113,19 @@ def eval_context(
         make_planner=requested_planner,
         make_perception=requested_perception,
         make_judge=requested_judge,
-        load_tasks=lambda split: tasks_of(split, scenes),
+        load_tasks=lambda split: load_entries(split, scenes),
         true_count=true_count,
         perception=backend,
         perception_note=perception_note(perception) if perception else "",
     )
 
 
-def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
-    """Load the tasks of a split or of a task file.
+def load_entries(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
+    """Load the tasks from a split or a task file.
 
     Args:
-        split: The name of a split, or the path of a task file.
-        scenes: Opens the scenes of the tasks by name.
+        split: The name of a split, or the path to a task file.
+        scenes: A function that opens the tasks' scenes by name.
     """
     from scope_ptz.bench.tasks.imported import is_imported_file, load_imported
     from scope_ptz.bench.tasks.splits import load_split
@@ -135,28 +135,28 @@ def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
     return entries_of(load_split(split), scenes)
 
 
-def _ground_truth(scenes: Callable[[str], Scene], cache: CachedTruth) -> GroundTruthPerception:
+def _ground_truth(scenes: Callable[[str], Scene], cache: TruthCache) -> GroundTruthPerception:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
     return GroundTruthPerception(scenes, cache.read)
 
 
 def _model_options(request: ModelRequest, role: str) -> ModelOptions:
-    """Convert a model request from the engine's command line to the options of ``resolve_models``.
+    """Convert a model request from the engine's command line to options for ``resolve_models``.
 
-    SCOPE interprets the options ``served`` and ``key_file``; the others are passed to the model.
+    The options ``served`` and ``key_file`` are interpreted here; the others are passed on to the model.
     """
-    given: Mapping[str, Any] = {name: value for name, value in request.options.items() if value is not None}
-    further = tuple(f"{name}={value}" for name, value in given.items() if name not in ("served", "key_file"))
-    key = Path(str(given["key_file"])) if "key_file" in given else None
-    served = given.get("served")
+    options: Mapping[str, Any] = {name: value for name, value in request.options.items() if value is not None}
+    other_options = tuple(f"{name}={value}" for name, value in options.items() if name not in ("served", "key_file"))
+    key = Path(str(options["key_file"])) if "key_file" in options else None
+    served = options.get("served")
     if role == "planner":
         return ModelOptions(
-            planner=request.name, planner_url=request.url, planner_model=served, planner_key_file=key, planner_options=further
+            planner=request.name, planner_url=request.url, planner_model=served, planner_key_file=key, planner_options=other_options
         )
     return ModelOptions(
         perception=request.name, perception_url=request.url, perception_model=served, perception_key_file=key,
-        perception_options=further,
+        perception_options=other_options,
     )  # fmt: skip
 
 
@@ -165,12 +165,12 @@ async def _open_judge(request: ModelRequest) -> JudgeServer:
 
     options = {name: value for name, value in request.options.items() if value is not None}
     served, key = options.pop("served", request.name), options.pop("key_file", None)
-    further = [f"{name}={value}" for name, value in options.items()]
-    return await open_judge(request.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, further)
+    other_options = [f"{name}={value}" for name, value in options.items()]
+    return await open_judge(request.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, other_options)
 
 
 async def _count(truth: GroundTruthPerception, scene: str, observation: Observation) -> int | None:
-    """Return the true count for a perception call; None if ground truth cannot count the objects that the call describes."""
+    """Return the true count for a perception call; None if ground truth cannot count the described objects."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 
     if observation.viewpoint is None:
@@ -182,7 +182,7 @@ async def _count(truth: GroundTruthPerception, scene: str, observation: Observat
         origin=FrameOrigin(scene, observation.viewpoint, pose, observation.time_s),
     )  # fmt: skip
     try:
-        count = len((await truth.detect(frame, observation.asked)).boxes)
-        return count if count or is_plain_noun(truth.view(frame, observation.asked), observation.asked) else None
+        count = len((await truth.detect(frame, observation.request)).boxes)
+        return count if count or is_plain_noun(truth.view(frame, observation.request), observation.request) else None
     except PerceptionError:
         return None

@@ -1,4 +1,4 @@
-"""Options, progress and result of an evaluation."""
+"""The options, progress and result of an evaluation."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ JUDGE_TIMEOUT_S = 300.0
 
 @dataclass(frozen=True, slots=True)
 class JudgeSettings:
-    """Settings of the judge and its server.
+    """Settings for the judge and its server.
 
     Attributes:
-        url: Address of the server; SCOPE_JUDGE_URL if None.
-        model: The judge's served name; SCOPE_JUDGE_MODEL if None.
-        key_file: File that contains the server's key; the key in SCOPE_JUDGE_KEY if None.
-        timeout_s: Seconds for one judgement, including retries.
-        options: Further options of the judge as ``NAME=VALUE`` strings.
+        url: URL of the server; None to use SCOPE_JUDGE_URL.
+        model: The judge's served name; None to use SCOPE_JUDGE_MODEL.
+        key_file: File that contains the server's API key; None to use the key in SCOPE_JUDGE_KEY.
+        timeout_s: Timeout in seconds for a judgement, including retries.
+        options: Additional options for the judge, as ``NAME=VALUE`` strings.
         repeats: Number of judgements per run.
     """
 
@@ -43,7 +43,7 @@ class JudgeSettings:
 
     @property
     def requested(self) -> bool:
-        """Whether options or the environment name a judge."""
+        """Whether a judge is specified by options or by the environment."""
         from scope_ptz.settings import load_settings
 
         return bool(self.url or self.model or load_settings().judge_url)
@@ -54,12 +54,12 @@ class HostedAgent:
     """An external agent that runs elsewhere and connects for each run.
 
     Attributes:
-        name: Its name in traces and on run cards.
-        open: Waits until the agent begins the next run, and connects it.
-        order: Orders the tasks, so that the agent cannot foresee them.
-        settings: What else determines its results, as JSON data: a part of the identity of evaluations.
-        isolation: The label of its results.
-        source: Digest of its source, which is unknown.
+        name: The agent's name in traces and on run cards.
+        open: A function that waits until the agent starts the next run, and connects it.
+        order: A function that orders the tasks so that the agent cannot predict them.
+        settings: Other settings that determine the agent's results, as JSON data. They are part of an evaluation's identity.
+        isolation: The isolation label for its results.
+        source: Digest of its source code; empty because the code is unknown.
     """
 
     name: str
@@ -70,34 +70,34 @@ class HostedAgent:
     source: str = ""
 
     async def check(self) -> None:
-        """Do nothing: whether the agent works turns out in its first run."""
+        """Do nothing, because the agent connects only when its first run starts."""
 
 
 @dataclass(frozen=True, slots=True)
 class EvaluationOptions:
-    """What to evaluate and how. The defaults run the built-in planner on the published tasks.
+    """The options of an evaluation. The defaults run the built-in planner on the published tasks.
 
     Attributes:
-        models: Planner and perception, by name or address.
-        out: Folder of the logs.
-        tasks: Split (core, lite, paraphrase, reaction, unseen, all) or task file.
-        categories: Run only tasks of these categories; all when empty.
-        scenes: Run only tasks of these scenes; all when empty.
+        models: The planner and perception backend, by name or URL.
+        out: The log folder.
+        tasks: A split (core, lite, paraphrase, reaction, unseen, all) or a task file.
+        categories: Run only tasks in these categories; all if empty.
+        scenes: Run only tasks in these scenes; all if empty.
         limit: Run at most this many tasks, sampled evenly across the selected categories, scenes and answers.
-        epochs: Number of runs of each task.
+        epochs: Number of runs per task.
         seed: Seed for every random choice.
-        agent: "scope", or ``module:Class`` of an external agent.
-        agent_options: How an external agent is started and limited; None for the defaults. Its command replaces ``agent``.
-        max_steps: Number of planner steps after which a run ends.
-        time_s: Number of wall-clock seconds after which a run ends; None for no limit.
+        agent: "scope" for the built-in agent, or ``module:Class`` for an external agent.
+        agent_options: How an external agent is started and limited; None for the defaults. A command in it replaces ``agent``.
+        max_steps: Maximum number of planner steps per run.
+        time_s: Maximum wall-clock seconds per run; None for no limit.
         concurrency: Number of concurrent runs; None for a default that depends on the models.
-        latency: Run one task at a time, to measure latencies.
+        latency: Run one task at a time in order to measure latencies.
         pictures: Render and log frames.
         variant: Label that distinguishes evaluations with different settings.
-        fresh: Start a new evaluation even if the folder has a log of the same evaluation.
-        resume: Log to resume; None for the most complete one in ``out``.
+        fresh: Start a new evaluation even if the folder contains a log of the same evaluation.
+        resume: The log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
-        judge: Settings of the judge that scores each run; None for no judge.
+        judge: Settings for the judge that scores each run; None for no judge.
         hosted_agent: An external agent that runs elsewhere. It replaces ``agent``.
     """
 
@@ -134,11 +134,11 @@ class EvaluationPlan:
         perception: Name of the perception backend.
         agent: Name of the external agent; None for the built-in agent loop.
         concurrency: Number of concurrent runs.
-        finished: Trials from the log that is resumed.
-        estimate: Estimate of duration and cost.
-        asks_planner_server: Whether the planner calls a model server. Otherwise planning costs nothing.
-        isolation: How an external agent is separated from tasks, ground truth and checks; None for the built-in agent loop.
-        origin: A sentence that names the log that is resumed, or the reason for a new evaluation; may be empty.
+        finished: Trials from the log that is being resumed.
+        estimate: Estimated duration and cost.
+        uses_planner_server: Whether the planner calls a model server. If not, planning is free.
+        isolation: How an external agent is isolated from tasks, ground truth and checks; None for the built-in agent loop.
+        origin: A sentence that names the log that is being resumed, or the reason for starting a new evaluation; may be empty.
     """
 
     runs: int
@@ -148,27 +148,27 @@ class EvaluationPlan:
     concurrency: int
     finished: tuple[Trial, ...]
     estimate: Estimate
-    asks_planner_server: bool
+    uses_planner_server: bool
     isolation: Isolation | None = None
     origin: str = ""
 
     @property
     def pair(self) -> str:
-        """Names of the planner (or external agent) and the perception backend, as shown in tables."""
+        """The names of the planner (or external agent) and the perception backend, as shown in tables."""
         return f"{self.agent or self.planner} + {self.perception}"
 
 
 class EvaluationProgress(Watcher):
-    """Receives the progress of an evaluation. Subclasses override the methods that they need; the defaults do nothing."""
+    """Receives the progress of an evaluation. Override the methods of interest; the default implementations do nothing."""
 
     def note(self, text: str) -> None:
         """Receive a message for the user, for example that judgements are missing."""
 
     def planned(self, plan: EvaluationPlan) -> None:
-        """Receive the plan with its estimate, once, before the first run."""
+        """Receive the plan with its estimate. Called once before the first run."""
 
     def closed(self) -> None:
-        """Called when the evaluation has ended or was interrupted, once for each call of ``planned``."""
+        """Called once for each call to ``planned``, when the evaluation has ended or was interrupted."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""An evaluation in progress: it runs the missing trials, requests the missing judgements and writes the log."""
+"""An evaluation in progress, which runs the missing trials, requests the missing judgements, and writes the log."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ DEFAULT_CONCURRENCY_WITH_SERVERS = 8
 PERCEPTION_CALLS_PER_STEP = 8
 """Maximum number of concurrent perception calls in one step of the agent loop."""
 MAX_CONSECUTIVE_FAILURES = 12
-"""An evaluation stops after this many consecutive runs that failed because of infrastructure."""
+"""Number of consecutive runs with infrastructure failures after which an evaluation stops."""
 GC_THRESHOLDS = (20_000, 20, 50)
-"""Arguments of ``gc.set_threshold`` during an evaluation. They are far above the defaults, so that collections are rare."""
+"""Arguments for ``gc.set_threshold`` during an evaluation. They are far above the defaults, so that collections are rare."""
 
 
 class EvaluationSession:
     """The tasks, models and connections of one call to ``evaluate``. ``close`` closes the connections."""
 
     def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
-        from scope_ptz.bench.engine.entries import digest, select
+        from scope_ptz.bench.engine.entries import digest, select_entries
         from scope_ptz.bench.engine.runs import identity_of
-        from scope_ptz.factory.evaluation import eval_context, planner_for
+        from scope_ptz.factory.evaluation import eval_context, evaluation_planner
         from scope_ptz.factory.external_agents import external_agent
 
         self.options, self.pair, self.progress = options, pair, progress
@@ -58,14 +58,14 @@ class EvaluationSession:
         self.agent = options.hosted_agent or external_agent(options)
         self.agent_name = self.agent.name if self.agent is not None else BUILT_IN_AGENT
         self.agent_source = self.agent.source if self.agent is not None else ""
-        self.planner = planner_for(pair.planner) if self.agent is None else None
+        self.planner = evaluation_planner(pair.planner) if self.agent is None else None
         self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
-        self.entries: tuple[Entry, ...] = select(
+        self.entries: tuple[Entry, ...] = select_entries(
             self.context.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
         _check_pictures(options, pair, self.planner)
         local = pair.planner.endpoint is None and pair.perception.spec is None and self.agent is None
-        # Without servers, runs compete for the interpreter: concurrency would use more memory and save no time.
+        # Without servers, runs compete for the interpreter, so concurrency would use more memory without saving time.
         default = 1 if local else DEFAULT_CONCURRENCY_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
         details = self.planner.details if self.planner is not None else {}
@@ -79,30 +79,30 @@ class EvaluationSession:
         )  # fmt: skip
 
     async def close(self) -> None:
-        """Close planner, perception and judge."""
+        """Close the planner, the perception backend and the judge."""
         for resource in (self.planner, self.context.perception, self.judge):
             if resource is not None:
                 await resource.close()
 
     async def stored_logs(self) -> list[StoredLog]:
-        """Return the logs from which this evaluation can resume, the most complete first."""
-        from scope_ptz.bench.engine.runs import find_logs, stored_log
+        """Return the logs from which this evaluation can be resumed, the most complete first."""
+        from scope_ptz.bench.engine.runs import find_logs, read_stored_log
 
         if self.options.resume is not None:
-            log = stored_log(self.options.resume)
+            log = read_stored_log(self.options.resume)
             if (log.header.eval.metadata or {}).get("identity") != self.identity:
                 raise InputError(
-                    f"{log.path} belongs to another evaluation: its tasks, models or settings differ. "
+                    f"{log.path} is the log of another evaluation, with different tasks, models or settings. "
                     "Use the options of that evaluation."
                 )
             return [log]
         return [] if self.options.fresh else await find_logs(self.options.out, self.identity)
 
     async def run(self, stored: Sequence[StoredLog]) -> Path:
-        """Run the trials that are missing in the stored logs, and return the path of the complete log.
+        """Run the trials that are missing from the stored logs, and return the path of the complete log.
 
         Raises:
-            ScopeError: Too many consecutive runs failed because of infrastructure.
+            ScopeError: Too many consecutive runs had infrastructure failures.
         """
         from scope_ptz.bench.engine.failure_summary import failure_summary
         from scope_ptz.bench.engine.logs import read_evaluation
@@ -127,7 +127,7 @@ class EvaluationSession:
 
         self.progress.planned(plan)
         try:
-            # The engine catches cancellation. It runs in a separate task, so that the current task does not count as cancelled.
+            # The engine catches cancellation. Run it in a separate task, so that the current task does not count as cancelled.
             with reduced_garbage_collection():
                 async with group:
                     group.start_soon(work)
@@ -136,8 +136,8 @@ class EvaluationSession:
         if breaker.tripped:
             causes = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
             raise ScopeError(
-                f"The evaluation stopped because {MAX_CONSECUTIVE_FAILURES} consecutive runs failed because of infrastructure."
-                f"{causes} Check the servers; running the same command again resumes the evaluation."
+                f"The evaluation stopped after {MAX_CONSECUTIVE_FAILURES} consecutive runs with infrastructure failures."
+                f"{causes} Check the servers, and run the same command again to resume the evaluation."
             )
         (result,) = outcome
         if isinstance(result, ScopeError):
@@ -145,11 +145,11 @@ class EvaluationSession:
         return result
 
     async def with_judgements(self, log: Path, *, retry_failed: bool) -> EvaluationResult:
-        """Request the missing judgements of a log, and return the updated results.
+        """Request the missing judgements for a log, and return the updated results.
 
         Args:
-            log: Log of the evaluation.
-            retry_failed: Whether to repeat the judgements for which the judge's server failed.
+            log: The evaluation log.
+            retry_failed: Whether to repeat judgements for which the judge's server failed.
         """
         from scope_ptz.bench.engine.logs import read_evaluation
 
@@ -157,11 +157,11 @@ class EvaluationSession:
         if judge is None:
             return EvaluationResult(read_evaluation(log))
         return await complete_judgements(
-            log, judge, lambda: self._connected_judge(judge), self.context, retry_failed=retry_failed, notify=self.progress.note
+            log, judge, lambda: self._connect_judge(judge), self.context, retry_failed=retry_failed, notify=self.progress.note
         )
 
-    async def _connected_judge(self, settings: JudgeSettings) -> JudgeServer:
-        """Return the connection to the judge. It is opened on first use."""
+    async def _connect_judge(self, settings: JudgeSettings) -> JudgeServer:
+        """Return the connection to the judge, which is opened on first use."""
         if self.judge is None:
             self.judge = await open_requested_judge(settings)
         return self.judge
@@ -221,7 +221,7 @@ class EvaluationSession:
         elif agent:
             other = log_with_other_source(options.out, agent, self.agent_source, digest(self.entries))
             if other is not None:
-                origin = f"The source of {agent} differs from that in {other}: this is a new evaluation."
+                origin = f"The source code of {agent} differs from that in {other}, so this is a new evaluation."
         earlier = earlier_evaluations(options.out, agent or pair.planner.name, pair.perception.name)
         finished_ids = {trial.task.id for trial in finished} if options.epochs == 1 else set()
         remaining = [entry for entry in self.entries if entry.facts.id not in finished_ids]
@@ -233,7 +233,7 @@ class EvaluationSession:
 
 
 class _CircuitBreaker(Watcher):
-    """Forwards runs to a watcher, and stops the evaluation after too many consecutive failures because of infrastructure."""
+    """Forwards runs to a watcher, and stops the evaluation after too many consecutive infrastructure failures."""
 
     def __init__(self, watcher: Watcher, stop: Callable[[], None]) -> None:
         self._watcher, self._stop = watcher, stop
@@ -257,9 +257,9 @@ class _CircuitBreaker(Watcher):
 def reduced_garbage_collection() -> Iterator[None]:
     """Run the garbage collector less often inside the block, and exclude existing objects from collection.
 
-    Scenes and tasks consist of many small objects. Scanning them repeatedly would take a tenth of an evaluation's time.
-    If the program has already called ``gc.freeze``, existing objects stay included: ``gc.unfreeze`` at the end of the block
-    would also unfreeze the objects of the program.
+    Scenes and tasks consist of many small objects, and scanning them repeatedly would take a tenth of an evaluation's time. If the
+    program has already called ``gc.freeze``, existing objects are not excluded, because ``gc.unfreeze`` at the end of the block
+    would also unfreeze the program's objects.
     """
     thresholds, can_freeze = gc.get_threshold(), gc.get_freeze_count() == 0
     gc.collect()
@@ -277,7 +277,7 @@ def reduced_garbage_collection() -> Iterator[None]:
 def prompt_chars(planner: Planner | None) -> int | None:
     """Return the number of characters in a planner's prompt and tool schemas.
 
-    Return None for a planner without a prompt, or for one that receives pictures, which make up most of its tokens.
+    Return None for a planner without a prompt, and for a planner that receives pictures, which make up most of its tokens.
     """
     from scope_ptz.planner.chat.prompts import Prompt
     from scope_ptz.tools.registry import schemas
@@ -289,19 +289,19 @@ def prompt_chars(planner: Planner | None) -> int | None:
 
 
 def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Planner | None) -> None:
-    """Raise ``InputError`` if pictures are disabled but a model needs them."""
+    """Raise ``InputError`` if pictures are disabled but a model requires them."""
     if options.pictures:
         return
     if pair.perception.spec is not None:
-        raise InputError(f"The perception backend '{pair.perception.name}' needs pictures: remove --no-pictures.")
+        raise InputError(f"The perception backend '{pair.perception.name}' requires pictures. Remove --no-pictures.")
     if planner is not None and planner.sees:
-        raise InputError(f"The planner '{planner.name}' needs pictures: remove --no-pictures.")
+        raise InputError(f"The planner '{planner.name}' requires pictures. Remove --no-pictures.")
 
 
 def _is_built_in(pair: ResolvedPair) -> bool:
-    """Return whether planner and perception are built in.
+    """Return whether the planner and the perception backend are built in.
 
-    Their runs are cheap, so an interrupted evaluation may lose some of them and repeat them when it is resumed.
+    Such runs are cheap, so an interrupted evaluation may lose some of them and repeat them when it is resumed.
     """
     planner, perception = pair.planner, pair.perception
     return (
@@ -313,7 +313,7 @@ def _is_built_in(pair: ResolvedPair) -> bool:
 
 
 def _served_models(pair: ResolvedPair) -> list[str]:
-    """Return the names of the served models, which are part of an evaluation's identity. Addresses are not, as they may change."""
+    """Return the served model names, which are part of an evaluation's identity. URLs are not, because they may change."""
     spec = pair.perception.spec
     perception = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
     return [pair.planner.endpoint.model if pair.planner.endpoint else "", perception]

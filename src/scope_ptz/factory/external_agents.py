@@ -1,4 +1,4 @@
-"""Create external agents from the options of an evaluation."""
+"""Create external agents from evaluation options."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def external_agent(options: EvaluationOptions) -> LocalAgent | None:
-    """Return the external agent that the options name; None for the built-in agent loop.
+    """Create the external agent that the options specify; None for the built-in agent loop.
 
     Raises:
-        ConfigError: The options contradict each other, or name something that does not exist.
+        ConfigError: The options contradict each other, or the agent does not exist.
     """
     from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.agents.start import local_agent
@@ -27,18 +27,18 @@ def external_agent(options: EvaluationOptions) -> LocalAgent | None:
     settings = options.agent_options or AgentOptions()
     if options.agent == BUILT_IN_AGENT and not settings.command:
         if settings != AgentOptions():
-            raise ConfigError("Options of external agents need an agent: add --agent MODULE:CLASS or --agent-command.")
+            raise ConfigError("Options for external agents require an agent. Add --agent MODULE:CLASS or --agent-command.")
         return None
     if options.agent != BUILT_IN_AGENT and settings.command:
-        raise ConfigError("--agent and --agent-command name two agents. Remove one of them.")
+        raise ConfigError("--agent and --agent-command cannot be combined. Remove one of them.")
     return local_agent(options.agent, settings, hidden_files(options, load_settings()))
 
 
 def hidden_files(options: EvaluationOptions, settings: ScopeSettings) -> tuple[Path, ...]:
-    """Return the files and folders that an agent in a sandbox must not see: tasks, logs, runs, scenes and settings."""
-    named = (
+    """Return the files and folders to hide from a sandboxed agent: tasks, logs, runs, scenes and settings."""
+    paths = (
         options.out, Path(options.tasks), options.resume, settings.scenes_dir, settings.runs_dir, settings.user_runs_folder(),
         settings.cache_dir, settings.pictures_folder(), settings.camera_profiles_dir, settings.tokens, settings.models_file(),
         settings.config, user_config_path("scope-ptz"), user_data_path("scope-ptz"),
     )  # fmt: skip
-    return tuple(path.absolute() for path in named if path is not None)
+    return tuple(path.absolute() for path in paths if path is not None)

@@ -1,4 +1,4 @@
-"""The Inspect AI plug-in of this package: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
+"""The Inspect AI plug-in: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
 
 Example::
 
@@ -21,25 +21,25 @@ from scope_ptz.factory.evaluation import eval_context
 __all__ = ["bench", "checks", "judge", "scope_agent", "scope_ptz"]
 
 bench = benchmark_task(lambda seed: eval_context(seed=seed))
-"""The benchmark task. Its context is built from the settings."""
+"""The benchmark task, whose context is created from the settings."""
 
 
 @solver
 def scope_agent(
     agent: str = BUILT_IN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
 ) -> Solver:
-    """The agent as a solver, under the name that logs store. The parameters are those of ``bench``."""
+    """The agent as a solver, under the name stored in logs. The parameters are those of ``bench``."""
     context = eval_context(seed=seed)
     return agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed)
 
 
 @scorer(metrics=list(METRICS), name=CHECKS)
 def checks() -> Scorer:
-    """The executable checks, for ``inspect score``."""
+    """The executable checks as a scorer, for ``inspect score``."""
     return checks_scorer()
 
 
 @scorer(metrics=list(METRICS), name=JUDGE)
 def judge(repeat: int = 0) -> Scorer:
-    """The judge, for ``inspect score --model-role judge=...``. ``repeat`` is the index of the judgement."""
+    """The judge as a scorer, for ``inspect score --model-role judge=...``. ``repeat`` is the index of the judgement."""
     return judge_scorer(eval_context(seed=1), repeat)

@@ -1,4 +1,4 @@
-"""Resolve options, the model registry and environment variables to one planner and one perception backend."""
+"""Resolve model options, the model registry and environment variables to a planner and a perception backend."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 CHAT_BACKEND = "openai_vision"
 
 BACKENDS_WITH_SERVER = ("moondream", CHAT_BACKEND)
-"""Backends that always need a server."""
+"""Backends that always require a server."""
 
 BACKENDS_WITHOUT_SERVER = ("ocr", "router", "transformers_local", "zero_shot")
-"""Backends that never use a server. Plug-ins are in neither list: they receive an endpoint if the user gives an address."""
+"""Backends that never use a server. Plug-ins are in neither list: they receive an endpoint if the user specifies a URL."""
 
 
 class ModelResolver:
     """Resolves the user's model options to a planner and a perception backend.
 
     Args:
-        options: The options that the user gave.
+        options: The user's options.
         settings: Defaults from the environment.
     """
 
@@ -49,13 +49,13 @@ class ModelResolver:
         """Return the planner and the perception backend.
 
         Raises:
-            InputError: A name, an address or a combination of options is invalid.
+            InputError: A name, a URL or a combination of options is invalid.
         """
         options = self.options
         planner, perception = options.planner, options.perception
         if options.pair is not None:
             if planner is not None or perception is not None:
-                raise InputError("Give --pair, or --planner and --perception, not both.")
+                raise InputError("Use either --pair or --planner and --perception, not both.")
             planner, perception = read_pair(self.registry, options.pair)
         planner = planner or (CHAT if options.planner_url or options.planner_model else GRAMMAR)
         perception = perception or (CHAT_BACKEND if options.perception_url or options.perception_model else BUILT_IN_PERCEPTION[0])
@@ -70,7 +70,7 @@ class ModelResolver:
         if name == GRAMMAR:
             if options.planner_url or options.planner_model or options.planner_options or options.planner_key_file:
                 raise InputError(
-                    "The grammar planner has no server and no options. Remove the --planner-... options, or name a model."
+                    "The grammar planner has no server and no options. Remove the --planner-... options, or choose a model."
                 )
             return ResolvedPlanner(GRAMMAR)
         if self._is_plugin_planner(name):
@@ -85,17 +85,17 @@ class ModelResolver:
         return ResolvedPlanner(model.name if model else endpoint.model, endpoint, self._chat_options(model, sees=sees), model)
 
     async def _hybrid(self, model: str, *, sees: bool) -> ResolvedPlanner:
-        """Return the hybrid planner whose language model or plug-in has this name."""
+        """Resolve a hybrid planner, given the name of its language model or plug-in."""
         if model in ("", GRAMMAR) or model.startswith(HYBRID_PREFIX):
             raise InputError(
-                f"'{HYBRID_PREFIX}{model}' names no language model. Name the one that plans what the grammar does not understand, "
-                f"for example {HYBRID_PREFIX}qwen3.5-4b, or {HYBRID_PREFIX}{CHAT} with --planner-url."
+                f"'{HYBRID_PREFIX}{model}' does not name a language model. Add the model that plans the instructions that the "
+                f"grammar does not understand, for example {HYBRID_PREFIX}qwen3.5-4b, or {HYBRID_PREFIX}{CHAT} with --planner-url."
             )
         resolved = await self._planner(model, sees=sees)
         return replace(resolved, name=f"{HYBRID_PREFIX}{resolved.name}", is_hybrid=True)
 
     def _is_plugin_planner(self, name: str) -> bool:
-        """Return whether the name is that of a plug-in. Built-in and registered names take precedence."""
+        """Return whether a name selects a plug-in. Built-in and registered names take precedence."""
         return name != CHAT and name not in self.registry.model_names("planner") and find(PLANNERS, name) is not None
 
     def _plugin_planner(self, name: str) -> ResolvedPlanner:
@@ -105,8 +105,8 @@ class ModelResolver:
         url = options.planner_url or self.settings.planner_url
         key = self._key(options.planner_key_file, None, url, self.settings.planner_key)
         endpoint = self._endpoint(url, key, "planner", name, None) if url else None
-        given = parse_options(options.planner_options, "--planner-option")
-        spec = PlannerSpec(name=name, model=options.planner_model or "", endpoint=endpoint, options=given)
+        plugin_options = parse_options(options.planner_options, "--planner-option")
+        spec = PlannerSpec(name=name, model=options.planner_model or "", endpoint=endpoint, options=plugin_options)
         return ResolvedPlanner(name, plugin=spec)
 
     def _chat_options(self, model: Model | None, *, sees: bool) -> ChatOptions:
@@ -114,25 +114,27 @@ class ModelResolver:
 
         from scope_ptz.planner.chat import ChatOptions
 
-        given: dict[str, Any] = {}
+        chat_options: dict[str, Any] = {}
         if model is not None:
-            # Thinking delays every move of the camera, so it is off unless --planner-option thinking=on is given.
-            given = {"family": model.repo, "sees": sees and model.sees}
-            given |= {"thinking": "off"} if model.thinking in ("default", "always") else {}
-        given |= parse_options(self.options.planner_options, "--planner-option")
+            # Thinking delays every camera move, so it is off unless --planner-option thinking=on is given.
+            chat_options = {"family": model.repo, "sees": sees and model.sees}
+            chat_options |= {"thinking": "off"} if model.thinking in ("default", "always") else {}
+        chat_options |= parse_options(self.options.planner_options, "--planner-option")
         try:
-            return ChatOptions.model_validate(given)
+            return ChatOptions.model_validate(chat_options)
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
-            where = ".".join(str(part) for part in first["loc"])
-            raise ConfigError(f"--planner-option {where}: {first['msg']}. Known: {', '.join(ChatOptions.model_fields)}.") from None
+            path = ".".join(str(part) for part in first["loc"])
+            raise ConfigError(
+                f"--planner-option {path}: {first['msg']}. Known options: {', '.join(ChatOptions.model_fields)}."
+            ) from None
 
     async def _perception(self, name: str, shared: ResolvedPlanner | None) -> ResolvedPerception:
         options = self.options
         if name in BUILT_IN_PERCEPTION:
             if options.perception_url or options.perception_model or options.perception_options or options.perception_key_file:
                 raise InputError(
-                    f"The backend '{name}' has no server and no options. Remove the --perception-... options, or name a model."
+                    f"The backend '{name}' has no server and no options. Remove the --perception-... options, or choose a model."
                 )
             return ResolvedPerception(name)
         if shared is not None and shared.endpoint is not None and not (options.perception_url or options.perception_model):
@@ -152,14 +154,14 @@ class ModelResolver:
 
     def _spec(self, name: str, model: Model | None, endpoint: Endpoint | None) -> ResolvedPerception:
         from scope_ptz.perception.backends.spec import BackendSpec
-        from scope_ptz.planner.chat.families import switch_for, usual_server
+        from scope_ptz.planner.chat.families import reasoning_switch, usual_server
 
         options = dict(parse_options(self.options.perception_options, "--perception-option"))
         options.pop("backend", None)
         backend = self._backend(name, model)
         coordinates = options.pop("coordinates", None) or (model.coordinates if model else "generic")
         if backend == CHAT_BACKEND and endpoint is not None and "extra" not in options:
-            no_thinking = switch_for(model.repo if model else endpoint.model, "off", usual_server(endpoint.url)).fields
+            no_thinking = reasoning_switch(model.repo if model else endpoint.model, "off", usual_server(endpoint.url)).fields
             options |= {"extra": dict(no_thinking)} if no_thinking else {}
         served = self.options.perception_model or (endpoint.model if endpoint else "") or (model.repo if model else "")
         label = model.name if model else (served or name)
@@ -171,22 +173,23 @@ class ModelResolver:
         return normalised(str(requested or (model.backend if model else name)))
 
     def _with_router(self, perception: ResolvedPerception) -> ResolvedPerception:
-        """Combine the perception backend with the requested reader and detector in a router. Without them, return it unchanged."""
+        """Combine the perception backend with the requested reader and detector in a router, if there are any."""
         from scope_ptz.perception.backends.spec import BackendSpec
 
         requested = {"reader": self.options.reader, "detector": self.options.detector}
-        parts = {role: self._spec_of_part(name) for role, name in requested.items() if name}
+        parts = {role: self._part_spec(name) for role, name in requested.items() if name}
         if not parts:
             return perception
         if perception.spec is None:
             raise InputError(
-                f"--reader and --detector need a perception model, but '{perception.name}' is not one. Remove them, or name one."
+                f"--reader and --detector require a perception model, but '{perception.name}' is not one. Remove these options, "
+                "or choose a model with --perception."
             )
         label = "+".join((perception.name, *(part.name for part in parts.values())))
         options = {"answerer": perception.spec, **parts}
         return ResolvedPerception(label, BackendSpec(name=label, backend="router", options=options), perception.model)
 
-    def _spec_of_part(self, name: str) -> BackendSpec:
+    def _part_spec(self, name: str) -> BackendSpec:
         from scope_ptz.perception.backends.spec import BackendSpec
 
         model = self._registered_perception(name)
@@ -200,7 +203,7 @@ class ModelResolver:
         )
 
     def _registered_planner(self, name: str) -> Model | None:
-        """Return the registry's entry, or None if the name is not registered and the user gave the address of its server."""
+        """Return the registry entry for a planner; None if it is not registered but the user specified its server's URL."""
         try:
             return self.registry.model(name, "planner")
         except UnknownNameError as error:
@@ -210,7 +213,7 @@ class ModelResolver:
             raise UnknownNameError("planner", name, [GRAMMAR, CHAT, *self.registry.model_names("planner"), *plugins]) from error
 
     def _registered_perception(self, name: str) -> Model | None:
-        """Return the registry's entry, or None for the name of a backend."""
+        """Return the registry entry for a perception model; None if the name is that of a backend."""
         from scope_ptz.perception.backends import backend_names, built_in_backends
 
         if normalised(name) in built_in_backends():
@@ -227,14 +230,14 @@ class ModelResolver:
         from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 
         if not url:
-            how = f" `scope models serve-command {model.name}` prints the command that starts one." if model else ""
-            raise ConfigError(f"'{name}' runs on a model server. Give its address with --{role}-url.{how}")
+            hint = f" `scope models serve-command {model.name}` prints the command that starts one." if model else ""
+            raise ConfigError(f"'{name}' requires a model server. Specify its URL with --{role}-url.{hint}")
         total = self.options.timeout_s
         return Endpoint(url=url, key=key, timeouts=Timeouts() if total is None else Timeouts.within(total))
 
     @staticmethod
     def _key(file: Path | None, model: Model | None, url: str, from_environment: SecretStr | None) -> SecretStr | None:
-        """Return the API key for an address. The key file of a registered model is only used for that model's own address."""
+        """Return the API key for a URL. A registered model's key file is used only for that model's own URL."""
         from scope_ptz.endpoints.endpoint import key_from_file
 
         registered = model.key_file if model is not None and model.url == url else None
@@ -243,12 +246,12 @@ class ModelResolver:
 
 
 def read_pair(registry: Registry, text: str) -> tuple[str, str]:
-    """Return the names of the planner and the perception backend of a pair.
+    """Return the names of a pair's planner and perception backend.
 
     Args:
-        registry: The known models and pairs.
-        text: The name of a pair, ``PLANNER+PERCEPTION``, or one model that does both. Either part may be built in or
-            come from a plug-in.
+        registry: The registered models and pairs.
+        text: The name of a pair, ``PLANNER+PERCEPTION``, or a single model for both roles. Either part may be built in or provided
+            by a plug-in.
 
     Raises:
         UnknownNameError: A name is unknown.
@@ -262,7 +265,7 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
 
 
 def _role_name(registry: Registry, name: str, role: Role) -> str:
-    """Return the name of the built-in, registered model or plug-in for a role."""
+    """Check a name for a role, and return the name of the built-in, the registered model or the plug-in."""
     if role == "planner" and name.startswith(HYBRID_PREFIX):
         return HYBRID_PREFIX + _role_name(registry, name.removeprefix(HYBRID_PREFIX), role)
     built_in, group = ((GRAMMAR,), PLANNERS) if role == "planner" else (BUILT_IN_PERCEPTION, PERCEPTION)

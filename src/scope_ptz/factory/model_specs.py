@@ -1,4 +1,4 @@
-"""Options that name a planner and a perception backend, and the results of resolving them."""
+"""Options for choosing a planner and a perception backend, and the results of resolving them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:
-    """Options for planner, perception and their servers, as the user gave them.
+    """Options for the planner, the perception backend and their servers, as specified by the user.
 
     ``planner_instance`` and ``perception_instance`` are objects that Python code passes instead of names.
     """
@@ -43,18 +43,16 @@ class ModelOptions:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPlanner:
-    """The result of resolving the options for a planner: the grammar, a chat model or a plug-in.
-
-    ``make_planner`` creates the planner from this result.
+    """A resolved planner: the grammar, a chat model or a plug-in. ``make_planner`` creates the planner from it.
 
     Attributes:
         name: The name in traces and reports.
         endpoint: The chat model's server; None for other planners.
         options: The chat model's options; None for other planners.
-        model: The registry's entry; None for a model that is not registered.
-        plugin: The spec that the factory of a plug-in receives; None for other planners.
-        instance: An existing planner that the caller passed. All other fields except the name are then None.
-        is_hybrid: Whether the grammar plans what it understands, and the chat model or plug-in plans only the rest.
+        model: The registry entry; None for a model that is not registered.
+        plugin: The spec for a plug-in's factory; None for other planners.
+        instance: An existing planner that the caller passed; all other fields except the name are then None.
+        is_hybrid: Whether the grammar plans the instructions that it understands, and the chat model or plug-in only the others.
     """
 
     name: str
@@ -68,13 +66,13 @@ class ResolvedPlanner:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPerception:
-    """The result of resolving the options for a perception backend, which ``make_perception`` creates.
+    """A resolved perception backend. ``make_perception`` creates the backend from it.
 
     Attributes:
         name: The name in traces and reports.
         spec: The backend's spec; None for a built-in backend.
-        model: The registry's entry; None for a model that is not registered.
-        instance: An existing perception backend that the caller passed. All other fields except the name are then None.
+        model: The registry entry; None for a model that is not registered.
+        instance: An existing perception backend that the caller passed; all other fields except the name are then None.
     """
 
     name: str
@@ -85,7 +83,7 @@ class ResolvedPerception:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedPair:
-    """The result of resolving the options for a pair."""
+    """A resolved planner and perception backend."""
 
     planner: ResolvedPlanner
     perception: ResolvedPerception

@@ -1,4 +1,4 @@
-"""Resolve model options to names and servers, and create planners and perception backends from them."""
+"""Resolve model options, and create planners and perception backends from the results."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ _NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE, SERVED_TRUTH: SERV
 
 
 async def resolve_models(options: ModelOptions) -> ResolvedPair:
-    """Return the planner and the perception backend that the options name.
+    """Resolve model options to a planner and a perception backend.
 
-    If the options do not give a model's served name, it is looked up in the server's list of models.
+    If the options do not include a model's served name, it is looked up in the server's model list.
 
     Raises:
-        InputError: A name, an address or a combination of options is invalid.
+        InputError: A name, a URL or a combination of options is invalid.
     """
     if options.planner_instance is not None or options.perception_instance is not None:
         pair = await resolve_models(replace(options, planner_instance=None, perception_instance=None))
@@ -68,7 +68,7 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
 
 
 def _only_built_in(options: ModelOptions) -> bool:
-    """Return whether the options name only built-in planners and perception backends. The registry is then not needed."""
+    """Return whether the options name only built-in planners and perception backends, so that the registry is not needed."""
     names_only = ModelOptions(planner=options.planner, perception=options.perception)
     return options == names_only and options.planner in (None, GRAMMAR) and options.perception in (None, *BUILT_IN_PERCEPTION)
 
@@ -97,17 +97,19 @@ def make_planner(resolved: ResolvedPlanner) -> Planner:
 
 
 def make_plugin_planner(spec: PlannerSpec) -> Planner:
-    """Create the planner of a plug-in.
+    """Create a plug-in's planner.
 
     Raises:
-        ConfigError: The plug-in cannot be loaded, its factory fails, or it does not return a planner.
+        ConfigError: The plug-in is not installed or cannot be loaded, or its factory fails or does not return a planner.
     """
     from scope_ptz.entry_points import PLANNERS, call_factory, find
     from scope_ptz.planner.base import Planner
 
     entry = find(PLANNERS, spec.name)
     if entry is None:
-        raise ConfigError(f"No installed package provides the planner '{spec.name}'. Install the plug-in, or name another planner.")
+        raise ConfigError(
+            f"No installed package provides the planner '{spec.name}'. Install the plug-in, or choose another planner."
+        )
     return call_factory(entry, Planner, spec)  # type: ignore[type-abstract]
 
 
@@ -122,14 +124,14 @@ def make_perception(
 
     Args:
         resolved: The resolved perception backend.
-        scenes: Opens the scenes of simulated frames by name; None for a camera without ground truth.
+        scenes: A function that opens the scenes of simulated frames by name; None for a camera without ground truth.
         seed: Seed for the random errors of ``noisy``.
-        read_truth: Reads the ground truth of a view; the default does not cache it.
-        served_truth: Connects to the ground truth that a virtual camera serves; None for other cameras.
+        read_truth: A function that reads the ground truth of a view; the default does not cache it.
+        served_truth: A function that connects to a virtual camera's ground truth; None for other cameras.
 
     Raises:
         InputError: A built-in perception backend is requested for a camera without ground truth.
-        ConfigError: A backend's options are invalid, or a package is missing or cannot be loaded.
+        ConfigError: A backend's options are invalid, or a package is not installed or cannot be loaded.
     """
     if resolved.instance is not None:
         return resolved.instance
@@ -141,8 +143,8 @@ def make_perception(
         return _make_served_truth(served_truth)
     if scenes is None:
         raise InputError(
-            f"The backend '{resolved.name}' reads the ground truth of a simulated scene, and this camera has none. Name a "
-            "vision model with --perception; `scope models --role perception` lists them."
+            f"The backend '{resolved.name}' uses the ground truth of a simulated scene, but this camera has none. Choose a "
+            "vision model with --perception. `scope models --role perception` lists them."
         )
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
@@ -157,8 +159,8 @@ def make_perception(
 def _make_served_truth(served_truth: Callable[[], ServedTruth] | None) -> Perception:
     if served_truth is None:
         raise InputError(
-            f"The backend '{SERVED_TRUTH}' is for a virtual camera on this machine, such as axis://root@127.0.0.1:8080, "
-            "without rules in scope.yaml. Name another backend with --perception."
+            f"The backend '{SERVED_TRUTH}' requires a virtual camera on this machine, such as axis://root@127.0.0.1:8080, "
+            "without rules in scope.yaml. Choose another backend with --perception."
         )
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.perception.ground_truth.served import ServedTruthPerception
@@ -169,7 +171,7 @@ def _make_served_truth(served_truth: Callable[[], ServedTruth] | None) -> Percep
 
 
 def dry_run_note(note: str) -> str:
-    """Return the note for the user about a dry run, followed by ``note``, which is about perception."""
+    """Return a note for the user about a dry run, followed by ``note``, which is about perception."""
     return f"Dry run: nothing has moved, and answers are about the view at the start. {note}".rstrip()
 
 

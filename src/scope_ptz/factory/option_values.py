@@ -1,4 +1,4 @@
-"""Parser of ``NAME=VALUE`` options."""
+"""Parse ``NAME=VALUE`` options."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:
     """Parse ``NAME=VALUE`` options. A value that is valid JSON is parsed as JSON; any other value is text.
 
     Args:
-        pairs: The options as the user gave them.
-        option: The command-line option, for error messages.
+        pairs: The options, as specified by the user.
+        option: Name of the command-line option, for error messages.
 
     Returns:
         The values by name.

@@ -1,4 +1,4 @@
-"""Quick checks of plug-ins: whether one can be loaded, and whether it fulfils its contract on one small request."""
+"""Quick checks that a plug-in can be loaded and fulfils its contract for one small request."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.factory.plugins import Kind, Plugin
 from scope_ptz.geometry import Limits, Perspective, Pose
 
 CHECK_TIMEOUT_S = 20.0
-"""Maximum time for the check of one plug-in."""
+"""Timeout in seconds for checking a plug-in."""
 
 Verdict = Literal["ok", "partly", "failed"]
 
@@ -28,7 +28,7 @@ class PluginCheck:
     Attributes:
         plugin: The plug-in.
         verdict: "partly" means that the plug-in was loaded but could not be tested, for example without an address.
-        detail: One line of explanation for the user.
+        detail: A one-line explanation for the user.
     """
 
     plugin: Plugin
@@ -37,9 +37,9 @@ class PluginCheck:
 
 
 async def check_plugin(plugin: Plugin) -> PluginCheck:
-    """Load a plug-in and test it with one request. Failures are reported in the result, not raised.
+    """Load a plug-in and test it with one request. Failures are reported in the result instead of being raised.
 
-    A camera is only opened if its factory has an attribute ``example``: an address that can be opened without hardware.
+    A camera is opened only if its factory has an attribute ``example``, an address that can be opened without hardware.
     """
     if plugin.problem:
         return PluginCheck(plugin, "failed", plugin.problem)
@@ -53,10 +53,10 @@ async def check_plugin(plugin: Plugin) -> PluginCheck:
     except ConfigError as error:
         return PluginCheck(plugin, "partly", f"it was loaded but not tested: {error}")
     except TimeoutError:
-        return PluginCheck(plugin, "failed", f"it did not answer within {CHECK_TIMEOUT_S:g} s")
+        return PluginCheck(plugin, "failed", f"it did not respond within {CHECK_TIMEOUT_S:g} s")
     except _BrokenContractError as error:
         return PluginCheck(plugin, "failed", str(error))
-    except Exception as error:  # the code of another package can raise anything
+    except Exception as error:  # code from another package can raise anything
         return PluginCheck(plugin, "failed", one_line(error))
 
 
@@ -119,14 +119,14 @@ async def _check_perception(plugin: Plugin) -> tuple[Verdict, str]:
         _expect(not unknown, f"it declares unknown skills: {', '.join(unknown)}")
         _expect(bool(perception.skills), "it declares no skills")
         skill = next(name for name in requests if name in perception.skills)
-        request, kind = requests[skill]
+        request, result_type = requests[skill]
         try:
             result = await request()
         except PerceptionError as error:
             return "partly", f"it was loaded, but {skill}() failed on a grey frame: {one_line(error)}"
     finally:
         await perception.close()
-    _expect(isinstance(result, kind), f"{skill}() returned a {type(result).__name__} instead of a {kind.__name__}")
+    _expect(isinstance(result, result_type), f"{skill}() returned a {type(result).__name__} instead of a {result_type.__name__}")
     return "ok", f"skills: {', '.join(name for name in requests if name in perception.skills)}"
 
 

@@ -10,7 +10,7 @@ group                     name                        factory
 ``scope_ptz.perception``  value of ``--perception``   ``BackendSpec -> Perception``
 ========================  ==========================  ==================================================
 
-Built-in names and names in the model registry take precedence over plug-ins of the same name. A plug-in is only imported when
+Built-in names and names in the model registry take precedence over plug-ins with the same name. A plug-in is imported only when
 it is used or checked, so a broken plug-in does not affect other commands.
 """
 
@@ -27,13 +27,13 @@ GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception":
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """An installed plug-in. It is imported on first use.
+    """An installed plug-in, which is imported on first use.
 
     Attributes:
         kind: Whether it provides a camera, a planner or a perception backend.
         name: The name that selects it.
-        package: The distribution and its version.
-        target: The factory as ``module:attribute``.
+        package: Name and version of the distribution.
+        target: The factory, as ``module:attribute``.
         problem: The reason why the name does not select this plug-in; empty if it does.
         entry: The entry point.
     """
@@ -48,10 +48,10 @@ class Plugin:
 
 def list_plugins() -> tuple[Plugin, ...]:
     """Return all installed plug-ins, sorted by kind and name, without importing them."""
-    return tuple(plugin for kind in GROUPS for plugin in plugins_of(kind))
+    return tuple(plugin for kind in GROUPS for plugin in list_plugins_of_kind(kind))
 
 
-def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
+def list_plugins_of_kind(kind: Kind) -> tuple[Plugin, ...]:
     """Return the installed plug-ins of one kind, sorted by name, without importing them."""
     group = GROUPS[kind]
     entries = installed(group)
@@ -66,14 +66,14 @@ def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
 
 def _problem(entry: InstalledEntry, kind: Kind, reserved: frozenset[str], duplicates: frozenset[str]) -> str:
     if entry.name in reserved:
-        return f"its name is that of a built-in {kind}, which is used instead. Rename the entry point"
+        return f"a built-in {kind} has the same name and is used instead. Rename the entry point"
     if entry.name in duplicates:
-        return "another package provides the same name. Uninstall one of them"
+        return "another package provides a plug-in with the same name. Uninstall one of the packages"
     return ""
 
 
 def _reserved_names(kind: Kind) -> frozenset[str]:
-    """Return the built-in names and those of the model registry, which plug-ins cannot use."""
+    """Return the built-in names and the names in the model registry, which plug-ins cannot use."""
     if kind == "camera":
         from scope_ptz.factory.cameras import BUILT_IN_SCHEMES
 

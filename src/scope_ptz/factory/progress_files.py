@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.entries import Entry
     from scope_ptz.bench.scoring.trials import Trial
 
-MAX_NOTES = 20  # newest notes that the state contains
+MAX_NOTES = 20  # maximum number of notes in the state; older notes are dropped
 
 
 class ProgressFiles(EvaluationProgress):
     """Writes ``progress.json`` (the state, replaced as a whole) and ``trials.jsonl`` (one finished run per line) to a folder.
 
-    The file ``progress.lock`` is locked until ``close``, or until the process ends for any reason.
+    The file ``progress.lock`` is locked until ``close`` is called or the process ends for any reason.
 
     Args:
-        folder: The folder. It is created if needed.
+        folder: The folder, which is created if needed.
 
     Raises:
-        InputError: Another evaluation writes to the folder.
-        OutputError: The folder cannot be written.
+        InputError: Another evaluation is writing to the folder.
+        OutputError: The folder cannot be written to.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -46,7 +46,7 @@ class ProgressFiles(EvaluationProgress):
         self._trials: dict[str, Trial] = {}
         self._running: dict[str, RunningTask] = {}
         self._notes: list[str] = []
-        self._began, self._finished_before, self._failed = time.monotonic(), 0, False
+        self._started_s, self._finished_before, self._failed = time.monotonic(), 0, False
         self._state = ProgressState(pid=os.getpid(), runs=0)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -55,7 +55,9 @@ class ProgressFiles(EvaluationProgress):
             raise OutputError(f"The progress cannot be written to {folder}: {error.strerror}. Choose another folder.") from error
         if not lock_file(self._lock):
             self._lock.close()
-            raise InputError(f"Another evaluation is writing its progress to {folder}. Wait for it, or choose another folder.")
+            raise InputError(
+                f"Another evaluation is writing its progress to {folder}. Wait until it ends, or choose another folder."
+            )
         self._write()
 
     def close(self) -> None:
@@ -68,7 +70,7 @@ class ProgressFiles(EvaluationProgress):
 
     def planned(self, plan: EvaluationPlan) -> None:
         self._state = self._state.model_copy(update={"runs": plan.runs})
-        self._began, self._finished_before = time.monotonic(), len(plan.finished)
+        self._started_s, self._finished_before = time.monotonic(), len(plan.finished)
         self._replace_trials({trial.sample: trial for trial in plan.finished})
         self._write()
 
@@ -84,7 +86,7 @@ class ProgressFiles(EvaluationProgress):
         if again:
             self._replace_trials(self._trials)
         else:
-            self._try(lambda: self._append(trial))
+            self._try_to_write(lambda: self._append(trial))
         self._write()
 
     def closed(self) -> None:
@@ -102,7 +104,7 @@ class ProgressFiles(EvaluationProgress):
         new = len(self._trials) - self._finished_before
         if new < 1 or self._state.finished:
             return None
-        return (time.monotonic() - self._began) / new * max(self._state.runs - len(self._trials), 0)
+        return (time.monotonic() - self._started_s) / new * max(self._state.runs - len(self._trials), 0)
 
     def _write(self) -> None:
         state = self._state.model_copy(
@@ -113,11 +115,11 @@ class ProgressFiles(EvaluationProgress):
                 "notes": tuple(self._notes),
             }
         )
-        self._try(lambda: self._replace(STATE_FILE, state.model_dump_json()))
+        self._try_to_write(lambda: self._replace(STATE_FILE, state.model_dump_json()))
 
     def _replace_trials(self, trials: dict[str, Trial]) -> None:
         self._trials = dict(trials)
-        self._try(lambda: self._replace(TRIALS_FILE, "".join(f"{each.model_dump_json()}\n" for each in trials.values())))
+        self._try_to_write(lambda: self._replace(TRIALS_FILE, "".join(f"{trial.model_dump_json()}\n" for trial in trials.values())))
 
     def _append(self, trial: Trial) -> None:
         with (self._folder / TRIALS_FILE).open("a", encoding="utf-8") as file:
@@ -128,8 +130,8 @@ class ProgressFiles(EvaluationProgress):
         new.write_text(text, "utf-8")
         new.replace(self._folder / name)
 
-    def _try(self, write: Callable[[], None]) -> None:
-        """Write a file. Report a failure only as a note, because a full disk here must not stop the evaluation."""
+    def _try_to_write(self, write: Callable[[], None]) -> None:
+        """Write a file. A failure is only reported as a note, because a full disk must not stop the evaluation."""
         try:
             write()
         except OSError as error:
@@ -139,27 +141,27 @@ class ProgressFiles(EvaluationProgress):
 
 
 class ProgressGroup(EvaluationProgress):
-    """Forwards all progress to several receivers."""
+    """Forwards progress to several receivers."""
 
     def __init__(self, *receivers: EvaluationProgress) -> None:
         self._receivers = receivers
 
     def note(self, text: str) -> None:
-        for each in self._receivers:
-            each.note(text)
+        for receiver in self._receivers:
+            receiver.note(text)
 
     def planned(self, plan: EvaluationPlan) -> None:
-        for each in self._receivers:
-            each.planned(plan)
+        for receiver in self._receivers:
+            receiver.planned(plan)
 
     def closed(self) -> None:
-        for each in self._receivers:
-            each.closed()
+        for receiver in self._receivers:
+            receiver.closed()
 
     def run_began(self, sample: str, entry: Entry) -> None:
-        for each in self._receivers:
-            each.run_began(sample, entry)
+        for receiver in self._receivers:
+            receiver.run_began(sample, entry)
 
     def run_ended(self, sample: str, trial: Trial) -> None:
-        for each in self._receivers:
-            each.run_ended(sample, trial)
+        for receiver in self._receivers:
+            receiver.run_ended(sample, trial)

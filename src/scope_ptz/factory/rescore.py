@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.server import JudgeServer
 
 Notify = Callable[[str], None]
-"""Callback that receives a sentence for the user."""
+"""A callback that receives a sentence for the user."""
 
 CONCURRENT_JUDGEMENTS = 8
 PROGRESS_INTERVAL = 25
-"""Number of samples between two notes about the progress of scoring."""
+"""Number of samples between notes about scoring progress."""
 
 
 def with_judge(context: EvalContext, judge: JudgeServer) -> EvalContext:
@@ -35,7 +35,7 @@ def with_judge(context: EvalContext, judge: JudgeServer) -> EvalContext:
 
 
 async def open_requested_judge(settings: JudgeSettings) -> JudgeServer:
-    """Connect to the judge that the settings describe. The errors are those of ``open_judge``."""
+    """Connect to the judge specified by the settings. The errors are those of ``open_judge``."""
     return await open_judge(settings.url, settings.model, settings.key_file, settings.timeout_s, settings.options)
 
 
@@ -58,22 +58,22 @@ async def add_scores(
     concurrency: int = CONCURRENT_JUDGEMENTS,
     notify: Notify,
 ) -> JudgementTally:
-    """Add scores to a log and return the outcome of the judgements. The agent is not run again.
+    """Add scores to a log, and return a tally of the judgements. The agent is not run again.
 
     Args:
-        log: Log of a finished evaluation.
+        log: The log of a finished evaluation.
         judge: The judge; None to apply only the checks.
-        context: Context of the evaluation.
-        repeats: Number of judgements of each run.
-        additional: Whether to add ``repeats`` judgements to those in the log. Otherwise, add only those that are missing from the
-            first ``repeats``.
+        context: The evaluation context.
+        repeats: Number of judgements per run.
+        additional: Whether to add ``repeats`` judgements to those in the log. If not, only the judgements that are missing from the
+            first ``repeats`` are added.
         checks: Whether to apply the current executable checks again.
-        concurrency: Number of runs that are scored concurrently.
-        notify: Receives notes about progress.
+        concurrency: Number of runs to score concurrently.
+        notify: A function that receives progress notes.
 
     Raises:
         InputError: The evaluation is not finished.
-        TraceError: There is no log, or it is damaged.
+        TraceError: The log does not exist, or is damaged.
     """
     from scope_ptz.bench.engine.rescoring import rescore
 
@@ -105,21 +105,22 @@ async def complete_judgements(
     retry_failed: bool,
     notify: Notify,
 ) -> EvaluationResult:
-    """Request the judgements that a log lacks, and return the evaluation with a tally of its judgements.
+    """Request the missing judgements for a log, and return the evaluation with a tally of its judgements.
 
     Args:
-        log: Log of an evaluation.
-        settings: The judge, and the number of judgements of each run.
-        connect_judge: Connects to the judge. It is not called if no judgement is missing and the judge's name is known.
-        context: Context of the evaluation.
-        retry_failed: Whether to repeat the judgements for which the judge's server failed.
-        notify: Receives notes for the user.
+        log: The evaluation log.
+        settings: The judge, and the number of judgements per run.
+        connect_judge: A function that connects to the judge. It is not called if the judge's name is known and no judgements are
+            missing.
+        context: The evaluation context.
+        retry_failed: Whether to repeat judgements for which the judge's server failed.
+        notify: A function that receives notes for the user.
 
     Raises:
-        UnnamedJudgeError: The name of the judge is unknown, and judgements are missing.
+        UnnamedJudgeError: The judge's name is unknown, and judgements are missing.
     """
     from scope_ptz.bench.engine.logs import read_evaluation
-    from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by, requested_judgements
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally, judge_of_every_run, requested_judgements
     from scope_ptz.settings import load_settings
 
     evaluation = read_evaluation(log)
@@ -128,22 +129,22 @@ async def complete_judgements(
         try:
             requested = (await connect_judge()).client.endpoint.model
         except UnnamedJudgeError as error:
-            known_judge = judged_by(evaluation.trials, "", settings.repeats)
+            known_judge = judge_of_every_run(evaluation.trials, "", settings.repeats)
             if known_judge is None:
                 raise
-            notify(f"{error} {known_judge} has already judged every run, and its verdicts are reported.")
+            notify(f"{error} {known_judge} has already judged every run, so its verdicts are reported.")
             requested = known_judge
-    name = judged_by(evaluation.trials, requested, settings.repeats)
+    name = judge_of_every_run(evaluation.trials, requested, settings.repeats)
     if name is None:
         judge = await connect_judge()
         name = judge.client.endpoint.model
         judgements = requested_judgements(evaluation.trials, name, settings.repeats)
         missing = sum(judgement is None or judgement.verdict == "failed" for judgement in judgements)
         if evaluation.finished and (None in judgements or (retry_failed and missing)):
-            notify(f"{missing} of {len(judgements)} judgements by {name} are missing; requesting them now.")
+            notify(f"{missing} of {len(judgements)} judgements by {name} are missing and will be requested now.")
             await add_scores(log, judge, context, repeats=settings.repeats, additional=False, notify=notify)
             evaluation = read_evaluation(log)
-    judgements_made = [
+    completed = [
         judgement for judgement in requested_judgements(evaluation.trials, name, settings.repeats) if judgement is not None
     ]
-    return EvaluationResult(evaluation, name, JudgementTally.of(judgements_made))
+    return EvaluationResult(evaluation, name, JudgementTally.of(completed))

@@ -1,4 +1,4 @@
-"""Export stored runs to a file, in the formats of the store or as drafts of benchmark tasks."""
+"""Export stored runs to a file, in the store's formats or as drafts for benchmark tasks."""
 
 from __future__ import annotations
 
@@ -20,11 +20,14 @@ if TYPE_CHECKING:
 
 AnyFormat = Literal["jsonl", "chat", "zip", "drafts"]
 FORMATS: tuple[str, ...] = get_args(AnyFormat)
-"""The formats of ``store.export``, and ``drafts``: a line for each run with positive feedback, for ``scope bench drafts``."""
+"""The formats of ``store.export``, and ``drafts``, which has one line for each run with positive feedback.
+
+``scope bench drafts`` reads files in the format ``drafts``.
+"""
 
 
 def export_runs(store: RunStore, runs: Iterable[str], out: Path, kind: ExportFormat | AnyFormat) -> int:
-    """Write runs to a new file, and return how many were written.
+    """Write runs to a new file, and return the number of runs written.
 
     Raises:
         InputError: The format is unknown.
@@ -47,10 +50,10 @@ def export_runs(store: RunStore, runs: Iterable[str], out: Path, kind: ExportFor
 
 
 def run_drafts(store: RunStore, runs: Iterable[str]) -> Iterator[RunDraft]:
-    """Yield the draft of each run with positive feedback, or the reason why the run cannot be converted. Other runs are skipped."""
+    """Yield a draft for each run with positive feedback, or the reason why the run cannot be converted. Skip all other runs."""
     from scope_ptz.taskgen.generating.draft_places import DraftRejectedError
     from scope_ptz.taskgen.generating.run_draft_file import RunDraft
-    from scope_ptz.taskgen.generating.run_drafts import run_draft
+    from scope_ptz.taskgen.generating.run_drafts import convert_run
 
     @cache
     def open_scene(name: str) -> Scene:
@@ -62,13 +65,13 @@ def run_drafts(store: RunStore, runs: Iterable[str]) -> Iterator[RunDraft]:
             raise DraftRejectedError(str(error)) from error
 
     for run in runs:
-        about_run = [each for each in feedback_on(store.database, run) if each.position is None]
-        if not any(each.rating > 0 for each in about_run) or any(each.rating < 0 for each in about_run):
+        run_feedback = [entry for entry in feedback_on(store.database, run) if entry.position is None]
+        if not any(entry.rating > 0 for entry in run_feedback) or any(entry.rating < 0 for entry in run_feedback):
             continue
-        note = " ".join(each.comment for each in about_run if each.comment)
+        note = " ".join(entry.comment for entry in run_feedback if entry.comment)
         try:
             trace = read_trace(store.folder(run))
         except TraceError as error:
             yield RunDraft(run=run, note=note, reason=str(error))
             continue
-        yield run_draft(run, trace, note, open_scene)
+        yield convert_run(run, trace, note, open_scene)

@@ -1,4 +1,4 @@
-"""Open scenes by name, from the configured folder or from the built-in ones."""
+"""Open scenes by name, from the configured folder or from the built-in scenes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
-    """Return the folders that are searched for scenes before the built-in ones.
+    """Return the folders to search for scenes before the built-in ones.
 
     Raises:
         ConfigError: SCOPE_SCENES_DIR is not a folder.
@@ -22,7 +22,7 @@ def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
     if settings.scenes_dir is None:
         return ()
     if not settings.scenes_dir.is_dir():
-        raise ConfigError(f"SCOPE_SCENES_DIR is {settings.scenes_dir}, which is not a folder. Correct the variable, or unset it.")
+        raise ConfigError(f"SCOPE_SCENES_DIR is {settings.scenes_dir}, which is not a folder. Correct or unset the variable.")
     return (settings.scenes_dir,)
 
 
@@ -31,11 +31,11 @@ def open_scene(name: str, *, cache_pictures: bool = False) -> Scene:
 
     Args:
         name: Name of the scene or variation.
-        cache_pictures: Whether decoded pictures are cached on disk, so that later processes render their first view sooner.
+        cache_pictures: Whether to cache decoded pictures on disk, so that later processes render their first view sooner.
 
     Raises:
         UnknownNameError: There is no such scene.
-        PackError: The files of the scene are damaged.
+        PackError: The scene's files are damaged.
     """
     from scope_ptz.simulator.pack import load_scene
     from scope_ptz.simulator.sheets.picture_cache import PictureCache

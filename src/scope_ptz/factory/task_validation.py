@@ -1,4 +1,4 @@
-"""Validate tasks with ground-truth perception, in the scenes that they belong to."""
+"""Validate tasks in their scenes with ground-truth perception."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
-from scope_ptz.factory.worlds import worlds_of
+from scope_ptz.factory.validation_perception import TruthCache, ground_truth_tools
+from scope_ptz.factory.worlds import open_worlds
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 def validate_tasks(
     tasks: Sequence[Task], seed: int, progress: Callable[[int, int], None] | None = None, dataset: Sequence[Task] = ()
 ) -> ValidationReport:
-    """Run each task's reference program and the adversarial attempts at it.
+    """Run each task's reference program and adversarial programs.
 
-    The report lists every run that passes or fails when it should not.
+    The report lists every run that passed or failed unexpectedly.
 
     Args:
         tasks: The tasks to validate.
         seed: Seed for choosing wrong answers.
-        progress: Receives the number of validated tasks and the total.
-        dataset: The whole dataset, if ``tasks`` is a selection from it.
+        progress: Called with the number of validated tasks and the total number of tasks.
+        dataset: The whole dataset, if ``tasks`` is a subset of it.
     """
-    worlds, truth = worlds_of(tasks), CachedTruth()
+    worlds, truth = open_worlds(tasks), TruthCache()
     make_context = ground_truth_tools(worlds, truth)
     return anyio.run(
         lambda: validate(tasks, worlds, make_context, seed=seed, read_truth=truth.read, progress=progress, dataset=dataset)
@@ -39,11 +39,11 @@ def validate_tasks(
 
 
 def task_validator(scene: Scene) -> ValidateTask:
-    """Return a function that validates a single task in a scene and returns its first fault; None if there is none.
+    """Return a function that validates a task in a scene and returns its first fault, or None if there is none.
 
     The checks are those of ``scope bench validate``.
     """
-    truth = CachedTruth()
+    truth = TruthCache()
     make_context = ground_truth_tools({scene.name: scene}, truth)
 
     async def validate_task(task: Task) -> str | None:

@@ -1,4 +1,4 @@
-"""Ground-truth perception for validating tasks. Frames are blank, and the ground truth of each view is cached."""
+"""Ground-truth perception for task validation, with a cache for the ground truth of each view and without image storage."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scope_ptz.bench.program_runner import MakeToolContext
 from scope_ptz.camera.base import Frame
 from scope_ptz.english import COLOURS
 from scope_ptz.english.grammar.lexicon import nouns_in
+from scope_ptz.english.grammar.questions.question_parser import parse_description, parse_question
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.ground_truth.answers import answer
-from scope_ptz.perception.ground_truth.language import parse_description, parse_question
 from scope_ptz.perception.ground_truth.view import View, read_view
 from scope_ptz.simulator.actors import appearances, may_be_visible
 from scope_ptz.simulator.pack import Scene
@@ -23,7 +23,7 @@ from scope_ptz.taskgen.facts.robust import RobustTruth
 from scope_ptz.tools.context import ToolContext
 
 
-class DiscardedImages:
+class NullImageStore:
     """An image store that returns file names but stores no images."""
 
     def __init__(self) -> None:
@@ -40,8 +40,8 @@ class DiscardedImages:
         return self._next_name()
 
 
-class CachedTruth:
-    """A cache for the ground truth of views. A view without moving actors has one entry for all times.
+class TruthCache:
+    """A cache for the ground truth of views. A view without moving actors has a single entry for all times.
 
     Args:
         limit: Maximum number of cached views.
@@ -63,27 +63,27 @@ class CachedTruth:
 
 
 def is_answerable(draft: TaskDraft) -> bool:
-    """Return whether ground-truth perception answers the questions in a draft's reference program as the draft expects.
+    """Return whether ground-truth perception answers the questions in a draft's reference program as expected.
 
-    The result is True for drafts that end with a zoom; validation checks those later.
+    The result is True for drafts that end with a zoom, which are checked later by validation.
     """
     truth = draft.place.truth
-    asked = [str(call.arguments["question"]) for call in draft.perception_calls if call.tool == "query_answer"]
-    if draft.ends_zoomed or not asked:
+    questions = [str(call.arguments["question"]) for call in draft.perception_calls if call.tool == "query_answer"]
+    if draft.ends_zoomed or not questions:
         return True
     view = _view(truth)
-    replies = [answer(view, parse_question(question)) for question in asked]
+    replies = [answer(view, parse_question(question)) for question in questions]
     if len(draft.perception_calls) == 1 and agrees(draft.expected, parse_answer(draft.expected, replies[0].text)) is False:
         return False
     return all(reply.known for reply in replies)
 
 
-def is_plain_noun(view: View, asked: str) -> bool:
+def is_plain_noun(view: View, description: str) -> bool:
     """Return whether a description consists only of colours and a known noun.
 
-    For other descriptions, an empty result of ground truth does not prove that the view shows no such object.
+    For other descriptions, an empty ground-truth result does not prove that there is no such object in the view.
     """
-    for phrase in parse_description(asked).phrases:
+    for phrase in parse_description(description).phrases:
         spans = nouns_in(phrase.words, view.nouns)
         plain = any(end == len(phrase.words) and set(phrase.words[:start]) <= COLOURS for start, end in spans)
         if not plain or phrase.tests:
@@ -93,10 +93,10 @@ def is_plain_noun(view: View, asked: str) -> bool:
 
 @lru_cache(maxsize=512)
 def _view(truth: RobustTruth) -> View:
-    return read_view(truth.first, truth.scene.file, truth.time_s)
+    return read_view(truth.first_sample, truth.scene.file, truth.time_s)
 
 
-def ground_truth_tools(scenes: Mapping[str, Scene], truth: CachedTruth | None = None) -> MakeToolContext:
+def ground_truth_tools(scenes: Mapping[str, Scene], truth: TruthCache | None = None) -> MakeToolContext:
     """Return a function that creates tool contexts with ground-truth perception and without image storage."""
-    perception = GroundTruthPerception(lambda name: scenes[name], (truth or CachedTruth()).read)
-    return lambda camera: ToolContext(camera, perception, DiscardedImages())
+    perception = GroundTruthPerception(lambda name: scenes[name], (truth or TruthCache()).read)
+    return lambda camera: ToolContext(camera, perception, NullImageStore())

@@ -1,4 +1,4 @@
-"""What verification of runs needs: scenes, ground-truth perception and true counts."""
+"""Create the context for run verification: scenes, ground-truth perception and true counts."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 
 def verification_context() -> VerificationContext:
-    """Return the context for verifying runs with the configured scenes.
+    """Create the context for run verification with the configured scenes.
 
     Raises:
         ConfigError: SCOPE_SCENES_DIR is not a folder.
     """
     from scope_ptz.bench.engine.traces.verification import VerificationContext
     from scope_ptz.factory.scenes import scene_search
-    from scope_ptz.factory.validation_perception import CachedTruth
+    from scope_ptz.factory.validation_perception import TruthCache
     from scope_ptz.perception.ground_truth import GroundTruthPerception
     from scope_ptz.perception.ground_truth.noisy import NoisyPerception
     from scope_ptz.settings import load_settings
 
     scenes = Library(scene_search(load_settings()))
-    truth = GroundTruthPerception(scenes, CachedTruth(MAX_CACHED_VIEWS).read)
+    truth = GroundTruthPerception(scenes, TruthCache(MAX_CACHED_VIEWS).read)
     context = eval_context(seed=1)
-    assert context.true_count is not None  # noqa: S101 - the context of an evaluation always counts
+    assert context.true_count is not None  # noqa: S101 - an evaluation context can always count
 
     def make_perception(name: str, seed: int | None) -> Perception | None:
         if name == GROUND_TRUTH:

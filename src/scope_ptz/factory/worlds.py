@@ -1,4 +1,4 @@
-"""Open the scenes of tasks, with their variations."""
+"""Open the scenes and scene variations in which tasks take place."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 
 def open_scenes(names: list[str] | None) -> dict[str, Scene]:
-    """Return scenes with ground truth by name; all of them if ``names`` is empty or None.
+    """Open scenes with ground truth, and return them by name. If ``names`` is empty or None, open all such scenes.
 
     Raises:
         InputError: A named scene was captured from a camera, so it has no ground truth.
         UnknownNameError: There is no such scene.
-        PackError: The files of a scene are damaged.
+        PackError: A scene's files are damaged.
     """
     from scope_ptz.factory.scenes import open_scene, scene_search
     from scope_ptz.settings import load_settings
@@ -28,18 +28,18 @@ def open_scenes(names: list[str] | None) -> dict[str, Scene]:
     captured = [name for name, scene in scenes.items() if scene.file.captured is not None]
     if names and captured:
         raise InputError(
-            f"The scene '{captured[0]}' was captured from a camera and has no ground truth, so tasks cannot be made or scored "
-            "in it. Name a scene that was built with Blender."
+            f"The scene '{captured[0]}' was captured from a camera and has no ground truth, so tasks cannot be created or scored "
+            "in it. Choose a scene that was built with Blender."
         )
     return {name: scene for name, scene in scenes.items() if name not in captured}
 
 
-def worlds_of(tasks: Iterable[Task]) -> dict[str, Scene]:
-    """Return the worlds of tasks by name. A world is a scene or a variation of one.
+def open_worlds(tasks: Iterable[Task]) -> dict[str, Scene]:
+    """Open the tasks' worlds, and return them by name. A world is a scene or a scene variation.
 
-    Variations of a scene share its pictures in memory.
+    Variations share their scene's pictures in memory.
     """
-    needed = sorted({(task.scene, task.variation or 0) for task in tasks})
-    scenes = open_scenes(sorted({scene for scene, _ in needed})) if needed else {}
-    worlds = (scenes[name].varied(number) if number else scenes[name] for name, number in needed)
+    variations = sorted({(task.scene, task.variation or 0) for task in tasks})
+    scenes = open_scenes(sorted({scene for scene, _ in variations})) if variations else {}
+    worlds = (scenes[name].create_variation(number) if number else scenes[name] for name, number in variations)
     return {world.name: world for world in worlds}

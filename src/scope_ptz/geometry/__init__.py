@@ -1,4 +1,4 @@
-"""Poses, optics and projections, as pure functions. Callers use degrees; radians are used only inside this package.
+"""Poses, optics and projections, as pure functions. Callers use degrees; radians are internal to this package.
 
 Names are imported on first use, so that commands that need only poses and limits start without NumPy.
 """

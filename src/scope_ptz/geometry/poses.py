@@ -31,7 +31,7 @@ class Pose:
             raise ValueError(f"zoom must be positive; got {self.zoom}")
 
     def turned(self, pan_deg: float = 0.0, tilt_deg: float = 0.0) -> Pose:
-        """Return the pose after a relative move. It is neither wrapped nor clamped, because the camera applies its limits."""
+        """Return the pose after a relative turn. It is neither wrapped nor clamped; the camera applies its own limits."""
         return replace(self, pan_deg=self.pan_deg + pan_deg, tilt_deg=self.tilt_deg + tilt_deg)
 
     def zoomed(self, factor: float) -> Pose:
@@ -39,7 +39,7 @@ class Pose:
         return replace(self, zoom=self.zoom * factor)
 
     def as_dict(self) -> dict[str, float]:
-        """Return the pose as a dictionary for display and for models: degrees rounded to 0.01, magnification to 0.001."""
+        """Return the pose as a dictionary for display and for models, with degrees rounded to 0.01 and magnification to 0.001."""
         return {
             "pan_deg": round(self.pan_deg, 2) + 0.0,
             "tilt_deg": round(self.tilt_deg, 2) + 0.0,

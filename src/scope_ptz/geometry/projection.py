@@ -1,7 +1,7 @@
 """Projections between image points and directions, for perspective views and panoramas.
 
-Points are normalised to [0, 1] with the origin at the top-left corner of the image, not at the centre of its first pixel: the
-centre of pixel ``i`` of ``n`` is at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, arrays of directions ``(..., 3)``.
+Points are normalised to [0, 1] with the origin at the top-left corner of the image, so the centre of pixel ``i`` of ``n`` is at
+``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, arrays of directions ``(..., 3)``.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ class Projection(Protocol):
 
     @property
     def max_off_axis_deg(self) -> float:
-        """Largest angle between the direction of the image centre and that of any pixel, in degrees."""
+        """Largest angle in degrees between the image centre and any pixel."""
         ...
 
     @property
     def pixels_per_radian(self) -> float:
-        """Pixels per radian at the centre of the image, measured vertically."""
+        """Pixels per radian in the vertical direction at the centre of the image."""
         ...
 
     def directions(self, points: ArrayLike) -> Floats:
-        """Return unit vectors (..., 3) through normalised points (..., 2)."""
+        """Return unit direction vectors (..., 3) for normalised points (..., 2)."""
         ...
 
     def points(self, directions: ArrayLike) -> Floats:
-        """Return normalised points (..., 2) of directions (..., 3); NaN for directions behind the camera."""
+        """Return normalised points (..., 2) for directions (..., 3); NaN for directions behind the camera."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Perspective:
-    """A pinhole view with square pixels and without roll, whose centre is at ``pan_deg`` and ``tilt_deg``."""
+    """A pinhole view with square pixels and no roll, centred at ``pan_deg`` and ``tilt_deg``."""
 
     pan_deg: float
     tilt_deg: float
@@ -84,10 +84,10 @@ class Perspective:
     def points(self, directions: ArrayLike) -> Floats:
         local = np.asarray(directions, dtype=np.float64) @ camera_axes(self.pan_deg, self.tilt_deg).T
         depth = np.where(local[..., 2] > 1e-9, local[..., 2], np.nan)
-        focal_px, found = self.focal_px, np.empty((*local.shape[:-1], 2))
-        found[..., 0] = 0.5 + focal_px * local[..., 0] / depth / self.width
-        found[..., 1] = 0.5 - focal_px * local[..., 1] / depth / self.height
-        return found
+        focal_px, result = self.focal_px, np.empty((*local.shape[:-1], 2))
+        result[..., 0] = 0.5 + focal_px * local[..., 0] / depth / self.width
+        result[..., 1] = 0.5 - focal_px * local[..., 1] / depth / self.height
+        return result
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Directions on the sphere around a camera.
 
-The axes do not turn with the camera: x points right and y forward at pan 0, and z points up. A direction is a unit vector; arrays
-of directions have shape ``(..., 3)``.
+The axes do not turn with the camera: at pan 0, x points right and y points forward, and z always points up. A direction is a unit
+vector; arrays of directions have shape ``(..., 3)``.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 def direction(pan_deg: ArrayLike, tilt_deg: ArrayLike) -> Floats:
-    """Return unit vectors ``(..., 3)`` towards pan/tilt angles in degrees."""
+    """Return unit vectors ``(..., 3)`` for pan and tilt angles in degrees."""
     pan, tilt = np.radians(pan_deg), np.radians(tilt_deg)
     return np.stack(np.broadcast_arrays(np.sin(pan) * np.cos(tilt), np.cos(pan) * np.cos(tilt), np.sin(tilt)), axis=-1)
 
@@ -36,18 +36,18 @@ def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    """Return cross products (..., 3). For small arrays this is four times as fast as ``np.cross``."""
-    found = np.empty(np.broadcast_shapes(u.shape, v.shape))
+    """Return cross products (..., 3). For small arrays, this is four times as fast as ``np.cross``."""
+    result = np.empty(np.broadcast_shapes(u.shape, v.shape))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        np.subtract(u[..., j] * v[..., k], u[..., k] * v[..., j], out=found[..., i])
-    return found
+        np.subtract(u[..., j] * v[..., k], u[..., k] * v[..., j], out=result[..., i])
+    return result
 
 
 @lru_cache(maxsize=1024)
 def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:
     """Return the right, up and forward axes of a view as the rows of a read-only (3, 3) matrix.
 
-    The product of the matrix and a direction gives the direction's coordinates in the view.
+    Multiplying the matrix by a direction gives the direction's coordinates in the view.
     """
     p, t = np.radians(pan_deg), np.radians(tilt_deg)
     sp, cp, st, ct = np.sin(p), np.cos(p), np.sin(t), np.cos(t)

@@ -1,7 +1,7 @@
-"""Scripted policies for active search, against which learned ones can be compared.
+"""Scripted policies for active search, as a baseline for learned ones.
 
 All but ``RandomActions`` use the observation ``detection``, so the environment needs perception. They turn towards the target as
-soon as perception reports it, and submit when it is near the centre. They differ in where they look until then.
+soon as perception reports it, and submit when it is near the centre. They differ in how they search before that.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from scope_ptz.gym.search_targets import is_central
 from scope_ptz.perception.base import Box
 
 PAN_STEP_DEG, ROWS_DEG = 60.0, (-12.0, -40.0, 16.0)
-"""The raster of looks at the widest view (71 by 44 degrees): the distance between two looks, and the tilts, horizon first."""
+"""Search raster at the widest view (71 by 44 degrees): the pan step between looks, and the tilt of each row, horizon first."""
 
-MISSED_SHARE = 0.3  # probability that a look misses a target in view, which the greedy policy assumes
-TRAVEL_COST = 1e-6  # per degree of travel; it decides between views that are equally promising
+MISS_PROBABILITY = 0.3  # the greedy policy assumes that perception misses a target in view with this probability
+TRAVEL_COST = 1e-6  # per degree of travel; it breaks ties between equally promising views
 Action = NDArray[np.float32]
 
 
@@ -51,7 +51,7 @@ def run_search(env: SearchEnv, policy: SearchPolicy, seed: int) -> SearchOutcome
 
 
 class RandomActions:
-    """Uniformly random actions, which submit one time in four. It ignores what it sees."""
+    """Uniformly random actions, which submit one time in four. Observations are ignored."""
 
     def begin(self, seed: int) -> None:
         self._space = move_space()
@@ -62,7 +62,7 @@ class RandomActions:
 
 
 class _DetectionPolicy(ABC):
-    """A policy that approaches what perception reports, and otherwise looks where ``_next_look`` says."""
+    """A policy that turns towards the reported target, and otherwise in the direction that ``_next_look`` returns."""
 
     def begin(self, seed: int) -> None:
         self._rng = np.random.default_rng(seed)
@@ -72,7 +72,7 @@ class _DetectionPolicy(ABC):
         pan, tilt, zoom = (float(v) for v in observation["pose"])
         view = Perspective(pan, tilt, AXIS_M5075_G.hfov_deg(zoom), *FRAME_SIZE)
         found, x, y, *_ = (float(v) for v in observation["detection"])
-        self._seen(view)
+        self._record_view(view)
         if not found:
             return self._turn(view, *self._next_look(view))
         if is_central(Box(x_min=x, y_min=y, x_max=x, y_max=y)):
@@ -83,8 +83,8 @@ class _DetectionPolicy(ABC):
         aim, _ = self._limits.clamp(Pose(self._limits.aim_pan_deg(pan_deg), tilt_deg, 1.0))
         return move_action(aim.pan_deg - view.pan_deg, aim.tilt_deg - view.tilt_deg)
 
-    def _seen(self, view: Perspective) -> None:
-        """Receive a view in which the target may not have been found."""
+    def _record_view(self, view: Perspective) -> None:
+        """Record a view that perception has searched. The default implementation does nothing."""
 
     @abstractmethod
     def _next_look(self, view: Perspective) -> tuple[float, float]:
@@ -119,31 +119,33 @@ class Sweep(_DetectionPolicy):
 
 
 class Greedy(_DetectionPolicy):
-    """Looks next where the target most probably is, the nearest such view first.
+    """Looks next at the view that most probably contains the target. Ties go to the nearest view.
 
-    It keeps a probability for each direction. A look that does not show the target lowers those in the view to the share that
-    perception misses.
+    It keeps a probability for each direction. After a look without the target, the probabilities in that view are multiplied by
+    ``MISS_PROBABILITY``.
     """
 
     def begin(self, seed: int) -> None:
         super().begin(seed)
         pans, tilts = (grid.ravel() for grid in np.meshgrid(np.arange(-180.0, 180.0, 6.0), np.arange(-54.0, 31.0, 6.0)))
         self._directions = direction(pans, tilts)
-        # Things stand near the horizon rather than at the feet of the camera. The cosine is the solid angle of a grid cell.
+        # Targets are more likely near the horizon than directly below the camera. The cosine is the solid angle of a grid cell.
         self._belief = np.cos(np.radians(tilts)) * np.where((tilts > -36) & (tilts < 12), 1.0, 0.3)
         self._candidates = [(float(pan), tilt) for pan in np.arange(-170.0, 171.0, 10.0) for tilt in ROWS_DEG]
         wide = AXIS_M5075_G.hfov_deg(1.0)
-        self._covers = np.array([self._inside(Perspective(pan, tilt, wide, *FRAME_SIZE)) for pan, tilt in self._candidates])
+        self._coverage = np.array(
+            [self._directions_in(Perspective(pan, tilt, wide, *FRAME_SIZE)) for pan, tilt in self._candidates]
+        )
 
-    def _inside(self, view: Perspective) -> NDArray[np.bool_]:
+    def _directions_in(self, view: Perspective) -> NDArray[np.bool_]:
         points = view.points(self._directions)
         with np.errstate(invalid="ignore"):
             return np.asarray(((points >= 0) & (points <= 1)).all(axis=-1))
 
-    def _seen(self, view: Perspective) -> None:
-        self._belief = np.where(self._inside(view), MISSED_SHARE * self._belief, self._belief)
+    def _record_view(self, view: Perspective) -> None:
+        self._belief = np.where(self._directions_in(view), MISS_PROBABILITY * self._belief, self._belief)
 
     def _next_look(self, view: Perspective) -> tuple[float, float]:
-        gains = self._covers @ self._belief / self._belief.sum()
+        gains = self._coverage @ self._belief / self._belief.sum()
         travel_deg = np.array([abs(pan - view.pan_deg) + abs(tilt - view.tilt_deg) for pan, tilt in self._candidates])
         return self._candidates[int(np.argmax(gains - TRAVEL_COST * travel_deg))]

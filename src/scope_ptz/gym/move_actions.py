@@ -1,4 +1,4 @@
-"""Continuous actions: relative moves of pan, tilt and zoom, and a signal that ends the episode."""
+"""Continuous actions: relative pan, tilt and zoom moves, and a signal that ends the episode."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from scope_ptz.errors import InputError
 
 FINISH_ABOVE = 0.5
-"""An action whose last number exceeds this ends the episode. Three of four random actions are therefore moves."""
+"""An action ends the episode if its last number exceeds this. Three in four random actions are therefore moves."""
 
 
 @dataclass(frozen=True, slots=True)
 class MoveScale:
-    """The moves that actions of 1 stand for.
+    """The size of the moves that actions of 1 represent.
 
     Attributes:
         pan_deg: Degrees to the right.
         tilt_deg: Degrees up.
-        zoom_factor: Factor of the magnification. An action of -1 divides by it.
+        zoom_factor: Factor by which the magnification is multiplied. An action of -1 divides by it.
     """
 
     pan_deg: float = 180.0
@@ -54,7 +54,7 @@ def move_of(action: ArrayLike, scale: MoveScale) -> Move:
     """Convert an action to a move.
 
     Raises:
-        InputError: The action is not four finite numbers. Numbers beyond 1 are clipped.
+        InputError: The action is not four finite numbers. Numbers outside -1 to 1 are clipped.
     """
     try:
         values = np.asarray(action, dtype=np.float64)
@@ -69,14 +69,14 @@ def move_of(action: ArrayLike, scale: MoveScale) -> Move:
 def move_action(
     pan_deg: float = 0.0, tilt_deg: float = 0.0, zoom_factor: float = 1.0, *, finish: bool = False, scale: MoveScale | None = None
 ) -> NDArray[np.float32]:
-    """Return the action for a relative move. A move beyond the scale is cut to the largest one.
+    """Return the action for a relative move. Moves beyond the scale are clipped.
 
     Args:
         pan_deg: Degrees to turn right.
         tilt_deg: Degrees to turn up.
-        zoom_factor: Factor of the magnification.
-        finish: Whether to end the episode; the move is then not made.
-        scale: The scale of the environment; the default is its default.
+        zoom_factor: Factor by which to multiply the magnification.
+        finish: Whether to end the episode instead of moving.
+        scale: The scale of the environment; the default is ``MoveScale()``.
 
     Raises:
         InputError: A number is not finite, or the zoom factor is not positive.

@@ -1,4 +1,4 @@
-"""The observation spaces, and the conversion of poses and texts to them."""
+"""The observation spaces, and the conversion of poses and text to them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from scope_ptz.geometry import Limits, Pose
 FRAME_SIZE = (320, 180)
 """Default width and height, in pixels, of the frames that an agent receives."""
 
-MAX_TEXT_CHARS = 4000  # the longest instruction of a task
+MAX_TEXT_CHARS = 4000  # the longest task instruction
 CHARSET = frozenset(string.printable) | frozenset(map(chr, (*range(0xA0, 0x100), *range(0x2010, 0x2028), 0x20AC, 0x2212, 0x2026)))
-"""The characters of texts in observations and actions: ASCII, Latin-1, and common punctuation. It is the same in every environment,
-so that environments with different tasks form one vector."""
+"""The characters allowed in observations and actions: ASCII, Latin-1, and common punctuation. They are the same in every
+environment, so that environments with different tasks can be vectorised together."""
 
 Observation = dict[str, Any]
 
 
 def text_space(max_chars: int = MAX_TEXT_CHARS) -> spaces.Text:
-    """Return the space of texts with up to ``max_chars`` characters."""
+    """Return the space of text with up to ``max_chars`` characters."""
     return spaces.Text(max_chars, min_length=0, charset=CHARSET)
 
 
@@ -49,5 +49,5 @@ def pose_array(pose: Pose) -> NDArray[np.float32]:
 
 
 def clean_text(text: str) -> str:
-    """Return a text as an element of ``text_space``: unknown characters become "?", and a long text is cut."""
+    """Return text as an element of ``text_space``: unknown characters become "?", and long text is truncated."""
     return "".join(char if char in CHARSET else "?" for char in text[:MAX_TEXT_CHARS])

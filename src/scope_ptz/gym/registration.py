@@ -18,7 +18,7 @@ The environments limit their own steps, because the benchmark's verdict depends 
 
 
 def register_environments() -> None:
-    """Register the environments. Environments that are registered already are left as they are."""
+    """Register the environments. Existing registrations are left unchanged."""
     for name, entry_point in ENVIRONMENTS.items():
         if name not in gymnasium.registry:
             gymnasium.register(name, entry_point)

@@ -1,4 +1,4 @@
-"""Rewards from the benchmark's checks, as named terms whose sum is the reward."""
+"""Rewards from the benchmark's checks. The reward is the sum of named terms."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from scope_ptz.errors import InputError, UnknownNameError
 VERDICT = "verdict"
 CHECKS: tuple[str, ...] = get_args(CheckName)
 DEFAULT_WEIGHTS: Mapping[str, float] = {VERDICT: 1.0, **dict.fromkeys(CHECKS, 0.1)}
-"""The weight of each term. With every weight except that of the verdict at 0, the reward is the benchmark's score."""
+"""The default weight of each term. If only the verdict has a weight, the reward equals the benchmark's score."""
 
 
 class CheckRewards:
-    """The rewards of one episode.
+    """The rewards for one episode.
 
-    The term of a check is its weight when the check begins to pass, and minus its weight when it no longer passes. Over an episode,
-    the terms of a check therefore sum to partial credit that cannot be collected twice. The term "verdict" is its weight at the end
-    of a correct run.
+    When a check begins to pass, its term is its weight; when it stops passing, its term is minus its weight. Over an episode, a
+    check's terms therefore add up to partial credit that cannot be collected twice. At the end of a correct run, the term
+    "verdict" is its weight.
 
     Args:
-        weights: Weights that replace the default ones. Omitted terms keep theirs.
+        weights: Weights that replace the defaults. Omitted terms keep their default weights.
 
     Raises:
-        UnknownNameError: A weight is not named after a check or the verdict.
+        UnknownNameError: A term is neither a check nor "verdict".
         InputError: A weight is not finite.
     """
 
@@ -42,16 +42,16 @@ class CheckRewards:
 
     def begin(self, checks: Iterable[CheckResult]) -> None:
         """Begin an episode. Checks that pass before the first action earn nothing."""
-        self._passing = _passing(checks)
+        self._passing = _passed_checks(checks)
 
     def terms(self, checks: Iterable[CheckResult], verdict: Verdict | None = None) -> dict[str, float]:
-        """Return the reward terms of a step that are not zero.
+        """Return the nonzero reward terms of a step.
 
         Args:
             checks: The results of the checks after the step.
             verdict: The verdict if the step ended the episode.
         """
-        passing = _passing(checks)
+        passing = _passed_checks(checks)
         terms = {name: self._weights[name] for name in CHECKS if name in passing - self._passing}
         terms |= {name: -self._weights[name] for name in CHECKS if name in self._passing - passing}
         self._passing = passing
@@ -60,5 +60,5 @@ class CheckRewards:
         return {name: value for name, value in terms.items() if value}
 
 
-def _passing(checks: Iterable[CheckResult]) -> frozenset[str]:
+def _passed_checks(checks: Iterable[CheckResult]) -> frozenset[str]:
     return frozenset(check.name for check in checks if check.passed)

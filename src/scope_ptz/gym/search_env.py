@@ -1,4 +1,4 @@
-"""Active search: find a named thing anywhere around the camera with as few looks as possible, as in H*Bench (arXiv 2511.20351)."""
+"""Active search: find a named object anywhere around the camera with as few looks as possible, as in H*Bench (arXiv 2511.20351)."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from scope_ptz.gym.world import World
 from scope_ptz.perception.base import Perception
 
 FRAME_SIZE = (640, 360)
-"""Default width and height of a frame in pixels. What is visible depends on it."""
+"""Default width and height of a frame in pixels. It determines which objects are visible."""
 MAX_LOOKS = 30
 LOOK_COST = 0.01
 
 
 class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
-    """``scope_ptz/Search-v0``: turn and zoom until a named thing is near the centre of the view, then submit.
+    """``scope_ptz/Search-v0``: turn and zoom until a named object is near the centre of the view, then submit.
 
-    A look is a frame that the agent receives; the frame at the start is the first. An action either moves the camera and takes the
-    next look, or submits the present view. A submission succeeds if a thing that fits the target's name is visible, as the
-    simulator defines it, in the middle third of the frame.
+    A look is a frame that the agent receives. The initial frame is the first look. An action either moves the camera and takes the
+    next look, or submits the current view. A submission succeeds if an object that matches the target's name is visible, as
+    the simulator defines it, in the middle third of the frame.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 2}  # type: ignore[misc]
@@ -53,28 +53,28 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         """Create the environment. Scenes are opened when the first episode begins.
 
         Args:
-            scene: The scene, or several; each episode draws one of them and one of its presets' viewpoints.
-            targets: Names of things from which the target is drawn; by default, the names of all things in the scene.
+            scene: The scene, or several; each episode samples one of them, and the viewpoint of one of its presets.
+            targets: Names of objects from which the target is sampled; by default, the names of all objects in the scene.
             target_zoom: The target is visible at this magnification when the camera points at it. Larger numbers give smaller
                 targets.
-            perception: A perception backend, by its name in ``--perception`` or as an object, that looks for the target in every
-                frame and adds ``detection`` to the observations. None adds nothing.
+            perception: A perception backend, by its name in ``--perception`` or as an object, that searches every frame for the
+                target and adds ``detection`` to the observations. The default is no perception.
             frames: Whether observations contain frames. Without them, nothing is rendered, and training on detections is faster.
             frame_size: Width and height of the frames in pixels.
-            max_looks: Number of looks that an episode allows.
-            look_cost: Reward that each look after the first costs.
-            move_scale: The moves that actions of 1 stand for.
-            render_mode: "rgb_array", for which ``render`` returns the present view, or None.
+            max_looks: Maximum number of looks in an episode.
+            look_cost: Amount by which each look after the first reduces the reward.
+            move_scale: The size of the moves that actions of 1 represent.
+            render_mode: "rgb_array", for which ``render`` returns the current view, or None.
 
         Raises:
-            InputError: An argument is wrong.
+            InputError: An argument is invalid.
         """
         self._names = (scene,) if isinstance(scene, str) else tuple(scene)
         if not self._names or max_looks < 1 or not math.isfinite(look_cost):
             raise InputError("A search needs at least one scene, at least one look, and a finite look_cost.")
         if not frames and perception is None:
             raise InputError("Without frames and without perception the agent sees nothing. Set perception, such as 'noisy'.")
-        self._frames, self._perceives, self._scale = frames, perception is not None, move_scale or MoveScale()
+        self._frames, self._has_detections, self._scale = frames, perception is not None, move_scale or MoveScale()
         self.max_looks, self._look_cost, self.render_mode = max_looks, look_cost, render_mode
         self._world = World(GROUND_TRUTH if perception is None else perception, frame_size, frame_size)
         self._targets = Targets(self._world, tuple(targets), target_zoom)
@@ -86,7 +86,7 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         }
         if frames:
             parts["frame"] = frame_space(frame_size)
-        if self._perceives:
+        if self._has_detections:
             parts["detection"] = spaces.Box(0.0, 1.0, (5,), np.float32)
         self.observation_space = spaces.Dict(parts)
         self.action_space = move_space()
@@ -101,7 +101,7 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         super().reset(seed=seed)
         rng, world = self.np_random, self._world
         name = self._names[int(rng.integers(len(self._names)))]
-        file = world.scene_named(name).file
+        file = world.scene_by_name(name).file
         preset = file.presets[int(rng.integers(len(file.presets)))].name
         world.open(name, preset, file.start_s, int(rng.integers(2**31)))
         start, self.target = self._targets.choose(rng, (options or {}).get("target"))
@@ -110,7 +110,7 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         return self._observe(), self._info({})
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Move and look, or submit the present view.
+        """Move and take the next look, or submit the current view.
 
         Raises:
             InputError: The action is not four finite numbers, or no episode is running.
@@ -134,11 +134,11 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         return self._observe(), sum(terms.values()), move.finish, truncated, self._info(terms, success)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return the present view as (H, W, 3) RGB; None without a render mode."""
+        """Return the current view as (H, W, 3) RGB; None without a render mode."""
         return None if self.render_mode is None else self._world.picture(self._world.pose)
 
     def close(self) -> None:
-        """Close perception and let go of the scenes."""
+        """Close perception and release the scenes."""
         self._world.close()
 
     def _move(self, move: Move) -> None:
@@ -153,12 +153,12 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         }
         if self._frames:
             observation["frame"] = self._world.picture(pose)
-        if self._perceives:
+        if self._has_detections:
             observation["detection"] = self._detection()
         return observation
 
     def _detection(self) -> NDArray[np.float32]:
-        """Return whether perception sees the target, and the box of its best match: middle, width and height, in [0, 1].
+        """Return whether perception detects the target, and the centre, width and height of the best box, all in [0, 1].
 
         Raises:
             PerceptionError: Perception failed. A failure is never reported as an empty view.

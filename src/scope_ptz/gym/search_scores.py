@@ -1,4 +1,4 @@
-"""The score of active search: success against number of looks."""
+"""Scores for active search, based on success and the number of looks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choose what to search for: a thing that the ground truth can name, that can be seen, and that is not in view at the start."""
+"""Choose the target of a search: a visible object that the ground truth can name and that is not in view at the start."""
 
 from __future__ import annotations
 
@@ -11,32 +11,33 @@ from scope_ptz.perception.base import Box
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 CENTRAL_OFFSET = 1 / 6
-"""A target is near the centre if its middle is at most this fraction of the width and height from it: in the middle third."""
+"""A target is near the centre if its box is centred in the middle third of the frame: at most this fraction of the frame's width
+and height from the middle."""
 
 MAX_START_TILT_OFFSET_DEG = 10.0  # a search starts at most this far above or below START_TILT_DEG
 START_TILT_DEG = -10.0
-MAX_ATTEMPTS = 200  # starts and targets that are tried before a scene is said to have no suitable target
+MAX_ATTEMPTS = 200  # random starts and targets to try before reporting that a scene has no suitable target
 
 
 def is_central(box: Box) -> bool:
-    """Return whether the middle of a box lies in the middle third of the frame."""
+    """Return whether the centre of a box is in the middle third of the frame."""
     x, y = box.centre
     return abs(x - 0.5) <= CENTRAL_OFFSET and abs(y - 0.5) <= CENTRAL_OFFSET
 
 
 def true_boxes(world: World, pose: Pose, description: str) -> tuple[Box, ...]:
-    """Return the boxes of all visible things that fit a description in the agent's frame at a pose, by the ground truth."""
-    truth = GroundTruthPerception(world.scene_named)
+    """Return the ground-truth boxes of the visible objects that match a description in the agent's frame at a pose."""
+    truth = GroundTruthPerception(world.scene_by_name)
     frame = world.blank_frame(pose)
     return world.run(lambda: truth.detect(frame, description)).boxes
 
 
 class Targets:
-    """The things of the scenes that can be searched for. Findings about each thing are cached for later episodes.
+    """The suitable targets in each scene. They are cached for later episodes.
 
     Args:
         world: The world. Its camera determines the scene, the viewpoint and the time.
-        names: Names from which to choose; empty for the names of all things.
+        names: Names from which to choose; empty for the names of all objects.
         zoom: Magnification at which a target is visible when the camera points at it.
     """
 
@@ -46,7 +47,7 @@ class Targets:
         self._suitable: dict[tuple[str, str, str, Pose], bool] = {}
 
     def choose(self, rng: np.random.Generator, name: str | None = None) -> tuple[Pose, str]:
-        """Return the pose at which a search starts, and the name of what to search for.
+        """Return the pose at which a search starts, and the name of its target.
 
         Args:
             rng: Source of the random choices.
@@ -64,40 +65,45 @@ class Targets:
             aim = poses[chosen][int(rng.integers(len(poses[chosen])))]
             if self._is_suitable(chosen, aim) and not true_boxes(self._world, start, chosen):
                 return start, chosen
-        wanted = [name] if name is not None else self._names
+        requested = [name] if name is not None else self._names
         raise InputError(
-            f"In the scene '{self._world.scene.name}' from {self._world.camera.viewpoint}, "
-            f"{'none of ' + ', '.join(wanted) if wanted else 'nothing'} can be searched for at zoom {self._zoom:g} in frames of "
-            "this size. Name other targets, raise target_zoom or choose larger frames."
+            f"The scene '{self._world.scene.name}' has no suitable target{' named ' + ' or '.join(requested) if requested else ''} "
+            f"at the viewpoint {self._world.camera.viewpoint}, at zoom {self._zoom:g} and in frames of this size. Name other "
+            "targets, increase target_zoom or choose larger frames."
         )
 
     def _is_suitable(self, name: str, aim: Pose) -> bool:
-        """Return whether the ground truth sees a thing of this name near the centre when the camera points at it."""
+        """Return whether the ground truth contains an object of this name near the centre when the camera points at it."""
         key = (self._world.scene.name, self._world.camera.viewpoint, name, aim)
         if key not in self._suitable:
             try:
                 self._suitable[key] = any(map(is_central, true_boxes(self._world, aim, name)))
-            except PerceptionError:  # the language of descriptions does not know the name
+            except PerceptionError:  # ground-truth perception cannot parse the name
                 self._suitable[key] = False
         return self._suitable[key]
 
     def _poses_by_name(self) -> dict[str, list[Pose]]:
-        """Return the poses that point at the things of each name. Parts of things, and things out of reach, are left out."""
+        """Return the poses that point at the objects of each name. Parts of objects, and objects out of reach, are omitted."""
         scene, camera = self._world.scene, self._world.camera
         key = (scene.name, camera.viewpoint)
         if key in self._poses:
             return self._poses[key]
         extents, limits = scene.viewpoint(camera.viewpoint).extents, camera.info.limits
         found: dict[str, list[Pose]] = {}
-        for thing in scene.file.instances:
-            extent = extents.get(thing.number)
-            if extent is None or not extent.hull or thing.parent is not None or (self._names and thing.name not in self._names):
+        for instance in scene.file.instances:
+            extent = extents.get(instance.number)
+            if (
+                extent is None
+                or not extent.hull
+                or instance.parent is not None
+                or (self._names and instance.name not in self._names)
+            ):
                 continue
             corners = np.array(extent.hull, dtype=np.float64).reshape(-1, 2)
             pan, tilt = (float(v) for v in pan_tilt_deg(direction(corners[:, 0], corners[:, 1]).mean(axis=0)))
             pose, clamped = limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, self._zoom))
             if not clamped:
-                found.setdefault(thing.name, []).append(pose)
+                found.setdefault(instance.name, []).append(pose)
         self._poses[key] = found
         return found
 

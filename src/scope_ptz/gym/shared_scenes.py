@@ -1,4 +1,4 @@
-"""Scenes that all environments of a process share."""
+"""Scenes that are shared by all environments of a process."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from scope_ptz.simulator.pack import Scene, find_scenes, variation_of
 
 _LOCK = RLock()
 _OPEN: WeakValueDictionary[tuple[str, tuple[Path, ...]], Scene] = WeakValueDictionary()
-"""The open scenes by name and search folders. Gymnasium creates each environment of a vector separately and passes it no common
-object, so only the process can share them. A scene is closed when no environment uses it any more."""
+"""The open scenes, by name and search folders. They are shared through this module, because Gymnasium creates the environments of a
+vector separately and passes them no common object. A scene is closed when no environment uses it."""
 
 _BASES: WeakKeyDictionary[Scene, Scene] = WeakKeyDictionary()
-"""The scene of each open variation. It stays open with the variation, so that other variations share its layers."""
+"""The original scene of each open variation. It stays open with the variation, so that other variations can share its layers."""
 
 
 def shared_scene(name: str) -> Scene:
-    """Return a scene, or a variation of one, that has ground truth. Environments that name the same scene share its layers.
+    """Return a scene with ground truth, or a variation of one. Environments that use the same scene share its layers.
 
     Raises:
         UnknownNameError: There is no such scene.
@@ -36,14 +36,14 @@ def shared_scene(name: str) -> Scene:
             varied = number is not None and name not in find_scenes(search)
             if varied and number is not None:
                 original = shared_scene(base)
-                scene = original.varied(number)
+                scene = original.create_variation(number)
                 _BASES[scene] = original
             else:
                 scene = open_scene(name, cache_pictures=True)
             if scene.file.captured is not None:
                 raise InputError(
-                    f"The scene '{name}' was captured from a camera and has no ground truth, so nothing can be rewarded in it. "
-                    "Name a scene that was built with Blender."
+                    f"The scene '{name}' was captured from a camera and has no ground truth, so it cannot give rewards. "
+                    "Choose a scene that was built with Blender."
                 )
             _OPEN[name, search] = scene
         return scene

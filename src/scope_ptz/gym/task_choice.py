@@ -1,4 +1,4 @@
-"""Find the tasks that an environment uses."""
+"""Select the tasks that an environment uses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError, UnknownNameError
 
 TaskChoice = str | Task | Sequence[str | Task]
-"""A task, the id of one, the name of a split, or several of these."""
+"""A task, a task id, the name of a split, or a sequence of these."""
 
 
 @cache
@@ -19,11 +19,11 @@ def _split(name: str) -> tuple[Task, ...]:
     return load_split(name)
 
 
-def chosen_tasks(choice: TaskChoice) -> tuple[Task, ...]:
-    """Return the tasks that a choice names.
+def select_tasks(choice: TaskChoice) -> tuple[Task, ...]:
+    """Return the selected tasks.
 
     Raises:
-        UnknownNameError: A name is neither an id of a task nor a split.
+        UnknownNameError: A name is neither a task id nor a split.
         InputError: The choice is empty.
     """
     parts = [choice] if isinstance(choice, str | Task) else list(choice)
@@ -51,15 +51,15 @@ def _tasks_of(part: str | Task) -> tuple[Task, ...]:
 
 
 def movement_tasks(choice: TaskChoice = "core") -> tuple[Task, ...]:
-    """Return the tasks that pan, tilt and zoom alone can fulfil.
+    """Return the tasks that can be completed with pan, tilt and zoom alone.
 
-    They expect no answer in words, no picture, no other tool and no change of the viewpoint.
+    They require no answer in words, no picture, no other tool and no change of viewpoint.
     """
-    return tuple(task for task in chosen_tasks(choice) if other_need(task) is None)
+    return tuple(task for task in select_tasks(choice) if other_requirement(task) is None)
 
 
-def other_need(task: Task) -> str | None:
-    """Return what a task requires besides pan, tilt and zoom; None if they suffice."""
+def other_requirement(task: Task) -> str | None:
+    """Return the first requirement of a task other than pan, tilt and zoom; None if there is none."""
     behaviour = task.behaviour
     if not isinstance(task.expected, ActionOnly):
         return "an answer in words"

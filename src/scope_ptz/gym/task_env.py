@@ -23,24 +23,24 @@ from scope_ptz.errors import InputError
 from scope_ptz.gym.move_actions import MoveScale, move_of, move_space
 from scope_ptz.gym.observations import FRAME_SIZE, Observation, clean_text, frame_space, pose_array, pose_space, text_space
 from scope_ptz.gym.rewards import CheckRewards
-from scope_ptz.gym.task_choice import TaskChoice, chosen_tasks, other_need
+from scope_ptz.gym.task_choice import TaskChoice, other_requirement, select_tasks
 from scope_ptz.gym.tool_actions import Call, Finish, decode_action, tool_space
 from scope_ptz.gym.world import World
 from scope_ptz.perception.base import Perception
 from scope_ptz.tools.context import ToolContext
 
 CAMERA_SIZE = (1280, 720)
-"""Width and height, in pixels, of the frames that the tools take: those of the benchmark."""
+"""Width and height, in pixels, of the frames that the tools take. The benchmark uses the same size."""
 MAX_STEPS = 60  # T_max of the benchmark
 _Action = TypeVar("_Action")
 _STATES = {True: "passed", False: "failed", None: "undecided"}
 
 
 class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
-    """Common parts of the task environments. An episode is one run of one task.
+    """Base class for the task environments. An episode is one run of one task.
 
-    The frames of the observations count as looks of the agent, like the frames that a planner with vision receives. Whether a look
-    covers the evidence of a task depends on their size.
+    The frames in observations count as looks by the agent, like the frames that a planner with vision receives. Whether a look
+    covers the evidence for a task depends on the frame size.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 2}  # type: ignore[misc]
@@ -58,20 +58,20 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         """Create the environment. Scenes are opened when the first episode begins.
 
         Args:
-            task: A task, the id of one, the name of a split, or several of these. Each episode draws one of them.
-            perception: The perception backend that the tools use, by its name in ``--perception``, or a backend.
+            task: A task, a task id, the name of a split, or a sequence of these. Each episode samples one task.
+            perception: The perception backend that the tools use, by its name in ``--perception`` or as an object.
             frame_size: Width and height of the observed frames in pixels.
             max_steps: Number of actions after which an episode is truncated.
-            reward_weights: Weights of reward terms that replace the default ones; see ``scope_ptz.gym.rewards``.
+            reward_weights: Reward weights that replace the defaults; see ``scope_ptz.gym.rewards``.
             render_mode: "rgb_array", for which ``render`` returns the view at 1280x720, or None.
 
         Raises:
-            InputError: An argument is wrong.
+            InputError: An argument is invalid.
         """
         if max_steps < 1:
             raise InputError(f"max_steps must be at least 1; got {max_steps}.")
         self._world = World(perception, frame_size, CAMERA_SIZE)
-        self.tasks = self._allowed(chosen_tasks(task))
+        self.tasks = self._filter_tasks(select_tasks(task))
         self.render_mode = render_mode
         self.observation_space = spaces.Dict(
             {"frame": frame_space(frame_size), "pose": pose_space(), "instruction": text_space(), "result": text_space()}
@@ -79,13 +79,13 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         self._max_steps, self._rewards = max_steps, CheckRewards(reward_weights)
         self._steps, self._ended = 0, True
 
-    def _allowed(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
-        """Return the tasks that the actions of this environment can fulfil. Raises ``InputError`` if there are none."""
+    def _filter_tasks(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        """Return the tasks that the actions of this environment can complete. Raises ``InputError`` if there are none."""
         return tasks
 
     @abstractmethod
     def _decode(self, action: _Action) -> Call | Finish:
-        """Return the tool call that an action stands for, or how it ends the run."""
+        """Convert an action to a tool call, or to the end of the run."""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode.
@@ -96,7 +96,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         """
         super().reset(seed=seed)
         chosen = (options or {}).get("task")
-        tasks = self.tasks if chosen is None else self._allowed(chosen_tasks(chosen))
+        tasks = self.tasks if chosen is None else self._filter_tasks(select_tasks(chosen))
         self.task = tasks[int(self.np_random.integers(len(tasks)))]
         self._world.open(self.task.world, self.task.preset, self.task.time_s, int(self.np_random.integers(2**31)))
         context = ToolContext(self._world.camera, self._world.perception, NoImages())
@@ -130,20 +130,20 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         return observation, sum(terms.values()), terminated, truncated, self._info(checks, terms, verdict)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return the present view at 1280x720 as (H, W, 3) RGB; None without a render mode."""
+        """Return the current view at 1280x720 as (H, W, 3) RGB; None without a render mode."""
         return None if self.render_mode is None else self._world.picture(self._recorder.position.pose, CAMERA_SIZE)
 
     def close(self) -> None:
-        """Close perception and let go of the scenes."""
+        """Close perception and release the scenes."""
         self._world.close()
 
     def _call(self, call: Call) -> str:
         """Make a tool call and return its result in words."""
-        made = self._world.run(lambda: self._recorder.call(call.name, call.arguments))
-        return f"Error: {made.error}" if made.error is not None else str((made.result or {}).get("message", ""))
+        outcome = self._world.run(lambda: self._recorder.call(call.name, call.arguments))
+        return f"Error: {outcome.error}" if outcome.error is not None else str((outcome.result or {}).get("message", ""))
 
     def _observe(self, result: str, *, counts: bool) -> Observation:
-        """Return an observation. ``counts``: whether the agent can still act on the frame, so that it is a look."""
+        """Return an observation. ``counts`` is true if the agent can still act on the frame, which then counts as a look."""
         world, position = self._world, self._recorder.position
         if counts:
             view = world.geometry.view(position.pose)
@@ -192,25 +192,25 @@ class ToolTaskEnv(_TaskEnv[dict[str, Any]]):
 class MoveTaskEnv(_TaskEnv[NDArray[np.float32]]):
     """``scope_ptz/TaskContinuous-v0``: actions are continuous moves of pan, tilt and zoom. See ``move_action``.
 
-    Each move is a call of ``adjust_ptz``. Only tasks that need nothing else can be chosen; ``movement_tasks`` lists them.
+    Each move is a call of ``adjust_ptz``. Only tasks that require nothing else can be selected; ``movement_tasks`` lists them.
     """
 
     def __init__(self, task: TaskChoice = "core", *, move_scale: MoveScale | None = None, **options: Any) -> None:
         """Create the environment. The other options are those of ``_TaskEnv``.
 
         Args:
-            task: As in ``_TaskEnv``. Tasks of a split that need more than moves are left out.
-            move_scale: The moves that actions of 1 stand for.
+            task: As in ``_TaskEnv``. Tasks in a split that require more than moves are omitted.
+            move_scale: The size of the moves that actions of 1 represent.
         """
         super().__init__(task, **options)
         self.action_space = move_space()
         self._scale = move_scale or MoveScale()
 
-    def _allowed(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
-        allowed = tuple(task for task in tasks if other_need(task) is None)
+    def _filter_tasks(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        allowed = tuple(task for task in tasks if other_requirement(task) is None)
         if not allowed:
             raise InputError(
-                f"The task {tasks[0].id} requires {other_need(tasks[0])}, which pan, tilt and zoom cannot give. Use "
+                f"The task {tasks[0].id} requires {other_requirement(tasks[0])}, which pan, tilt and zoom cannot provide. Use "
                 "scope_ptz/Task-v0, or one of scope_ptz.gym.movement_tasks()."
             )
         return allowed

@@ -17,21 +17,21 @@ from scope_ptz.tools.registry import TOOLS, parse_call
 
 OUTCOMES: tuple[RunOutcome, ...] = get_args(RunOutcome)
 CHOICES: tuple[str, ...] = (*TOOLS, *OUTCOMES)
-"""What ``action["tool"]`` selects: the nine tools in the order of the registry, then the outcomes that end a run."""
+"""The choices of ``action["tool"]``, by index: the nine tools in the order of the registry, then the outcomes that end a run."""
 VIEWS: tuple[str, ...] = get_args(View)
 ZOOM_LIMITS: tuple[str | None, ...] = (None, "in", "out")
 
-MAX_PHRASE_CHARS = 500  # the longest text of a tool's argument; an answer may be as long
+MAX_PHRASE_CHARS = 500  # maximum length of text arguments and answers
 _TEXT_ARGUMENT = {
     "go_to_preset": "name", "count_objects": "description", "query_answer": "question", "zoom_to_object": "description",
     "track_object": "description",
 }  # fmt: skip
-"""The argument of each tool that ``action["text"]`` holds."""
+"""The argument of each tool that is passed in ``action["text"]``."""
 _NEUTRAL: Mapping[str, Any] = {
     "tool": 0, "pan_deg": 0.0, "tilt_deg": 0.0, "zoom_factor": 1.0, "zoom_limit": 0, "view": 0, "duration_s": 10.0, "text": "",
 }  # fmt: skip
 _NUMBERS = {"pan_deg": (-360.0, 360.0), "tilt_deg": (-180.0, 180.0), "zoom_factor": (0.02, 50.0), "duration_s": (0.1, 600.0)}
-"""The ranges of the numeric fields: degrees, degrees, times the present magnification, seconds."""
+"""The ranges of the numeric fields: degrees, degrees, factor of the current magnification, seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ def decode_action(action: Mapping[str, Any]) -> Call | Finish:
     """Convert an action to a tool call or to the end of a run.
 
     Raises:
-        InputError: A field is missing or is not of its type. Texts are checked by the tools, which report errors to the agent.
+        InputError: A field is missing or has the wrong type. The tools check text, and report errors to the agent.
     """
     try:
         choice = CHOICES[_index(action["tool"], len(CHOICES))]
@@ -100,7 +100,7 @@ def _index(value: Any, count: int) -> int:
 
 
 def _adjustment(action: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments of ``adjust_ptz``. A field that changes nothing is left out, and a zoom limit replaces the factor."""
+    """Return the arguments of ``adjust_ptz``. A field that changes nothing is omitted, and a zoom limit replaces the factor."""
     arguments: dict[str, Any] = {axis: float(action[axis]) for axis in ("pan_deg", "tilt_deg") if float(action[axis]) != 0.0}
     limit, factor = ZOOM_LIMITS[_index(action["zoom_limit"], len(ZOOM_LIMITS))], float(action["zoom_factor"])
     if limit is not None:
@@ -115,11 +115,11 @@ def tool_action(name: str, /, **arguments: Any) -> dict[str, Any]:
 
     Args:
         name: One of the nine tools.
-        **arguments: Its arguments. ``zoom_percent`` becomes the ``zoom_factor`` that it stands for.
+        **arguments: Its arguments. ``zoom_percent`` is converted to a ``zoom_factor``.
 
     Raises:
-        ToolCallError: The call is wrong.
-        InputError: A number is beyond the action space.
+        ToolCallError: The call is invalid.
+        InputError: A number is outside the action space.
 
     Example:
         >>> from scope_ptz.gym import tool_action
@@ -138,7 +138,7 @@ def tool_action(name: str, /, **arguments: Any) -> dict[str, Any]:
         action["view"] = VIEWS.index(fields.pop("view"))
     if "zoom_limit" in fields:
         action["zoom_limit"] = ZOOM_LIMITS.index(fields.pop("zoom_limit"))
-    return _typed(action | fields)
+    return _convert_types(action | fields)
 
 
 def finish_action(text: str, outcome: str = "answered") -> dict[str, Any]:
@@ -153,11 +153,11 @@ def finish_action(text: str, outcome: str = "answered") -> dict[str, Any]:
     """
     if outcome not in OUTCOMES:
         raise UnknownNameError("outcome", outcome, OUTCOMES)
-    return _typed({**_NEUTRAL, "tool": CHOICES.index(outcome), "text": clean_text(text)[:MAX_PHRASE_CHARS]})
+    return _convert_types({**_NEUTRAL, "tool": CHOICES.index(outcome), "text": clean_text(text)[:MAX_PHRASE_CHARS]})
 
 
-def _typed(action: dict[str, Any]) -> dict[str, Any]:
-    """Return an action with the types of the space. Raises ``InputError`` for a number beyond its range."""
+def _convert_types(action: dict[str, Any]) -> dict[str, Any]:
+    """Convert the fields of an action to the types of the space. Raises ``InputError`` for a number outside its range."""
     for name, (low, high) in _NUMBERS.items():
         if not low <= action[name] <= high:
             raise InputError(f"{name} must be from {low:g} to {high:g} in an action; got {action[name]:g}. Split the move.")

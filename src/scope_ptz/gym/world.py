@@ -1,4 +1,4 @@
-"""A simulated camera in a scene behind synchronous calls, as Gymnasium needs it."""
+"""A simulated camera and its scene, with the synchronous interface that Gymnasium requires."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from scope_ptz.simulator.views import picture
 
 MIN_FRAME_PX, MAX_FRAME_PX = 16, 4096  # width and height of the frames that an agent receives
 MAX_SCENES = 2
-"""Number of scenes that a world keeps open. A scene takes up to 400 MB, and reopening it takes about a second."""
+"""Number of scenes that a world keeps open. A scene needs up to 400 MB of memory, and reopening it takes about a second."""
 
 _T = TypeVar("_T")
 
@@ -34,8 +34,8 @@ _T = TypeVar("_T")
 class World:
     """The world of one environment: a scene, a camera in it, a clock, and perception. ``open`` starts an episode.
 
-    The camera's coroutines run in a thread of the world, so that environments also work in a notebook. The thread starts with the
-    first episode. Scene time advances by the time that moves take, and never follows the wall clock.
+    The camera's coroutines run in a separate thread, so that environments also work in a notebook. The thread starts with the
+    first episode. Scene time advances only by the duration of moves, independently of the wall clock.
 
     Attributes:
         scene: The scene of the episode.
@@ -44,7 +44,7 @@ class World:
         pose: The camera's pose after the last move of this world.
 
     Args:
-        perception: Name of a perception backend, as in ``--perception``, or a backend, which the caller closes.
+        perception: Name of a perception backend, as in ``--perception``, or a backend that the caller closes.
         frame_size: Width and height, in pixels, of the frames that the agent receives.
         camera_size: Width and height, in pixels, of the frames that the tools take.
     """
@@ -63,7 +63,7 @@ class World:
         self._scenes: OrderedDict[str, Scene] = OrderedDict()  # the least recently used first
         self._loop: EventLoopThread | None = None
 
-    def scene_named(self, name: str) -> Scene:
+    def scene_by_name(self, name: str) -> Scene:
         """Return a scene. It stays open until ``MAX_SCENES`` others have been used, or until the world is closed."""
         if name not in self._scenes:
             self._scenes[name] = shared_scene(name)
@@ -83,29 +83,29 @@ class World:
 
         Raises:
             UnknownNameError: The scene or the preset does not exist.
-            InputError: Perception cannot be created from the options.
+            InputError: The perception backend cannot be created.
         """
-        self.scene = self.scene_named(name)
+        self.scene = self.scene_by_name(name)
         clock = SceneClock(time_s)
         width, height = self._camera_size
         self.perception = self._make_perception(seed)
-        # Backends that read the ground truth look at no pixels, so none are rendered for them.
+        # Backends that read the ground truth do not use pixels, so none are rendered.
         camera_class = BlankCamera if self._options in (GROUND_TRUTH, NOISY) else SimulatedCamera
         self.camera = camera_class(self.scene, clock=clock, width=width, height=height)
         with clock.hold():
             self.pose = self.run(lambda: self.camera.go_to_preset(preset)).pose
 
     def move(self, pose: Pose) -> None:
-        """Move the camera to a pose, or as near as its limits allow. Scene time advances by the time that the head takes."""
+        """Move the camera to a pose, or as close to it as the limits allow. Scene time advances by the duration of the move."""
         self.pose = self.run(lambda: self.camera.move(pose)).pose
 
     def place(self, pose: Pose) -> None:
-        """Put the camera at a pose without letting time pass."""
+        """Move the camera to a pose without advancing scene time."""
         with self.camera.clock.hold():
             self.move(pose)
 
     def run(self, work: Callable[[], Awaitable[_T]]) -> _T:
-        """Run a coroutine of the camera, the tools or perception, and return its result."""
+        """Run a coroutine from the camera, the tools or perception, and return its result."""
         if self._loop is None:
             self._loop = EventLoopThread(self._close_perception)
         return self._loop.call(work)
@@ -128,20 +128,20 @@ class World:
         return FrameGeometry(*self._camera_size, info.optics, info.limits)
 
     def picture(self, pose: Pose, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
-        """Render what the camera sees at a pose now, as (H, W, 3) RGB in the agent's frame size or another."""
+        """Render the current view at a pose as (H, W, 3) RGB, by default in the agent's frame size."""
         info = self.camera.info
         geometry = FrameGeometry(*(size or self._frame_size), info.optics, info.limits)
         return picture(self.scene, self.camera.viewpoint, geometry.view(pose), self.time_s)
 
     def blank_frame(self, pose: Pose) -> Frame:
-        """Return the agent's frame at a pose without its pixels, for reading the ground truth."""
+        """Return the agent's frame at a pose without pixels, for queries of the ground truth."""
         view = self.geometry.view(pose)
         image = np.broadcast_to(np.uint8(0), (view.height, view.width, 3))
         origin = FrameOrigin(self.scene.name, self.camera.viewpoint, pose, self.time_s)
         return Frame(image=image, pose=pose, hfov_deg=view.hfov_deg, time_s=self.time_s, projection=view, origin=origin)
 
     def close(self) -> None:
-        """Close perception, end the thread and release the scenes. Calling it again has no effect."""
+        """Close perception, stop the thread and release the scenes. Calling it again has no effect."""
         loop, self._loop = self._loop, None
         if loop is not None:
             loop.stop()
@@ -158,7 +158,7 @@ class World:
         resolved = self._resolved
 
         async def make() -> Perception:
-            return make_perception(resolved, self.scene_named, seed)
+            return make_perception(resolved, self.scene_by_name, seed)
 
         self._owned = self.run(make)
         return self._owned

@@ -1,4 +1,4 @@
-"""The perception contract: the calls that a backend implements, and their typed results.
+"""The perception contract: the calls that a backend implements, and the typed results.
 
 Boxes and points are normalised to [0, 1] with the origin at the top left, whatever convention the model uses. A failure
 raises ``PerceptionError``; it never becomes a count of zero, an empty list or an invented result.
@@ -21,7 +21,7 @@ ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point")
 
 
 class Agreement(BaseModel):
-    """The comparison of a result with a second backend's result for the same call."""
+    """A comparison between a result and a second backend's result for the same call."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -30,7 +30,7 @@ class Agreement(BaseModel):
     said: str
     """The second backend's answer, shortened; for boxes and points, their number."""
     share: UnitInterval
-    """The agreement of the two results, from 0 to 1."""
+    """The agreement between the two results, from 0 to 1."""
 
     @property
     def agrees(self) -> bool:
@@ -39,14 +39,14 @@ class Agreement(BaseModel):
 
 
 class _Result(BaseModel):
-    """Common fields of all results.
+    """The fields that all results share.
 
     Attributes:
         source: The backend that answered ("ground-truth", "moondream3").
         raw: The reply as received.
         latency_s: Wall-clock time in seconds.
         notes: Corrections to the reply, omissions from it, and failures of backends that were called before ``source``.
-        agreement: The comparison with a second backend, if one was called.
+        agreement: A comparison with a second backend's result, if one was called.
         attempts: The requests that were sent to a model server.
     """
 
@@ -61,7 +61,7 @@ class _Result(BaseModel):
 
 
 class Box(BaseModel):
-    """A box in a frame, in normalised coordinates. ``label`` and ``score`` are None if the model does not give them."""
+    """A box in a frame, in normalised coordinates. ``label`` and ``score`` are None if the model does not return them."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -73,7 +73,7 @@ class Box(BaseModel):
     score: float | None = None
 
     @model_validator(mode="after")
-    def _ordered(self) -> Box:
+    def _check_order(self) -> Box:
         if self.x_min > self.x_max or self.y_min > self.y_max:
             raise ValueError(f"a box must have min <= max; got {self.x_min, self.y_min, self.x_max, self.y_max}")
         return self
@@ -129,7 +129,7 @@ class Points(_Result):
 
 
 class Perception(ABC):
-    """Base class of perception backends: a vision-language model, a detector, OCR, or the simulator's ground truth.
+    """Base class for perception backends: vision-language models, detectors, OCR, and the simulator's ground truth.
 
     ``skills`` lists the calls that a backend supports; other calls raise ``PerceptionError``. A detector, for example, does not
     support "query".
@@ -138,7 +138,7 @@ class Perception(ABC):
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
     version: int | None = None
-    """Version of replies that can be computed again, as those of ground truth; None for backends that use a model."""
+    """Version of the replies from a deterministic backend such as ground truth; None for backends that use a model."""
     handles_panoramas: bool = False
     """Whether the backend finds small objects in a whole panorama. Other backends receive it as tiles (see
     ``models.tiled_panoramas``).
@@ -161,4 +161,4 @@ class Perception(ABC):
         """Return one point on each object that matches a description."""
 
     async def close(self) -> None:
-        """Release the backend's resources. The default does nothing."""
+        """Release the backend's resources. The default implementation does nothing."""

@@ -27,18 +27,18 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 
 
 class PerceptionConformance(ABC):
-    """Checks of the ``Perception`` contract. They do not measure accuracy."""
+    """Checks for the ``Perception`` contract. They do not measure accuracy."""
 
     present: str = "thing"
     """A description of something in the frame."""
     absent: str = "purple unicorn"
     """A description of something that is not in the frame."""
     question: str | None = None
-    """A question that the backend can answer from the frame; if None, the checks ask whether ``present`` is there."""
+    """A question that the backend can answer from the frame; if None, the checks ask whether ``present`` is in it."""
 
     @abstractmethod
     def perception(self) -> AbstractAsyncContextManager[Perception]:
-        """Return a context manager with a backend that is ready for use."""
+        """Return a context manager that provides a ready-to-use backend."""
 
     @abstractmethod
     def frame(self) -> Frame:
@@ -107,10 +107,10 @@ class PerceptionConformance(ABC):
             result = await perception.point(self.frame(), self.present)
             _expect(isinstance(result, Points), f"point returned a {type(result).__name__}")
             _expect(len(result.points) > 0, f"nothing was found for '{self.present}', which is in the frame")
-            _expect(all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in result.points), "a point lies outside the frame")
+            _expect(all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in result.points), "a point is outside the frame")
             self._expect_result(result)
 
-    async def test_absent_things_are_an_empty_list(self) -> None:
+    async def test_absent_objects_give_empty_results(self) -> None:
         async with self.perception() as perception:
             if "detect" in perception.skills:
                 boxes = (await perception.detect(self.frame(), self.absent)).boxes

@@ -1,4 +1,4 @@
-"""A placeholder for sessions without a perception backend."""
+"""The placeholder backend for sessions without perception."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 
 
 class NoPerception(Perception):
-    """A perception backend that raises ``PerceptionError`` on every call, for cameras without ground truth and without a backend.
+    """A placeholder that raises ``PerceptionError`` on every call, for cameras without ground truth.
 
     Moving the camera and taking frames work without perception.
 
@@ -38,5 +38,5 @@ class NoPerception(Perception):
 
     def _raise_error(self) -> NoReturn:
         raise PerceptionError(
-            f"This session has no perception, because the camera has no ground truth and no backend was chosen. {self._advice}"
+            f"This session has no perception backend, because the camera has no ground truth and none was chosen. {self._advice}"
         )

@@ -1,1 +1,1 @@
-"""Planners: their contract, the grammar planner, the planner for chat models, and measurements of planners."""
+"""The planner contract, the grammar, chat and hybrid planners, and measurements of planners."""

@@ -122,7 +122,7 @@ class Usage(_Model):
 
 
 class Served(_Model):
-    """Facts about a model server's reply.
+    """Metadata of a model server's reply.
 
     Attributes:
         model: The model's name as the server reports it.

@@ -1,4 +1,4 @@
-"""Read replies that only say yes or no."""
+"""Recognise replies that only say yes or no."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _NO = (
 )
 _ALL_YES = re.compile(rf"{_YES}(?: {_YES})*", re.IGNORECASE)
 _ALL_NO = re.compile(rf"{_NO}(?: {_NO})*", re.IGNORECASE)
-_ONLY_POLITE = frozenset({"please", "thanks", "thank you"})
+_COURTESIES = frozenset({"please", "thanks", "thank you"})
 
 
 def yes_or_no(text: str) -> Literal["yes", "no"] | None:
     """Return whether a text only says yes or no; None for other texts, such as "yes, but only 10 degrees"."""
     parts = [part for part in re.split(r"[\s,.!]*[,.!][\s,.!]*", text.strip().replace("’", "'")) if part]
-    if not parts or all(part.lower() in _ONLY_POLITE for part in parts):
+    if not parts or all(part.lower() in _COURTESIES for part in parts):
         return None
     if all(_ALL_YES.fullmatch(part) for part in parts):
         return "yes"

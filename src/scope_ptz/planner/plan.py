@@ -33,7 +33,6 @@ class Plan:
     """The plan for an instruction.
 
     Attributes:
-        instruction: The instruction.
         understood: Whether the instruction was understood and is not refused.
         calls: The calls that the planner makes if every call succeeds and every condition is met at its first test.
         clarification: The question or refusal if ``understood`` is false; otherwise None.
@@ -65,7 +64,7 @@ def plan(
     """Return the plan for an instruction.
 
     Args:
-        instruction: The user's instruction, as text.
+        instruction: The user's instruction.
         presets: The camera's presets; without any, preset names are accepted as written.
         pose: The camera's pose at the start.
         preset_poses: Poses of the presets. A preset that is not listed is assumed to have the home pose.
@@ -75,23 +74,23 @@ def plan(
     if meaning.refusal or meaning.clarification:
         return Plan(instruction, False, (), meaning.clarification or meaning.refusal)
     program = Program(limits, pose, assume_met=True)
-    simulated_camera = _AssumedWorld(pose, limits, preset_poses or {})
+    world = _AssumedWorld(pose, limits, preset_poses or {})
     calls: list[PlannedCall] = []
     run = program.run(meaning.steps)
     try:
         name, arguments = next(run)
         while len(calls) < _MAX_CALLS:
             calls.append(PlannedCall(name, arguments))
-            name, arguments = run.send(AssumedOutcome(simulated_camera.result(name, arguments)))
+            name, arguments = run.send(AssumedOutcome(world.result(name, arguments)))
     except StopIteration:
         pass
-    simulated_camera = _AssumedWorld(pose, limits, preset_poses or {})
-    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, simulated_camera.result))
+    world = _AssumedWorld(pose, limits, preset_poses or {})
+    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, world.result))
 
 
 @dataclass(slots=True)
 class _AssumedWorld:
-    """A stand-in for the camera and perception, for plans. It tracks the pose, and finds every object that it is asked for."""
+    """A fake camera and perception backend for plans. It tracks the pose and finds every object."""
 
     pose: Pose
     limits: Limits

@@ -1,4 +1,4 @@
-"""The registry of planner and perception models, with their requirements and the commands that serve them.
+"""The registry of planner and perception models, with their requirements and the commands for serving them.
 
 The data is in ``data/models.yaml``.
 """

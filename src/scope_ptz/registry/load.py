@@ -1,4 +1,4 @@
-"""Load the model registry: the packaged entries and the user's entries."""
+"""Load the model registry, which consists of packaged and user-defined entries."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from scope_ptz.registry.model_entries import Model, Pair, Role, Server
 PACKAGED_FILE = "models.yaml"
 
 
-class _File(BaseModel):
-    """The content of a models file. The keys of ``servers`` and ``models`` are their names."""
+class _ModelsFile(BaseModel):
+    """The content of a models file. The keys in ``servers`` and ``models`` are the names of the entries."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -33,7 +33,7 @@ class Registry:
         self.servers, self.models, self.pairs = dict(servers), dict(models), dict(pairs)
 
     def model(self, name: str, role: Role | None = None) -> Model:
-        """Return a model by its name, title or repository, ignoring case.
+        """Return a model by name, title or repository, ignoring case.
 
         Raises:
             UnknownNameError: There is no such model.
@@ -44,16 +44,16 @@ class Registry:
         if model is None:
             raise UnknownNameError(role or "model", name, self.model_names(role))
         if role is not None and role not in model.roles:
-            can = "plan" if role == "planner" else "be used for perception"
-            raise ConfigError(f"{model.name} cannot {can}. Models that can: {', '.join(self.model_names(role))}.")
+            ability = "plan" if role == "planner" else "be used for perception"
+            raise ConfigError(f"{model.name} cannot {ability}. Models that can: {', '.join(self.model_names(role))}.")
         return model
 
     def model_names(self, role: Role | None = None) -> list[str]:
-        """Return the names of the models that support a role; all names if ``role`` is None."""
+        """Return the names of the models that support a role, or of all models if ``role`` is None."""
         return [m.name for m in self.models.values() if role is None or role in m.roles]
 
     def pair(self, text: str) -> Pair:
-        """Return the pair that a text names: a registered pair, ``PLANNER+PERCEPTION``, or one model that supports both roles.
+        """Return a pair by name: a registered pair, ``PLANNER+PERCEPTION``, or a model that supports both roles.
 
         Raises:
             UnknownNameError: There is no such model.
@@ -84,7 +84,7 @@ class Registry:
         return self.servers[name]
 
     def commands(self, model: Model, server: str) -> tuple[str, ...]:
-        """Return the commands that serve a model on a server, with all placeholders replaced.
+        """Return the commands for serving a model on a server, with all placeholders replaced.
 
         Raises:
             ConfigError: The server cannot run the model.
@@ -95,16 +95,16 @@ class Registry:
             raise ConfigError(f"{model.name} cannot be served with {server}. Servers that can: {supported}.")
         serving = model.serve[server]
         values = {"source": serving.source or model.repo, "window": str(model.window), "flags": serving.flags}
-        return tuple(_fill(line, values) for line in serving.command or program.command)
+        return tuple(_fill_placeholders(line, values) for line in serving.command or program.command)
 
 
 def load_registry(user_file: Path | None = None) -> Registry:
-    """Return the packaged registry with the user's entries added. An entry with the same name replaces the packaged one.
+    """Load the packaged registry, and add the user's entries. A user's entry replaces a packaged entry with the same name.
 
     Raises:
         ConfigError: The user's file is unreadable or invalid. The message names the file and the field.
     """
-    servers, models, pairs = _packaged()
+    servers, models, pairs = _packaged_entries()
     if user_file is not None:
         try:
             user_text = user_file.read_text(encoding="utf-8")
@@ -112,13 +112,13 @@ def load_registry(user_file: Path | None = None) -> Registry:
             raise ConfigError(f"The models file {user_file} cannot be read: {error}.") from error
         user_servers, user_models, user_pairs = _parse(user_text, str(user_file))
         servers, models, pairs = {**servers, **user_servers}, {**models, **user_models}, {**pairs, **user_pairs}
-        _check(Registry(servers, models, pairs), user_file)
+        _check_references(Registry(servers, models, pairs), user_file)
     return Registry(servers, models, pairs)
 
 
 @cache
-def _packaged() -> tuple[Mapping[str, Server], Mapping[str, Model], Mapping[str, Pair]]:
-    """Return the packaged entries. They are parsed once per process."""
+def _packaged_entries() -> tuple[Mapping[str, Server], Mapping[str, Model], Mapping[str, Pair]]:
+    """Return the packaged entries, which are parsed once per process."""
     return _parse(files("scope_ptz").joinpath("data", PACKAGED_FILE).read_text(encoding="utf-8"), PACKAGED_FILE)
 
 
@@ -131,7 +131,7 @@ def _parse(text: str, source: str) -> tuple[dict[str, Server], dict[str, Model],
         raise ConfigError(f"{source} is not valid YAML: {' '.join(str(error).split())}.") from error
     location: tuple[str | int, ...] = ()
     try:
-        file = _File.model_validate(content or {})
+        file = _ModelsFile.model_validate(content or {})
         servers, models, pairs = {}, {}, {}
         for name, entry in file.servers.items():
             location = ("servers", name)
@@ -150,8 +150,8 @@ def _parse(text: str, source: str) -> tuple[dict[str, Server], dict[str, Model],
     return servers, models, pairs
 
 
-def _check(registry: Registry, source: Path) -> None:
-    """Check that the servers and models that entries refer to exist."""
+def _check_references(registry: Registry, source: Path) -> None:
+    """Check that all servers and models that entries refer to exist."""
     for model in registry.models.values():
         for server in model.serve:
             if server not in registry.servers:
@@ -164,8 +164,8 @@ def _check(registry: Registry, source: Path) -> None:
         registry.model(pair.perception, "perception")
 
 
-def _fill(line: str, values: Mapping[str, str]) -> str:
-    """Return a command with its placeholders replaced. Other braces, such as JSON in a flag, remain unchanged."""
+def _fill_placeholders(line: str, values: Mapping[str, str]) -> str:
+    """Replace the placeholders in a command. Other braces, such as those of JSON in a flag, remain unchanged."""
     for name, value in values.items():
         line = line.replace(f"{{{name}}}", value)
     return " ".join(line.split())

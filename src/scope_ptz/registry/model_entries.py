@@ -13,19 +13,20 @@ Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
 """When a model reasons: "none" (never), "optional" (on request), "default" (unless switched off) or "always".
 
-With "always", only the length of the reasoning can be set.
+If a model always reasons, only the length of the reasoning can be set.
 """
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
-"""Memory of the weights, in bytes per parameter.
+"""Memory for the weights, in bytes per parameter.
 
-Four-bit formats need more than 0.5, because they store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight).
+Four-bit formats need more than 0.5 bytes, because they also store scales, and some layers with more bits (Q4_K_M: 4.85 bits per
+weight).
 """
 RUNTIME_GB = 1.5
-"""GB that a server needs in addition to weights and key-value cache: kernels, activations and the vision tower's workspace."""
+"""Memory in GB that a server needs besides weights and key-value cache: kernels, activations and the vision tower's workspace."""
 WINDOW = 16_384
-"""Tokens of context assumed in memory figures and serve commands. A long agent run needs about half of them."""
+"""Context length in tokens for memory figures and serve commands. A long agent run needs about half of it."""
 
 
 class _Entry(BaseModel):
@@ -36,7 +37,7 @@ class Server(_Entry):
     """A server program, such as vLLM or Ollama.
 
     Attributes:
-        command: The commands that serve a model, in order, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
+        command: The commands for serving a model, in order, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
     """
 
     title: str
@@ -47,7 +48,7 @@ class Server(_Entry):
 
 
 class Serving(_Entry):
-    """How a server program serves a model. ``command`` replaces the command of the server entry."""
+    """How a server program serves a model. ``command`` overrides the command in the server entry."""
 
     source: str = Field(default="", description="The model's name on the server; empty means the model's repository.")
     precision: Precision | None = None
@@ -60,9 +61,10 @@ class Model(_Entry):
     """A model for planning, for perception, or for both.
 
     Attributes:
-        size_b: Billions of parameters, as stated by the model's authors.
-        active_b: Billions of parameters that are active per token, as stated by the model's authors.
-        parameters_b: Billions of parameters in memory, including vision tower and embeddings; None if equal to ``size_b``.
+        size_b: Number of parameters in billions, as stated by the model's authors.
+        active_b: Number of parameters that are active per token, in billions, as stated by the model's authors.
+        parameters_b: Number of parameters in memory, in billions, including vision tower and embeddings; None if equal to
+            ``size_b``.
         kv_kib: Size of the key-value cache per token of context, in KiB.
     """
 
@@ -92,7 +94,7 @@ class Model(_Entry):
     source: str = Field(default="", description="Source of these facts.")
 
     @model_validator(mode="after")
-    def _consistent(self) -> Model:
+    def _check_consistency(self) -> Model:
         if "perception" in self.roles and not self.backend:
             raise ValueError("a perception model needs a backend, for example 'moondream' or 'openai_vision'")
         if self.active_b > self.size_b:
@@ -102,10 +104,10 @@ class Model(_Entry):
         return self
 
     def memory_for(self, server: str | None = None) -> float:
-        """Return the GB (10^9 bytes) needed to serve the model with a window of ``WINDOW`` tokens.
+        """Return the memory in GB (10^9 bytes) for serving the model with a context of ``WINDOW`` tokens.
 
-        This is parameters x bytes per parameter + key-value cache + ``RUNTIME_GB``, unless the measured ``memory_gb`` is given and
-        applies to the server's precision.
+        This is parameters x bytes per parameter + key-value cache + ``RUNTIME_GB``, unless a measured ``memory_gb`` is available
+        for the server's precision.
         """
         serving = self.serve.get(server) if server else None
         precision = (serving.precision if serving else None) or self.precision
@@ -117,11 +119,11 @@ class Model(_Entry):
 
     @property
     def window(self) -> int:
-        """Tokens of context to serve the model with."""
+        """Context length in tokens with which to serve the model."""
         return min(self.context, WINDOW)
 
     def min_memory_server(self) -> tuple[str | None, float]:
-        """Return the server on which the model needs the least memory, and that memory in GB. Ties go to the first server."""
+        """Return the server on which the model needs the least memory, and the memory in GB. Ties go to the first server."""
         if not self.serve:
             return None, self.memory_for()
         server = min(self.serve, key=self.memory_for)

@@ -1,4 +1,4 @@
-"""Serve a site with uvicorn, in the running event loop."""
+"""Serve a site with uvicorn in the running event loop."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
 
     Args:
         site: The cameras, models and runs to serve. This function enters the site's context.
-        access: The access rules. The server listens on their host.
+        access: The access rules, including the host on which to listen.
         port: The port; 0 for any free one.
         app: The application, wrapped in an ``AccessMiddleware``; by default, the API and MCP.
 
@@ -43,16 +43,16 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
     async with site, AsyncExitStack() as stack:
         if app is None:
             app = application(site, access, await stack.enter_async_context(mcp_route(site, access)))
-        async with serving(app, listener, site.closing) as bound:
+        async with serve_app(app, listener, site.closing) as bound:
             yield bound
 
 
 @asynccontextmanager
-async def serving(app: ASGIApp, listener: socket.socket, closing: asyncio.Event) -> AsyncIterator[int]:
+async def serve_app(app: ASGIApp, listener: socket.socket, closing: asyncio.Event) -> AsyncIterator[int]:
     """Serve an application while the context is open, and yield the port.
 
     Args:
-        app: The application, wrapped in a ``AccessMiddleware``.
+        app: The application, wrapped in an ``AccessMiddleware``.
         listener: The listening socket, which is closed at the end.
         closing: Set when the server shuts down, so that streams end.
     """
@@ -79,13 +79,13 @@ async def mcp_route(site: Site, access: Access) -> AsyncIterator[Route]:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("mcp", "mcp_types"):
             raise
-        yield Route(MCP_PATH, _without_mcp, methods=["GET", "POST", "DELETE"])
+        yield Route(MCP_PATH, _mcp_not_installed, methods=["GET", "POST", "DELETE"])
         return
     async with serve_mcp(site, access) as route:
         yield route
 
 
-async def _without_mcp(_: Request) -> Response:
+async def _mcp_not_installed(_: Request) -> Response:
     return error_reply(
         501, "not_installed", "MCP is not installed on this server. Install it with: pip install 'scope-ptz[serve]'."
     )
@@ -103,7 +103,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
         proxy_headers=False,  # address headers from clients are not trusted
         ws="websockets-sansio",
         ws_max_size=64 * 1024,
-        ws_per_message_deflate=False,  # pictures are compressed already
+        ws_per_message_deflate=False,  # pictures are already compressed
         limit_concurrency=MAX_CONNECTIONS,
         timeout_keep_alive=30,
         timeout_graceful_shutdown=SHUTDOWN_S,
@@ -111,7 +111,7 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
 
 
 async def _wait_until_ready(server: _Server, running: asyncio.Task[None]) -> None:
-    """Wait until a server listens. If its task ends before that, raise the task's error."""
+    """Wait until a server is listening. If its task ends before that, raise the task's error."""
     waiting = asyncio.ensure_future(server.ready.wait())
     await asyncio.wait({waiting, running}, return_when=asyncio.FIRST_COMPLETED)
     waiting.cancel()
@@ -120,7 +120,7 @@ async def _wait_until_ready(server: _Server, running: asyncio.Task[None]) -> Non
 
 
 class _Server(uvicorn.Server):
-    """A server that sets ``ready`` once it listens, and leaves the handling of process signals to the surrounding program."""
+    """A server that sets ``ready`` once it is listening, and leaves process signals to the surrounding program."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)

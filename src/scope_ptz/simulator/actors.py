@@ -1,7 +1,7 @@
 """Moving actors: their positions at a scene time, and the sprites that are composited over the static world.
 
-A sprite is a rendering of an actor from the viewpoint, with the actor at one point of its path. Between two such points, the
-sprite of the nearest point is moved to the actor's exact direction and scaled to its exact distance. For each pixel, the depth
+A sprite is a rendering of an actor from the viewpoint, with the actor at one point on its path. Between two such points, the
+sprite for the nearest point is moved to the actor's exact direction and scaled to its exact distance. For each pixel, the depth
 layer determines whether the actor is hidden.
 """
 
@@ -34,9 +34,9 @@ class Appearance:
         actor: The actor.
         sheet: The sheet that contains its sprites.
         sprite: The sprite to draw.
-        view: The perspective view that the sprite covers.
+        view: The perspective view covered by the sprite.
         offset_m: The actor's ground point relative to the optical centre, in camera coordinates.
-        scale: How many times larger the actor appears than in its sprite.
+        scale: The actor's apparent size relative to its size in the sprite.
     """
 
     actor: SceneActor
@@ -60,7 +60,7 @@ class ActorInView:
         sheet: The sheet that contains its sprites.
         offset_m: The actor's ground point (3,) relative to the optical centre, in camera coordinates.
         path_s: Path time in seconds; see ``PathPosition``.
-        phase: The phase of a walker's stride, 0 to 1.
+        phase: Phase of a walker's stride, from 0 to 1.
     """
 
     actor: SceneActor
@@ -72,7 +72,7 @@ class ActorInView:
 
 @dataclass(frozen=True, slots=True)
 class PathPosition:
-    """The position of an actor on its path.
+    """An actor's position on its path.
 
     Attributes:
         path_s: Path time in seconds, which starts again at 0 after each period of the path.
@@ -86,7 +86,7 @@ class PathPosition:
 
 
 def path_position(actor: SceneActor, time_s: float) -> PathPosition | None:
-    """Return the position of an actor at a scene time, or None if it is not in the scene."""
+    """Return an actor's position at a scene time, or None if the actor is not in the scene at that time."""
     path = np.array(actor.waypoints, dtype=np.float64)
     path_s = (time_s - actor.delay_s) % actor.period_s
     if not path[0, 0] <= path_s <= path[-1, 0]:
@@ -97,7 +97,7 @@ def path_position(actor: SceneActor, time_s: float) -> PathPosition | None:
 
 
 def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
-    """Return the actors in the scene at a time that have sprites from this viewpoint, farthest first."""
+    """Return the actors that are in the scene at a time and have sprites for this viewpoint, farthest first."""
     return _appearances_of(viewpoint, ((actor, time_s) for actor in scene.file.actors))
 
 
@@ -111,7 +111,7 @@ def composited_appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) ->
 
 
 def composited_actors(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[ActorInView]:
-    """Return the actors of ``composited_appearances``, farthest first, without selecting sprites."""
+    """Return the same actors as ``composited_appearances``, farthest first, without selecting sprites."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _actors_in_view(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
@@ -137,7 +137,7 @@ def _appearance(viewpoint: Viewpoint, actor_in_view: ActorInView) -> Appearance:
         phase_difference = abs(sprite.phase - actor_in_view.phase)
         return abs(sprite.path_s - actor_in_view.path_s), min(phase_difference, 1.0 - phase_difference)
 
-    # Select the sprite that is nearest on the path and, for walkers, nearest in the phase of the stride.
+    # Select the sprite that is nearest on the path and, for walkers, nearest in stride phase.
     sprite = min(sheet.sprites, key=mismatch)
     sprite_offset_m = viewpoint.offset(np.array(sprite.position_m))
     scale = float(np.linalg.norm(sprite_offset_m) / np.linalg.norm(offset_m))
@@ -172,14 +172,14 @@ def actor_extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
 
 
 def may_be_visible(appearance: Appearance, projection: Projection) -> bool:
-    """Return whether an actor lies at least partly in the directions that a view covers. Occlusion is ignored."""
+    """Return whether an actor is at least partly within the directions that a view covers. Occlusion is ignored."""
     return place_of(appearance, projection) is not None
 
 
 def place_of(appearance: Appearance, projection: Projection) -> Place | None:
-    """Return the rows and columns of a view in which an actor may be visible; None if it is outside."""
-    showing = next(iter(Tiles([appearance.view]).in_view(projection)), None)
-    return None if showing is None else showing.place
+    """Return the rows and columns of a view in which an actor may be visible; None if the actor is outside the view."""
+    tile_in_view = next(iter(Tiles([appearance.view]).in_view(projection)), None)
+    return None if tile_in_view is None else tile_in_view.place
 
 
 def draw_numbers(
@@ -195,16 +195,16 @@ def draw_numbers(
         viewpoint: The viewpoint with the actor's sprites.
         projection: Projection of the view.
         appearance: The actor at this instant.
-        depth_m: Distances of the static world in the rows and columns in which the actor may be visible; see ``place_of``.
+        depth_m: Distances to the static world in the rows and columns in which the actor may be visible; see ``place_of``.
         numbers: (H, W) instance numbers to draw into.
     """
     sprite = Tiles([appearance.view])
-    showing = next(iter(sprite.in_view(projection)), None)
-    if showing is None:
+    tile_in_view = next(iter(sprite.in_view(projection)), None)
+    if tile_in_view is None:
         return
-    place = showing.place
+    place = tile_in_view.place
     grid = Grid(projection, step_px(projection), place)
-    uv = sprite.points(showing, projection, grid.x, grid.y)
+    uv = sprite.points(tile_in_view, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     static_m = depth_m * (1 + TOLERANCE_FRACTION) + TOLERANCE_M
@@ -212,6 +212,6 @@ def draw_numbers(
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
-    """Return the (h, w) current distances of the sprite's pixels in metres; 0 where the sprite does not show the actor."""
+    """Return the current distances, in metres, of the sprite's (h, w) pixels; 0 where the sprite does not show the actor."""
     codes = viewpoint.sprites.distances(appearance.sheet, appearance.sprite)
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))

@@ -1,8 +1,8 @@
 """Blend the borders of tiles into the pictures around them, and match the tone of tiles to the panorama.
 
-A tile is a sharp picture inside a less sharp one. Its border would be visible as a hard edge, so the tile fades over some pixels
-into the picture below it: the panorama, or a less sharp tile. Tiles are blended once, when they are read, so views cost no extra
-time.
+A tile is a sharp picture inside a less sharp one. Its border would be visible as a hard edge, so over some pixels the tile fades
+into the picture below it: the panorama, or a less sharp tile. Tiles are blended once, when they are read, so rendering a view takes
+no extra time.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from scope_ptz.simulator.models import Band
 from scope_ptz.simulator.sheets.atlas import Atlas
 
 FADE_PX, MAX_FADE_FRACTION = 90.0, 0.2
-"""A tile fades over this many of its pixels, but over no more than this fraction of its shorter side."""
+"""A tile fades over this many of its pixels, but at most over this fraction of its shorter side."""
 
 HIDDEN_PX = 4.0
-"""Width of the fully transparent edge of a tile, which is needed because views clip tiles slightly inside their border."""
+"""Width of a tile's fully transparent edge, which is needed because views clip tiles slightly inside their border."""
 
 JOINT_PX = 12.0
 """Adjoining tiles fade into each other over this many pixels. They overlap by about 28 pixels."""
@@ -38,24 +38,24 @@ SHARP_FRACTION = 0.7
 COARSE_PX = 4  # side, in pixels, of the cells in which the distance from less sharp areas is computed
 
 DETAIL_FADE_PX = 28.0
-"""Texts and small objects near the border stay sharp. The tile fades over this many pixels around them."""
+"""Texts and small objects near the border stay sharp. Around them, the tile fades over this many pixels."""
 
 SMALL_PX = 160.0
-"""Only objects up to this size in a tile stay sharp near its border. Larger ones may fade."""
+"""Only objects up to this size, in tile pixels, stay sharp near the tile's border. Larger ones may fade."""
 
 TONE_CELL_PX = 32
-"""Size of the cells whose mean tones are matched. Details smaller than a cell are preserved."""
+"""Size of the cells whose mean tones are matched, in pixels. Details smaller than a cell are preserved."""
 
 MAX_TONE_SHIFT = 24.0
-"""Maximum change of tone, on a scale of 0 to 255. Larger differences mean different content, so they are only reduced."""
+"""Maximum tone change, on a scale of 0 to 255. Larger differences are due to different content, so they are only reduced."""
 
-MAX_CACHED_TILES = 4  # tiles with matched tone that stay in memory, because neighbouring tiles need them soon
+MAX_CACHED_TILES = 4  # tone-matched tiles to keep in memory, because neighbouring tiles soon need them
 
 Floats = NDArray[np.float32]
 
 
 class Outlines:
-    """Outlines of the objects that stay sharp near the border of a tile in which they are small.
+    """Object outlines. In tiles in which an object is small, the object stays sharp near the border.
 
     Args:
         outlines: One array of (n, 3) directions for each object.
@@ -68,8 +68,8 @@ class Outlines:
         reach = (angle_between_deg(outline, middle).max() for outline, middle in zip(outlines, middles, strict=True))
         self._reach_deg = np.array(list(reach))
 
-    def small_in(self, view: Perspective) -> NDArray[np.uint8]:
-        """Return an (H, W) mask of the small objects in a view."""
+    def mask_of_small_objects(self, view: Perspective) -> NDArray[np.uint8]:
+        """Return an (H, W) mask that covers the small objects in a view."""
         mask = np.zeros((view.height, view.width), np.uint8)
         size = np.array([view.width, view.height])
         apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
@@ -82,14 +82,14 @@ class Outlines:
 
 
 class TileBlender:
-    """Reads the tiles of a viewpoint and blends their borders.
+    """Reads a viewpoint's tiles and blends their borders.
 
     Args:
-        read: Reads tile ``i`` as (H, W, 3) RGB, as stored.
+        read: Function that returns stored tile ``i`` as (H, W, 3) RGB.
         tiles: Geometry of the tiles.
         band: The band of the sphere that the panorama covers.
-        keep_sharp: Returns the outlines of the objects that stay sharp near the border of a tile in which they are small, each as
-            an array of (n, 3) directions. Called when the first tile is read.
+        sharp_outlines: Function that returns the outlines of the objects that stay sharp near tile borders, each as an array of
+            (n, 3) directions. It is called when the first tile is read.
     """
 
     def __init__(
@@ -97,50 +97,50 @@ class TileBlender:
         read: Callable[[int], NDArray[np.uint8]],
         tiles: Tiles,
         band: Band,
-        keep_sharp: Callable[[], Sequence[NDArray[np.float64]]],
+        sharp_outlines: Callable[[], Sequence[NDArray[np.float64]]],
     ) -> None:
-        self._read, self._tiles, self._band, self._outlines = read, tiles, band, cache(lambda: Outlines(keep_sharp()))
-        self._toned: OrderedDict[int, NDArray[np.uint8]] = OrderedDict()
+        self._read, self._tiles, self._band, self._outlines = read, tiles, band, cache(lambda: Outlines(sharp_outlines()))
+        self._matched_tiles: OrderedDict[int, NDArray[np.uint8]] = OrderedDict()
 
-    def blended(self, atlas: Atlas, index: int) -> NDArray[np.uint8]:
-        """Return tile ``index`` as (H, W, 3) RGB. The panorama is taken from the atlas."""
+    def blend(self, atlas: Atlas, index: int) -> NDArray[np.uint8]:
+        """Return tile ``index`` with blended borders as (H, W, 3) RGB. The panorama is taken from the atlas."""
         view = self._tiles.views[index]
         below = self._panorama(atlas, view)
-        toned = self._toned_tile(atlas, index, below)
+        matched = self._matched_tile(atlas, index, below)
         order = self._tiles.in_view(view)
-        position = next(k for k, showing in enumerate(order) if showing.tile == index)
+        position = next(k for k, tile_in_view in enumerate(order) if tile_in_view.tile == index)
         grid_step = step_px(view)
-        for showing in reversed(order[position + 1 :]):  # starting with the least sharp tile
-            grid = Grid(view, grid_step, showing.place)
-            other = self._tiles.views[showing.tile]
-            nodes = self._tiles.points(showing, view, grid.x, grid.y) * (other.width, other.height) - 0.5
+        for tile_in_view in reversed(order[position + 1 :]):  # begin with the least sharp tile
+            grid = Grid(view, grid_step, tile_in_view.place)
+            other = self._tiles.views[tile_in_view.tile]
+            nodes = self._tiles.points(tile_in_view, view, grid.x, grid.y) * (other.width, other.height) - 0.5
             where = grid.to_pixels(nodes)
             if not _reaches(where, other):
                 continue
-            layer = cv2.remap(self._toned_tile(atlas, showing.tile), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0))
-            part = below[showing.place]
+            layer = cv2.remap(self._matched_tile(atlas, tile_in_view.tile), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0))
+            part = below[tile_in_view.place]
             part[...] = _blend(layer, part)
-        return _blend(toned, below)
+        return _blend(matched, below)
 
     def clear_cache(self) -> None:
         """Release the cached tiles."""
-        self._toned.clear()
+        self._matched_tiles.clear()
 
     def _panorama(self, atlas: Atlas, view: Perspective) -> NDArray[np.uint8]:
         where = panorama_map(self._band, atlas.ensure(0, 0), Grid(view, step_px(view)))
         return np.asarray(cv2.remap(atlas.sheet, where, None, cv2.INTER_LINEAR))
 
-    def _toned_tile(self, atlas: Atlas, index: int, panorama: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
+    def _matched_tile(self, atlas: Atlas, index: int, panorama: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
         """Return a tile as (H, W, 4), with its tone matched to the panorama. The fourth channel is its opacity."""
-        if index not in self._toned:
+        if index not in self._matched_tiles:
             view = self._tiles.views[index]
             around = self._panorama(atlas, view) if panorama is None else panorama
             opacity = np.rint(_opacity(self._tiles, index, self._outlines()) * 255).astype(np.uint8)
-            self._toned[index] = cv2.merge([*cv2.split(_in_tone(self._read(index), around)), opacity])
-            while len(self._toned) > MAX_CACHED_TILES:
-                self._toned.popitem(last=False)
-        self._toned.move_to_end(index)
-        return self._toned[index]
+            self._matched_tiles[index] = cv2.merge([*cv2.split(_match_tone(self._read(index), around)), opacity])
+            while len(self._matched_tiles) > MAX_CACHED_TILES:
+                self._matched_tiles.popitem(last=False)
+        self._matched_tiles.move_to_end(index)
+        return self._matched_tiles[index]
 
 
 def _reaches(where: Floats, other: Perspective) -> bool:
@@ -153,7 +153,7 @@ def _blend(over: NDArray[np.uint8], under: NDArray[np.uint8]) -> NDArray[np.uint
     return np.asarray(cv2.blendLinear(cv2.cvtColor(over, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(under), opacity, 1 - opacity))
 
 
-def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _match_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return a tile whose mean tones over large cells match those of the panorama."""
     height, width = tile.shape[:2]
     cells = max(2, round(width / TONE_CELL_PX)), max(2, round(height / TONE_CELL_PX))
@@ -164,24 +164,27 @@ def _in_tone(tile: NDArray[np.uint8], panorama: NDArray[np.uint8]) -> NDArray[np
 
 
 def _opacity(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
-    """Return the (H, W) opacity of a tile, 0 to 1.
+    """Return a tile's (H, W) opacity, from 0 to 1.
 
-    It decreases to 0 at the tile's border: slowly where the sharp area ends, and over a few pixels where another tile adjoins.
+    The opacity decreases to 0 at the tile's border: gradually where the sharp area ends, and over a few pixels where another tile
+    adjoins.
     """
     view = tiles.views[index]
     columns, rows = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (view.width, view.height))
     inside = np.minimum(rows[:, None], columns[None, :]).astype(np.float32) - np.float32(HIDDEN_PX)
     fade_px = min(FADE_PX, MAX_FADE_FRACTION * min(view.width, view.height))
-    opacity = np.minimum(_smooth(inside / JOINT_PX), _smooth((_distance_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px))
-    details = outlines.small_in(view)
+    opacity = np.minimum(
+        _smoothstep(inside / JOINT_PX), _smoothstep((_distance_to_soft_px(tiles, index, fade_px) - HIDDEN_PX) / fade_px)
+    )
+    details = outlines.mask_of_small_objects(view)
     if details.any():
         away = np.asarray(cv2.distanceTransform(255 - details, cv2.DIST_L2, 5))
-        opacity = np.maximum(opacity, np.minimum(_smooth(1 - away / DETAIL_FADE_PX), _smooth(inside / JOINT_PX)))
+        opacity = np.maximum(opacity, np.minimum(_smoothstep(1 - away / DETAIL_FADE_PX), _smoothstep(inside / JOINT_PX)))
     return opacity
 
 
 def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
-    """Return the (H, W) distance of pixels from the nearest area that no similarly sharp tile covers.
+    """Return each pixel's distance, as (H, W), from the nearest area that no similarly sharp tile covers.
 
     Distances are exact up to ``reach_px``.
     """
@@ -191,16 +194,16 @@ def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
     hfov_deg = math.degrees(2 * math.atan(width / 2 / view.focal_px))
     around = Perspective(view.pan_deg, view.tilt_deg, hfov_deg, width, height)
     sharp = np.zeros((-(-height // COARSE_PX), -(-width // COARSE_PX)), np.uint8)
-    for showing in tiles.in_view(around):
-        if showing.polygon is not None and tiles.views[showing.tile].focal_px >= SHARP_FRACTION * view.focal_px:
-            cv2.fillConvexPoly(sharp, showing.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
+    for tile_in_view in tiles.in_view(around):
+        if tile_in_view.polygon is not None and tiles.views[tile_in_view.tile].focal_px >= SHARP_FRACTION * view.focal_px:
+            cv2.fillConvexPoly(sharp, tile_in_view.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
     # If the whole neighbourhood is sharp, the distance transform returns very large distances, so they are limited to the padding.
     away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
     fine = cv2.resize(away, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
     return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])
 
 
-def _smooth(value: NDArray[np.floating]) -> Floats:
+def _smoothstep(value: NDArray[np.floating]) -> Floats:
     """Map [0, 1] to [0, 1] with zero slope at both ends (smoothstep)."""
     t = np.clip(value, 0, 1)
     return np.asarray(t * t * (3 - 2 * t), dtype=np.float32)

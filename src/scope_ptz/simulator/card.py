@@ -1,4 +1,4 @@
-"""The card of a scene, which describes its contents and how it was made, for the terminal and as a Markdown page."""
+"""Scene cards, which describe a scene's contents and production, for the terminal or as a Markdown page."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from scope_ptz.simulator.pack import Scene
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A section of a card.
+    """A section of a scene card.
 
     Attributes:
         title: The heading.
-        lines: Pairs of a name, which may be empty, and a text.
+        lines: Pairs of a label, which may be empty, and a text.
     """
 
     title: str
@@ -26,23 +26,23 @@ class Paragraph:
 
 
 def folder_bytes(folder: Path) -> int:
-    """Return the total size of the files in a folder."""
+    """Return the total size of the files in a folder, in bytes."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
 def megabytes(size: int) -> str:
-    """Return a number of bytes as text in megabytes."""
+    """Format a number of bytes in megabytes."""
     return f"{size / 1e6:.1f} MB"
 
 
 def card(scene: Scene) -> Iterator[Paragraph]:
-    """Yield the paragraphs of a scene's card."""
+    """Yield the sections of a scene's card."""
     file = scene.file
     for viewpoint in file.viewpoints:
         presets = [p for p in file.presets if p.viewpoint == viewpoint.name]
         yield Paragraph(f"Viewpoint {viewpoint.name}", (("", _place(scene, viewpoint)), *(_preset(scene, p) for p in presets)))
     if file.captured is not None:
-        yield Paragraph("Captured", tuple(_capture(scene, file.captured)))
+        yield Paragraph("Captured", tuple(_capture_details(scene, file.captured)))
         yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
         return
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
@@ -56,12 +56,12 @@ def card(scene: Scene) -> Iterator[Paragraph]:
     movers = tuple((a.name, _presence(a.waypoints[0][0], a.waypoints[-1][0], a.period_s)) for a in file.actors)
     yield Paragraph("Moving objects", movers or (("", "none"),))
     yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "none"),))
-    yield Paragraph("How it was made", tuple(_making(scene)))
+    yield Paragraph("How it was made", tuple(_production(scene)))
     yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
 
 
 def markdown(scene: Scene, picture: str | None) -> str:
-    """Return the card as a Markdown page.
+    """Return a scene's card as a Markdown page.
 
     Args:
         scene: The scene.
@@ -92,12 +92,12 @@ def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
 
 
 def capture_summary(captured: CapturedFrom) -> str:
-    """Return in one sentence where a captured scene comes from."""
+    """Return a short description of where a captured scene comes from."""
     unseen = f"{captured.unseen_share:.1%} of the camera's range was not captured" if captured.unseen_share else "fully captured"
     return f"from {captured.camera} at {captured.captured_at}; {unseen}; no ground truth"
 
 
-def _capture(scene: Scene, captured: CapturedFrom) -> Iterator[tuple[str, str]]:
+def _capture_details(scene: Scene, captured: CapturedFrom) -> Iterator[tuple[str, str]]:
     yield "", capture_summary(captured)
     (low_pan, high_pan), (low_tilt, high_tilt), (low, high) = captured.pan_range_deg, captured.tilt_range_deg, captured.zoom_range
     yield "limits", f"pan {low_pan:g}° to {high_pan:g}°, tilt {low_tilt:g}° to {high_tilt:g}°, zoom {low:g}x to {high:g}x"
@@ -107,13 +107,13 @@ def _capture(scene: Scene, captured: CapturedFrom) -> Iterator[tuple[str, str]]:
 
 
 def _presence(start_s: float, end_s: float, period_s: float) -> str:
-    """Describe the times at which a moving object is in the scene."""
+    """Describe when a moving object is in the scene."""
     if round(start_s) == 0 and round(end_s) >= round(period_s):
         return "always in the scene"
     return f"in the scene from {start_s:.0f} to {end_s:.0f} s of every {period_s:.0f} s"
 
 
-def _making(scene: Scene) -> Iterator[tuple[str, str]]:
+def _production(scene: Scene) -> Iterator[tuple[str, str]]:
     yield (
         "",
         f"modelled in code (`scope scene build {scene.name}`) and rendered with Cycles in Blender {scene.file.blender_version}",

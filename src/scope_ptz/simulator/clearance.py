@@ -1,6 +1,6 @@
-"""Coarse bounds of the static world, which show quickly where nothing can hide an actor.
+"""Coarse bounds of the static world, which quickly show where nothing can hide an actor.
 
-Most of an actor is usually in front of everything else, so the exact test of each pixel is needed only in the remaining parts.
+Most of an actor is usually in front of everything else, so each pixel needs the exact test only in the remaining parts.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from scope_ptz.simulator.mapping.tiles import Place
 from scope_ptz.simulator.models import Band
 
 BLOCK_TEXELS = 4
-"""Side of the blocks of the depth layer for which bounds are stored."""
+"""Side of the depth-layer blocks for which bounds are stored."""
 
 REACH_BLOCKS = 3
-"""The bounds of a block also hold for this many blocks around it."""
+"""A block's bounds also hold for this many blocks around it."""
 
 FLAT_M = 0.05
-"""A surface up to this height above an actor's ground counts as ground, which never hides what stands on it."""
+"""A surface up to this height above the ground under an actor counts as ground, which never hides the actor."""
 
-MIN_CELL_PX = 4  # with smaller cells, the coarse test would take as long as the exact one
+MIN_CELL_PX = 4  # with smaller cells, the coarse test would take as long as the exact test
 
 TOLERANCE_M = 0.15
 TOLERANCE_FRACTION = 0.01
-"""Tolerance of every occlusion test: an actor is hidden where the static world is nearer by more than this.
+"""Tolerance for every occlusion test: an actor is hidden where the static world is nearer by more than this.
 
-It is the sum of a distance in metres and a fraction of the static world's distance.
+The tolerance is the sum of a distance in metres and a fraction of the distance to the static world.
 """
 
 Floats = NDArray[np.float32]
@@ -39,7 +39,7 @@ Indices = NDArray[np.int64]
 
 
 class Clearance:
-    """Bounds of the distances and heights of the static world around each block of a viewpoint's depth layer.
+    """Bounds on the static world's distances and heights around each block of a viewpoint's depth layer.
 
     Args:
         codes: (H, W) distance codes of the depth layer.
@@ -66,7 +66,7 @@ class Clearance:
             around = cv2.copyMakeBorder(bounds, 0, 0, border, border, cv2.BORDER_WRAP)
             bounds[...] = spread(around, kernel)[:, border:-border]
 
-    def doubtful(
+    def find_uncertain_part(
         self,
         projection: Projection,
         part: Place,
@@ -77,9 +77,9 @@ class Clearance:
         far_m: float,
         ground_m: float,
     ) -> Place | None:
-        """Return the smallest rectangle, relative to a part of a view, outside of which nothing can hide an actor.
+        """Return the smallest rectangle, relative to a part of a view, outside which nothing can hide an actor.
 
-        Its shadow may be drawn over objects that are farther away than the actor, as if it fell on them.
+        The actor's shadow may be drawn over objects that are farther away than the actor, as if it fell on them.
 
         Args:
             projection: The view.
@@ -87,13 +87,13 @@ class Clearance:
             needed: (rows, columns) mask of the part, 0 where the actor is not drawn.
             steepest_rise: Largest vertical component, upwards or downwards, of the unit vectors through the part.
             reach_px: Radius around a pixel from which the exact test takes distances.
-            far_m: Distance of the farthest point of the actor, apart from its shadow on the ground.
+            far_m: Distance to the actor's farthest point, not counting its shadow on the ground.
             ground_m: Height of the ground under the actor, relative to the optical centre.
 
         Returns:
             The rectangle, or None if the whole actor is visible.
         """
-        # The bounds of the block at the centre of a cell hold for all of its pixels. Steep pixels span more pan.
+        # The bounds of the block at a cell's centre hold for all pixels in the cell. Steep pixels span more pan.
         texel_px = projection.pixels_per_radian * 2 * math.pi / self._width * math.sqrt(max(0.0, 1 - steepest_rise**2))
         cell_px = int(2 * ((REACH_BLOCKS * BLOCK_TEXELS - 1) * texel_px - reach_px))
         if cell_px < MIN_CELL_PX:
@@ -110,7 +110,7 @@ class Clearance:
         return (slice(top, top + height), slice(left, left + width)) if width else None
 
     def _blocks(self, projection: Projection, y: Floats64, x: Floats64) -> tuple[Indices, Indices]:
-        """Return the rows and columns of the blocks at all pairs of a row and a column of a view."""
+        """Return the rows and columns of the blocks at every combination of a row and a column of a view."""
         points = np.stack(np.meshgrid(x / projection.width, y / projection.height), axis=-1)
         pan_deg, tilt_deg = pan_tilt_deg(projection.directions(points))
         rows, columns = self._nearest_m.shape

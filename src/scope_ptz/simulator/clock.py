@@ -12,7 +12,7 @@ import anyio.lowlevel
 from scope_ptz.errors import InputError
 
 MIN_SPEED, MAX_SPEED = 0.1, 10.0
-"""Minimum and maximum speed of scene time, relative to the time of the motors."""
+"""Minimum and maximum speed of scene time relative to motor time."""
 
 MAX_TIME_S = 86_400.0
 """The latest scene time to which a clock can be set, in seconds (one day)."""
@@ -39,11 +39,11 @@ def check_speed(speed: float) -> None:
 
 
 class SceneClock:
-    """A clock in seconds of scene time.
+    """A clock that measures scene time in seconds.
 
     In an evaluation, sleeping advances the clock instantly. In real-time mode, the clock follows the wall clock.
 
-    Viewers can pause scene time, seek, and change the speed. The motors of the camera are not affected.
+    Viewers can pause scene time, seek, and change the speed. The camera's motors are not affected.
     """
 
     def __init__(self, start_s: float = 0.0, *, realtime: bool = False) -> None:
@@ -65,7 +65,7 @@ class SceneClock:
 
     @property
     def held(self) -> bool:
-        """Whether the clock is inside a ``hold`` context. A paused clock is not held: moves still take time then."""
+        """Whether the clock is inside a ``hold`` context. A paused clock is not held, so moves still take time."""
         return self._holds > 0
 
     @property
@@ -75,11 +75,11 @@ class SceneClock:
 
     @property
     def speed(self) -> float:
-        """The speed of scene time, relative to the time of the motors."""
+        """The speed of scene time relative to motor time."""
         return self._speed
 
     def elapsed_s(self) -> float:
-        """Return the time of the camera's motors: seconds since the clock was created, including the time while it was held."""
+        """Return the motor time: seconds since the clock was created, including the time while it was held."""
         return monotonic() - self._wall_start_s if self._realtime else self._slept_s
 
     async def sleep(self, seconds: float) -> None:
@@ -102,7 +102,7 @@ class SceneClock:
             self._continue()
 
     def play(self) -> None:
-        """Resume scene time after ``pause``. If it is not paused, the call has no effect."""
+        """Resume scene time after ``pause``. The call has no effect if scene time is not paused."""
         if not self._playing:
             self._playing = True
             self._continue()
@@ -114,7 +114,7 @@ class SceneClock:
             self._stop()
 
     def seek(self, time_s: float) -> None:
-        """Set the scene time, which may be earlier or later than the current one.
+        """Set the scene time, which may be earlier or later than the current time.
 
         Raises:
             InputError: The time is not between 0 s and one day.
@@ -123,7 +123,7 @@ class SceneClock:
         self._start_from(time_s, self._speed)
 
     def set_speed(self, speed: float) -> None:
-        """Change the speed of scene time from now on.
+        """Change the speed of scene time, starting now.
 
         Raises:
             InputError: The speed is not between 0.1 and 10.

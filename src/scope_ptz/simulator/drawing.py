@@ -22,7 +22,7 @@ from scope_ptz.simulator.sprites.choice import Aspect, WeightedSprite, warp_matr
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 LARGE_PX = 16_000
-"""In rectangles of more pixels than this, occlusion is computed at half resolution."""
+"""In rectangles with more pixels than this, occlusion is computed at half resolution."""
 
 MIN_SHRINK = 0.75
 """A sprite is shrunk before sampling, to prevent aliasing, if the view's pixel density is below this fraction of the sprite's."""
@@ -51,7 +51,7 @@ class ActorPatch:
 
 
 def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView) -> ActorPatch | None:
-    """Return the visible part of an actor in a view, or None if it is not visible."""
+    """Return the visible part of an actor in a view, or None if the actor is not visible."""
     choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
     cosine = float(actor.offset_m @ projection.directions((0.5, 0.5)) / np.linalg.norm(actor.offset_m))
     if math.degrees(math.acos(max(-1.0, min(1.0, cosine)))) > projection.max_off_axis_deg + choice.reach_deg(actor.offset_m):
@@ -89,8 +89,8 @@ def _remove_hidden(
     alpha: Mask,
     steepest_rise: float,
 ) -> None:
-    """Set to 0 the pixels of each layer's colour where the actor or its shadow is hidden."""
-    doubtful = viewpoint.clearance.doubtful(
+    """Set each layer's colour to 0 in the pixels where the actor or its shadow is hidden."""
+    uncertain = viewpoint.clearance.find_uncertain_part(
         projection,
         part,
         alpha,
@@ -99,14 +99,14 @@ def _remove_hidden(
         far_m=max(layer.farthest_m(viewpoint) for layer in layers),
         ground_m=float(actor.offset_m[2]),
     )
-    if doubtful is None:
+    if uncertain is None:
         return
-    alpha = alpha[doubtful]
-    (top, left), (height, width) = (span.start for span in doubtful), alpha.shape
+    alpha = alpha[uncertain]
+    (top, left), (height, width) = (span.start for span in uncertain), alpha.shape
     inner = slice(part[0].start + top, part[0].start + top + height), slice(part[1].start + left, part[1].start + left + width)
     masks = _visible_masks(viewpoint, projection, inner, actor, layers, alpha)
     for mask, colour in zip(masks, colours, strict=True):
-        colour[doubtful] = cv2.multiply(colour[doubtful], cv2.merge([mask] * 4), scale=1 / 255)
+        colour[uncertain] = cv2.multiply(colour[uncertain], cv2.merge([mask] * 4), scale=1 / 255)
 
 
 def _visible_masks(
@@ -114,7 +114,7 @@ def _visible_masks(
 ) -> list[Mask]:
     """Return, for each layer, a mask of the pixels in a part of a view: 255 where the actor or its shadow is not hidden.
 
-    Large parts are computed at half resolution and interpolated, so occlusion edges in them are soft and accurate to two pixels.
+    Large parts are computed at half resolution and interpolated, so their occlusion edges are soft and accurate to two pixels.
     """
     grid = Grid(projection, step_px(projection), part)
     rays, stride = grid.directions(), 2 if alpha.size > LARGE_PX else 1
@@ -132,12 +132,12 @@ def _visible_masks(
 
 
 def _visible_ground(drop: NDArray[np.float32], height_m: float, static_m: NDArray[np.float32]) -> Mask:
-    """Return a mask of the pixels where the static world is not nearer than the ground on which the actor's shadow falls.
+    """Return a mask of the pixels in which the static world is not nearer than the ground under the actor's shadow.
 
     Args:
         drop: (h, w) vertical components of the unit vectors through the pixels.
         height_m: Height of the ground relative to the optical centre.
-        static_m: (h, w) distances of the static world.
+        static_m: (h, w) distances to the static world.
     """
     # The distance to the ground is height / drop. Both are negative below the horizon, which reverses the comparison.
     reached = static_m * drop
@@ -151,10 +151,10 @@ class _Layer:
     Attributes:
         sheet: The actor's sheet.
         sprite: The sprite.
-        weight: Its weight in the blend of sprites, 0 to 1.
-        scale: How many times larger the actor appears than in the sprite.
+        weight: The sprite's weight in the blend of sprites, from 0 to 1.
+        scale: The actor's apparent size relative to its size in the sprite.
         density: The sprite's pixels per radian at the size at which it is drawn.
-        to_sprite: (3, 3) homography from directions to pixels of the sprite.
+        to_sprite: (3, 3) homography from directions to sprite pixels.
         box: Rectangle (left, top, width, height) of the sprite's pixels that are not empty.
     """
 
@@ -174,9 +174,9 @@ class _Layer:
         # In the image plane of a camera aimed at the actor's ground point, the sprite is scaled and warped about that point.
         plane = np.eye(3)
         plane[:2, :2] = np.linalg.inv(scale * warp_matrix(actor.actor, weighted.aspect, now))
-        looking_now, looking_then = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (now_m, then_m))
+        axes_now, axes_then = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (now_m, then_m))
         pixels = np.array([[focal_px, 0.0, sprite.width / 2], [0.0, -focal_px, sprite.height / 2], [0.0, 0.0, 1.0]])
-        to_sprite = pixels @ camera_axes(sprite.pan_deg, sprite.tilt_deg) @ looking_then.T @ plane @ looking_now
+        to_sprite = pixels @ camera_axes(sprite.pan_deg, sprite.tilt_deg) @ axes_then.T @ plane @ axes_now
         box = viewpoint.sprites.box(actor.sheet, sprite)
         return cls(actor.sheet, sprite, weighted.weight, scale, focal_px * scale, to_sprite, box)
 
@@ -213,20 +213,20 @@ class _Layer:
         return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
 
     def farthest_m(self, viewpoint: Viewpoint) -> float:
-        """Return the distance of the farthest point of the actor, apart from its shadow."""
-        return float(viewpoint.depth_metres[viewpoint.sprites.farthest(self.sheet, self.sprite)]) / self.scale
+        """Return the distance to the actor's farthest point, not counting its shadow."""
+        return float(viewpoint.depth_metres[viewpoint.sprites.farthest_code(self.sheet, self.sprite)]) / self.scale
 
     def visible_mask(
         self, viewpoint: Viewpoint, where: NDArray[np.float32], static_m: NDArray[np.float32], on_ground: Mask
     ) -> Mask:
         """Return a mask of the pixels where the actor or its shadow is not hidden."""
         codes = cv2.remap(viewpoint.sprites.distances(self.sheet, self.sprite), where, None, cv2.INTER_NEAREST, borderValue=0.0)
-        before = np.take(viewpoint.depth_metres, codes) <= static_m * np.float32(self.scale)
-        return np.where(codes > 0, np.where(before, _VISIBLE, _HIDDEN), on_ground)
+        in_front = np.take(viewpoint.depth_metres, codes) <= static_m * np.float32(self.scale)
+        return np.where(codes > 0, np.where(in_front, _VISIBLE, _HIDDEN), on_ground)
 
 
 def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
-    """Return the rows and columns of a view that the layers cover; None if all are outside."""
+    """Return the rows and columns of a view that the layers cover; None if all layers are outside the view."""
     rays = np.stack([layer.outline() for layer in layers])
     outlines = projection.points(rays)
     if np.isnan(outlines).any():  # partly behind the camera

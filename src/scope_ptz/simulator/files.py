@@ -1,4 +1,4 @@
-"""Read files of packs, which may come from untrusted sources."""
+"""Read files from packs, which may come from untrusted sources."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.errors import PackError
 
 
 def read_regular_file(path: Path) -> bytes:
-    """Return the content of a file of a pack.
+    """Return the contents of a file in a pack.
 
     Raises:
         OSError: The file is missing or cannot be read.

@@ -19,7 +19,7 @@ from PIL import Image
 from scope_ptz.errors import PackError
 
 Image.MAX_IMAGE_PIXELS = None
-"""Panoramas exceed Pillow's limit against decompression bombs. Every file is verified by checksum before it is decoded."""
+"""Panoramas exceed Pillow's limit against decompression bombs. Every file's checksum is verified before it is decoded."""
 
 COLOUR_SUFFIXES = (".webp", ".avif", ".png")
 NUMBER_SUFFIXES = (".png", ".webp")
@@ -35,10 +35,10 @@ def read_colour(path: Path) -> NDArray[np.uint8]:
 
 
 def _read_avif(path: Path) -> NDArray[np.uint8] | None:
-    """Return the pixels of an AVIF file without Pillow's copy of them, or None if this version of Pillow does not support that.
+    """Decode an AVIF file without copying its pixels through Pillow. Return None if this version of Pillow does not support that.
 
-    Pillow copies the decoder's buffer into an image, and NumPy copies that image. A panorama needs half the time and 100 MB less
-    when NumPy uses the decoder's buffer.
+    Pillow copies the decoder's buffer into an image, and NumPy copies that image. When NumPy uses the decoder's buffer directly,
+    decoding a panorama takes half the time and 100 MB less memory.
     """
     with _open_picture(path) as image:
         decoder: Any = getattr(image, "_decoder", None)
@@ -70,10 +70,10 @@ def read_ids(path: Path) -> NDArray[np.uint16]:
 
 
 def read_coded_numbers(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
-    """Return numbers as stored in the file: (H, W, 3) byte channels of a WebP file, or the (H, W) numbers of a PNG file.
+    """Return numbers as stored in the file: (H, W, 3) byte channels from a WebP file, or (H, W) numbers from a PNG file.
 
-    ``decode_numbers`` converts any part of the array to numbers, so that the largest layers of a pack need not be in memory twice.
-    OpenCV needs half the time and less than half the memory of Pillow, which decodes a still WebP picture as an animation.
+    ``decode_numbers`` converts any part of the array to numbers, so that a pack's largest layers need not be in memory twice.
+    OpenCV takes half the time and less than half the memory of Pillow, which decodes a still WebP picture as an animation.
     """
     if path.suffix != ".webp":
         with _open(path, NUMBER_SUFFIXES) as image:
@@ -81,15 +81,15 @@ def read_coded_numbers(path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     try:
         content = np.fromfile(path, np.uint8)
     except OSError as error:
-        raise _undecodable(path, error.strerror) from error
+        raise _decoding_error(path, error.strerror) from error
     channels = cv2.imdecode(content, cv2.IMREAD_COLOR_RGB) if content.size else None
     if channels is None:
-        raise _undecodable(path, "it is not a WebP picture, or it is truncated")
+        raise _decoding_error(path, "it is not a WebP picture, or it is truncated")
     return np.asarray(channels)
 
 
 def decode_numbers(coded: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """Return the (H, W) numbers of coded rows."""
+    """Decode rows to (H, W) numbers."""
     if coded.ndim == 2:
         return coded.astype(np.uint16, copy=False)
     # Red is the high byte and green the low byte, so (green, red) pairs are little-endian 16-bit numbers.
@@ -138,13 +138,13 @@ def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
 
 @contextmanager
 def _open_picture(path: Path) -> Iterator[Image.Image]:
-    """Yield the picture in a file before its pixels are decoded. Errors inside the context are reported as a damaged file."""
+    """Open the picture in a file without decoding its pixels. Errors inside the context are reported as a damaged file."""
     try:
         with path.open("rb") as file:
             yield Image.open(file)
     except (OSError, ValueError) as error:
-        raise _undecodable(path, error) from error
+        raise _decoding_error(path, error) from error
 
 
-def _undecodable(path: Path, reason: object) -> PackError:
+def _decoding_error(path: Path, reason: object) -> PackError:
     return PackError(f"{path} cannot be decoded ({reason}). Restore the pack or bake it again.")

@@ -10,19 +10,19 @@ from scope_ptz.simulator.pack import Scene, find_scenes, load_scene, variation_o
 from scope_ptz.simulator.recent import RecentViewpoints
 
 OPEN_VIEWPOINTS = 2
-"""Number of viewpoints whose layers stay in memory. Each takes several hundred megabytes once views of it are rendered."""
+"""Number of viewpoints whose layers stay in memory. Each takes several hundred megabytes once views have been rendered."""
 
 
 class Library:
     """Scenes by name, such as ``highway-works``, or ``highway-works-v7`` for a variation.
 
-    Variations share the layers of their scene. Calling the library with a name raises ``UnknownNameError`` when the scene does
-    not exist and ``PackError`` when its files are damaged.
+    Variations share their scene's layers. Calling the library with a name raises ``UnknownNameError`` if the scene does not exist,
+    and ``PackError`` if its files are damaged.
 
     Args:
-        search: Extra folders of scenes, searched before the built-in ones.
+        search: Additional scene folders, searched before the built-in ones.
         open_viewpoints: Number of viewpoints, across all scenes, whose layers stay in memory.
-        tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
+        tile_bytes: Memory limit for each viewpoint's tiles; see ``Scene``.
     """
 
     def __init__(self, search: Iterable[Path] = (), open_viewpoints: int = OPEN_VIEWPOINTS, tile_bytes: int | None = None) -> None:
@@ -41,4 +41,4 @@ class Library:
         scene, number = variation_of(name)
         if number is None or name in find_scenes(self._search):
             return load_scene(name, self._search, self._recent, self._tile_bytes)
-        return self(scene).varied(number)
+        return self(scene).create_variation(number)

@@ -26,7 +26,7 @@ FORMAT_VERSION = 1
 """Version of the pack format. It increases when older programs could misread a pack."""
 
 INJECTED_FROM = 60000
-"""First instance number for objects injected at run time. A bake uses only smaller numbers."""
+"""First instance number for objects that are injected at run time. A bake uses only smaller numbers."""
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vec3 = tuple[Number, Number, Number]
@@ -86,9 +86,9 @@ class SceneViewpoint(Model):
 
 
 class SceneActor(Model):
-    """A moving object. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines; the path repeats every ``period_s``.
+    """A moving object. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines. The path repeats every ``period_s``.
 
-    The actor is in the scene between the times of its first and last waypoint. Path time begins at scene time ``delay_s``.
+    The actor is in the scene from the time of its first waypoint to that of its last. Path time begins at scene time ``delay_s``.
     """
 
     id: str
@@ -103,11 +103,11 @@ class SceneActor(Model):
 
 
 class CapturedFrom(Model):
-    """The camera that a scene was captured from. Such a scene has pictures, and no ground truth.
+    """The camera from which a scene was captured. Captured scenes have pictures, but no ground truth.
 
     Attributes:
         camera: Name of the camera.
-        captured_at: The time at which the capture began (ISO 8601, UTC).
+        captured_at: When the capture began (ISO 8601, UTC).
         pan_range_deg: Pan limits of the captured part.
         tilt_range_deg: Tilt limits of the captured part.
         zoom_range: Limits of the magnification.
@@ -115,7 +115,7 @@ class CapturedFrom(Model):
         zoom_table: Rows of magnification and horizontal field of view in degrees, widest first.
         frame_width: Width of the camera's frames in pixels.
         frame_height: Height of the camera's frames in pixels.
-        unseen_share: Fraction of the reachable part of the sphere that no frame shows, or that the rules of the site hide.
+        unseen_share: Fraction of the reachable part of the sphere that no frame shows or that the site's rules mask out.
     """
 
     camera: str
@@ -136,7 +136,7 @@ class CapturedFrom(Model):
 
     @property
     def limits(self) -> Limits:
-        """The camera's limits of motion in the captured part."""
+        """The camera's motion limits in the captured part."""
         return Limits(*self.pan_range_deg, *self.tilt_range_deg, *self.zoom_range, pan_endless=self.pan_endless)
 
     @property
@@ -146,7 +146,7 @@ class CapturedFrom(Model):
 
 
 class SceneFile(Model):
-    """The content of ``scene.json``.
+    """The contents of ``scene.json``.
 
     ``start_s`` is the scene time at which sessions start by default. ``captured`` is None unless the scene was captured from a
     camera.
@@ -169,17 +169,17 @@ class SceneFile(Model):
 
     @property
     def limits(self) -> Limits:
-        """Limits of motion of a camera in this scene."""
+        """Motion limits for a camera in this scene."""
         return Limits() if self.captured is None else self.captured.limits
 
     @property
     def optics(self) -> Optics:
-        """Fields of view of a camera in this scene."""
+        """Fields of view for a camera in this scene."""
         return AXIS_M5075_G if self.captured is None else self.captured.optics
 
 
 class Layer(Model):
-    """A file of a pack: its path relative to the viewpoint folder, SHA-256 in hexadecimal and size in pixels."""
+    """A file in a pack: its path relative to the viewpoint folder, its SHA-256 in hexadecimal and its size in pixels."""
 
     file: str = Field(pattern=r"^[a-z0-9][a-z0-9./-]*$")
     sha256: str = Field(pattern=r"^[0-9a-f]{64}$")
@@ -237,11 +237,11 @@ class Extent(Model):
 
 
 class Sprite(Model):
-    """One picture of an actor at one point of its path.
+    """One picture of an actor at one point on its path.
 
-    ``left``, ``top``, ``width`` and ``height`` (pixels) locate it in the actor's sheet. It shows the perspective view that is
-    aimed at ``pan_deg``/``tilt_deg`` with ``hfov_deg`` across ``width``. ``position_m`` is the actor's ground point in the
-    picture. ``phase`` is the phase of a walker's stride, 0 to 1; it is 0 for everything else.
+    ``left``, ``top``, ``width`` and ``height`` (pixels) locate the picture on the actor's sheet. It shows the perspective view that
+    is aimed at ``pan_deg``/``tilt_deg`` with ``hfov_deg`` across ``width``. ``position_m`` is the actor's ground point in the
+    picture. ``phase`` is the phase of a walker's stride, from 0 to 1; it is 0 for everything else.
     """
 
     path_s: Number
@@ -257,11 +257,11 @@ class Sprite(Model):
 
 
 class ActorSheet(Model):
-    """The sprites of an actor from this viewpoint, in order of time along the path.
+    """An actor's sprites from this viewpoint, in order of time along the path.
 
     ``colour`` contains straight RGBA, including the shadow (black with alpha). ``depth`` contains the distances of the actor's own
     pixels, coded as in the depth layer; it is 0 where the sheet shows only shadow or nothing. Walkers have ``stride_m``, the
-    distance covered in one gait cycle: several sprites, one per phase, then share each ``path_s``.
+    distance covered in one gait cycle; several sprites, one per phase, then share each ``path_s``.
     """
 
     number: int
@@ -272,10 +272,10 @@ class ActorSheet(Model):
 
 
 class Manifest(Model):
-    """The content of a viewpoint pack's ``manifest.json``.
+    """The contents of a viewpoint pack's ``manifest.json``.
 
-    ``seen`` is a mask of the panorama of a captured scene: 255 where it shows what the camera saw, and 0 elsewhere. It is None for
-    a rendered scene.
+    ``seen`` is a mask for the panorama of a captured scene: 255 where the panorama shows what the camera saw, and 0 elsewhere. It
+    is None for a rendered scene.
     """
 
     format: Literal[1] = 1

@@ -1,4 +1,4 @@
-"""Distances of the static world in a view, with edges as sharp as those of the instance numbers. They determine occlusion."""
+"""Distances to the static world in a view, with edges as sharp as those of the instance numbers. They determine occlusion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.simulator.reproject import view_map
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 SEARCH_RADII_TEXELS = (1.0, 2.0)
-"""Radii around a pixel, in texels of the depth layer, at which a distance measured on the correct instance is searched for."""
+"""Radii around a pixel, in texels of the depth layer, at which to search for a distance measured on the correct instance."""
 
 _NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
@@ -27,10 +27,10 @@ Positions = NDArray[Any]
 def outlined_depth_view(
     viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16], part: Place | None = None
 ) -> NDArray[np.float32]:
-    """Return the distances of ``depth_view`` with edges as sharp as in ``numbers``, the view's (H, W) instance numbers.
+    """Return the distances from ``depth_view`` with edges as sharp as in ``numbers``, the view's (H, W) instance numbers.
 
-    If the distance of a pixel was measured on a different instance, it is replaced with the distance of a nearby pixel that was
-    measured on the correct instance.
+    If a pixel's distance was measured on a different instance, it is replaced with the distance of a nearby pixel that was measured
+    on the correct instance.
 
     Args:
         viewpoint: The viewpoint.
@@ -39,15 +39,17 @@ def outlined_depth_view(
         part: The rows and columns that are needed; the default is the whole view.
     """
     whole = (slice(0, projection.height), slice(0, projection.width))
-    around, inner = _with_margin(viewpoint, projection, part or whole)
+    around, inner = _add_margin(viewpoint, projection, part or whole)
     where, metres = _stored_depth(viewpoint, projection, around)
-    return _sharpened(metres, viewpoint.owner_atlas.sample(where), numbers[around], None, _texel_px(viewpoint, projection))[inner]
+    return _sharpen_edges(metres, viewpoint.owner_atlas.sample(where), numbers[around], None, _texel_px(viewpoint, projection))[
+        inner
+    ]
 
 
 def outlined_depth_part(
     viewpoint: Viewpoint, projection: Projection, part: Place, needed: NDArray[np.uint8], stride: int = 1
 ) -> NDArray[np.float32]:
-    """Return the distances of ``outlined_depth_view`` for a part of a view. Only pixels in and near the part are read.
+    """Return the distances from ``outlined_depth_view`` for a part of a view. Only pixels in and near the part are read.
 
     Args:
         viewpoint: The viewpoint.
@@ -56,16 +58,16 @@ def outlined_depth_part(
         needed: (rows, columns) mask of the part. Edges are sharpened only where it is not 0.
         stride: Return only every ``stride``-th row and column of the part. Edges are then accurate to this many pixels.
     """
-    around, inner = _with_margin(viewpoint, projection, part, stride)
+    around, inner = _add_margin(viewpoint, projection, part, stride)
     every = slice(None, None, stride)
     where, metres = _stored_depth(viewpoint, projection, around, stride)
     ids = viewpoint.id_atlas
-    # Codes are read faster than numbers. Only small instances share a code.
+    # Reading codes is faster than reading numbers. Only small instances share a code.
     codes = ids.sample_codes(view_map(viewpoint, ids, projection, around)[every, every])
     mask = np.zeros(metres.shape, bool)
     mask[inner] = needed[every, every]
     texel_px = _texel_px(viewpoint, projection) / stride
-    return _sharpened(metres, viewpoint.owner_atlas.sample_codes(where), codes, mask, texel_px)[inner]
+    return _sharpen_edges(metres, viewpoint.owner_atlas.sample_codes(where), codes, mask, texel_px)[inner]
 
 
 def sharpening_reach_px(viewpoint: Viewpoint, projection: Projection) -> int:
@@ -73,7 +75,7 @@ def sharpening_reach_px(viewpoint: Viewpoint, projection: Projection) -> int:
     return math.ceil(max(SEARCH_RADII_TEXELS) * _texel_px(viewpoint, projection)) + 1
 
 
-def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place, stride: int = 1) -> tuple[Place, Place]:
+def _add_margin(viewpoint: Viewpoint, projection: Projection, part: Place, stride: int = 1) -> tuple[Place, Place]:
     """Return a part of a view enlarged by the margin that edge sharpening reads, and the position of the part inside it.
 
     The position counts only every ``stride``-th row and column.
@@ -93,7 +95,7 @@ def _with_margin(viewpoint: Viewpoint, projection: Projection, part: Place, stri
 def _stored_depth(
     viewpoint: Viewpoint, projection: Projection, part: Place, stride: int = 1
 ) -> tuple[Positions, NDArray[np.float32]]:
-    """Return positions on the sheet of the depth layer, rounded to whole pixels, and the distances there."""
+    """Return positions on the depth layer's sheet, rounded to whole pixels, and the distances there."""
     where = view_map(viewpoint, viewpoint.depth_atlas, projection, part)[::stride, ::stride]
     # The owners of the distances are read at the same positions, so positions are rounded only once.
     where, _ = cv2.convertMaps(where, None, cv2.CV_16SC2, nninterpolation=True)
@@ -101,17 +103,17 @@ def _stored_depth(
     return where, np.take(viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST))
 
 
-def _sharpened(
+def _sharpen_edges(
     metres: NDArray[np.float32], owners: Numbers, numbers: Numbers, needed: NDArray[np.bool_] | None, texel_px: float
 ) -> NDArray[np.float32]:
     """Return distances with edges as sharp as in ``numbers``. All arrays have the same shape.
 
     Args:
         metres: Distances.
-        owners: The instances on which they were measured.
+        owners: The instances on which the distances were measured.
         numbers: The instances that the pixels show.
-        needed: Mask of the pixels to correct; the default is all.
-        texel_px: Size of a texel of the depth layer in pixels.
+        needed: Mask of the pixels to correct; by default, all pixels.
+        texel_px: Size of a depth-layer texel in pixels.
     """
     same = owners == numbers
     wrong = ~same if needed is None else needed & ~same
@@ -142,5 +144,5 @@ def _sharpened(
 
 
 def _texel_px(viewpoint: Viewpoint, projection: Projection) -> float:
-    """Return the size of a texel of the depth layer in pixels of a view, at least 1."""
+    """Return the size of a depth-layer texel in view pixels, at least 1."""
     return max(1.0, projection.pixels_per_radian / (viewpoint.manifest.depth.width / (2 * math.pi)))

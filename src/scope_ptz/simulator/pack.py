@@ -22,9 +22,9 @@ from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 
 
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
-    """Return the folder of each scene by name: folders with a ``scene.json`` in ``search`` and in the package.
+    """Return the scene folders by scene name: the folders with a ``scene.json`` in ``search`` and in the package.
 
-    If several folders have the same name, the first is returned. Files are not opened, so damaged scenes are also listed.
+    If several folders have the same name, the first one is used. Files are not opened, so damaged scenes are also listed.
     """
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
@@ -58,10 +58,10 @@ def load_scene(
 
     Args:
         name: Name of the scene or variation.
-        search: Extra folders of scenes, searched before the built-in ones.
+        search: Additional scene folders, searched before the built-in ones.
         recent: Limits how many viewpoints stay in memory; see ``Scene``.
-        tile_bytes: Limits the memory of each viewpoint's tiles; see ``Scene``.
-        picture_cache: Cache on disk for decoded pictures; see ``Scene``.
+        tile_bytes: Memory limit for each viewpoint's tiles; see ``Scene``.
+        picture_cache: On-disk cache for decoded pictures; see ``Scene``.
 
     Raises:
         UnknownNameError: The scene does not exist.
@@ -73,7 +73,7 @@ def load_scene(
     scene, number = variation_of(name)
     if number is None or scene not in folders:
         raise UnknownNameError("scene", name, folders)
-    return Scene(folders[scene], recent, tile_bytes, picture_cache).varied(number)
+    return Scene(folders[scene], recent, tile_bytes, picture_cache).create_variation(number)
 
 
 def variation_name(scene: str, number: int) -> str:
@@ -82,7 +82,7 @@ def variation_name(scene: str, number: int) -> str:
 
 
 def variation_of(name: str) -> tuple[str, int | None]:
-    """Split the name of a variation into scene and number; the number is None for other names."""
+    """Split a variation's name into scene name and number. For other names, the number is None."""
     varied = _VARIATION_NAME.fullmatch(name)
     return (name, None) if varied is None else (varied["scene"], int(varied["number"]))
 
@@ -91,18 +91,20 @@ _VARIATION_NAME = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 
 
 class Scene:
-    """A scene folder. The instance table is read immediately, viewpoints on first use. Safe to share between threads and cameras.
+    """A scene folder. Safe to share between threads and cameras.
+
+    The instance table is read immediately, and viewpoints are read on first use.
 
     Attributes:
-        variation: Number of the variation, None for the scene itself.
+        variation: Number of the variation; None for the scene itself.
         held: Objects that move in the scene but stand still in this variation.
 
     Args:
         folder: The scene folder.
         recent: Releases viewpoints if too many are open. Without it, every opened viewpoint stays in memory.
-        tile_bytes: Limit on the memory of each viewpoint's tiles. Beyond it, the least recently used tiles are released and read
-            again when they are needed. Without it, all tiles stay in memory.
-        picture_cache: Cache on disk for decoded pictures, which other processes can use. Ignored if ``tile_bytes`` is given.
+        tile_bytes: Memory limit for each viewpoint's tiles. Beyond it, the least recently used tiles are released and read again
+            when they are needed. Without a limit, all tiles stay in memory.
+        picture_cache: On-disk cache for decoded pictures, which other processes can use. Ignored if ``tile_bytes`` is given.
 
     Raises:
         PackError: A file is missing, damaged or inconsistent.
@@ -118,7 +120,7 @@ class Scene:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
-            raise PackError(f"{folder} contains the scene '{self.file.name}'. Rename the folder to the name of its scene.")
+            raise PackError(f"{folder} contains the scene '{self.file.name}'. Rename the folder to the scene's name.")
         self.name = self.file.name
         self.variation: int | None = None
         self.held: tuple[HeldObject, ...] = ()
@@ -127,8 +129,8 @@ class Scene:
         self._lock = RLock()
         _check_references(self.file, folder)
 
-    def varied(self, number: int) -> Scene:
-        """Return a variation of this scene, which shares the layers of its viewpoints.
+    def create_variation(self, number: int) -> Scene:
+        """Return a variation of this scene, which shares the layers of this scene's viewpoints.
 
         Raises:
             InputError: The scene was captured from a camera, so it has no objects that could vary.
@@ -143,6 +145,13 @@ class Scene:
         other._viewpoints, other._lock = self._viewpoints, self._lock
         return other
 
+    def end_threads(self) -> None:
+        """End the threads that help to render open viewpoints. The scene remains usable, and starts them again when needed."""
+        with self._lock:
+            opened = list(self._viewpoints.values())
+        for viewpoint in opened:
+            viewpoint.end_thread()
+
     @property
     def things(self) -> list[SceneInstance | SceneActor]:
         """All instances, followed by all actors."""
@@ -155,12 +164,12 @@ class Scene:
 
     @cached_property
     def by_id(self) -> Mapping[str, SceneInstance | SceneActor]:
-        """Instances and actors by their string id."""
+        """Instances and actors by their id."""
         return {thing.id: thing for thing in self.things}
 
     @cached_property
     def families(self) -> Mapping[str, frozenset[int]]:
-        """For each id, the numbers of the whole object that it belongs to: its parent and all of the parent's parts."""
+        """For each id, the numbers of the whole object that the id belongs to: the parent and all of its parts."""
         parents = {i.id: i.parent for i in self.file.instances}
 
         def root(name: str) -> str:
@@ -177,7 +186,7 @@ class Scene:
         return {name: frozenset(members[top]) for name, top in roots.items()}
 
     def viewpoint(self, name: str) -> Viewpoint:
-        """Return one viewpoint of the scene. It is opened once and shared.
+        """Return a viewpoint of the scene. Each viewpoint is opened once and shared.
 
         Raises:
             UnknownNameError: The scene has no such viewpoint.
@@ -203,7 +212,7 @@ class Scene:
 
 
 def _check_references(file: SceneFile, folder: Path) -> None:
-    """Check that references between the tables exist and that ids and numbers are unique."""
+    """Check that references between the tables are valid and that ids and numbers are unique."""
     objects: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
     ids, numbers = {t.id for t in objects}, {t.number for t in objects}
     viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}

@@ -1,4 +1,4 @@
-"""The picture files of a viewpoint folder, verified by checksum and size before use."""
+"""The picture files in a viewpoint folder. Their checksums and sizes are verified before use."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from scope_ptz.simulator.models import Layer
 
 
 class Pictures:
-    """Reads the layers of one folder without caching them. Raises ``PackError`` for files that do not match the manifest."""
+    """Reads the layers in one folder without caching them. Raises ``PackError`` for files that do not match the manifest."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def colour(self, layer: Layer) -> NDArray[np.uint8]:
         """Return a colour layer as (H, W, 3) RGB, or (H, W, 4) RGBA for sprite sheets."""
-        return self._check_size(layer, layers.read_colour(self.checked(layer)))
+        return self._check_size(layer, layers.read_colour(self.verify(layer)))
 
     def numbers(self, layer: Layer) -> NDArray[np.uint16]:
         """Return a layer of (H, W) instance numbers (0 = not annotated) or distance codes."""
-        return self._check_size(layer, layers.read_ids(self.checked(layer)))
+        return self._check_size(layer, layers.read_ids(self.verify(layer)))
 
     def coded_numbers(self, layer: Layer) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """Return a layer of numbers as stored in the file; ``layers.decode_numbers`` decodes any of its rows."""
-        return self._check_size(layer, layers.read_coded_numbers(self.checked(layer)))
+        """Return a number layer as stored in the file; ``layers.decode_numbers`` decodes any of its rows."""
+        return self._check_size(layer, layers.read_coded_numbers(self.verify(layer)))
 
-    def checked(self, layer: Layer) -> Path:
+    def verify(self, layer: Layer) -> Path:
         """Verify the checksum of a layer's file and return its path."""
         path = (self.folder / layer.file).resolve()
         if not path.is_relative_to(self.folder.resolve()):

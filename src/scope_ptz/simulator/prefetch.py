@@ -1,4 +1,4 @@
-"""Read the pictures of a viewpoint in the background, so that no later view has to wait for a file."""
+"""Read a viewpoint's pictures in the background, so that later views do not have to wait for files."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from scope_ptz.simulator.mapping.atlas_map import TILE_GAIN, panorama_density, s
 from scope_ptz.simulator.sheets.memory import release_free_memory
 from scope_ptz.simulator.viewpoint import Viewpoint
 
-SPRITE_MARGIN = 1.3  # enlarges the views of sprites to include actors at positions between two sprites
+SPRITE_MARGIN = 1.3  # factor that enlarges sprite views to include actors at positions between two sprites
 
 PAUSE_S = 0.002
-"""Pause between pictures in seconds. Without it, this thread would reacquire locks before a waiting view can get them."""
+"""Pause between pictures in seconds. Without it, this thread would reacquire locks before a waiting view could get them."""
 
 TILES_PER_RELEASE = 8  # after this many tiles, the memory of decoded pictures is returned to the operating system
 
@@ -25,14 +25,14 @@ DENSITY_STEPS = 64  # zoom steps, from the widest to the closest, at which the r
 class Prefetch:
     """Reads the pictures that live views of a viewpoint need, in a separate thread that starts immediately.
 
-    Afterwards, views of this width do not have to read files. If the memory for tiles is limited, tiles are not prefetched, but
-    read when they come into view.
+    Once it has ended, views with this width do not have to read files. If the memory for tiles is limited, tiles are not prefetched
+    but are read when they come into view.
 
     Args:
         viewpoint: The viewpoint.
         width: Width of the views in pixels.
-        optics: Fields of view of the camera by zoom.
-        limits: Limits of the camera. Only the zoom limits are used.
+        optics: The camera's fields of view by zoom.
+        limits: The camera's limits. Only the zoom limits are used.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Prefetch:
         self._cancelled = threading.Event()
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name=f"prefetch {viewpoint.name}", daemon=True)
-        # If the thread still decoded a picture during interpreter shutdown, the process would abort.
+        # If the thread were still decoding a picture during interpreter shutdown, the process would abort.
         atexit.register(self._stop_and_wait)
         self._thread.start()
 
@@ -71,7 +71,7 @@ class Prefetch:
         return self._cancelled.is_set()
 
     def cancel(self) -> None:
-        """Stop as soon as the picture that is being read is finished."""
+        """Stop as soon as the current picture has been read."""
         self._cancelled.set()
 
     def _stop_and_wait(self) -> None:
@@ -80,9 +80,9 @@ class Prefetch:
 
     def _run(self) -> None:
         try:
-            # What takes the most memory to decode comes first, when little else is in memory.
+            # The pictures that need the most memory to decode are read first, while little else is in memory.
             steps = [self._sprites, self._occlusion, self._panorama]
-            if self._viewpoint.colour_atlas.unlimited:
+            if self._viewpoint.colour_atlas.is_unlimited:
                 steps.append(self._tiles)
             for step in steps:
                 if self._cancelled.is_set():
@@ -119,7 +119,7 @@ class Prefetch:
             for sheet in viewpoint.manifest.actors
             for s in sheet.sprites
         }.values()
-        for index in sorted({showing.tile for sprite in sprites for showing in viewpoint.tiles.in_view(sprite)}):
+        for index in sorted({tile_in_view.tile for sprite in sprites for tile_in_view in viewpoint.tiles.in_view(sprite)}):
             if not self._cancelled.is_set():
                 viewpoint.id_atlas.ensure(1 + index)
                 time.sleep(PAUSE_S)
@@ -130,7 +130,7 @@ class Prefetch:
                 self._viewpoint.sprites.load([sheet])
 
     def _tiles(self) -> None:
-        """Read the tiles at all scales that zooming requires. Neighbours are read in succession, because blending uses both."""
+        """Read the tiles at all scales that zooming requires. Neighbouring tiles are read in turn, because blending uses both."""
         atlas, views = self._viewpoint.colour_atlas, self._viewpoint.tiles.views
         needed = [density for density in self._densities if density > TILE_GAIN * panorama_density(atlas)]
         for count, index in enumerate(sorted(range(len(views)), key=lambda i: views[i].pan_deg)):
@@ -143,7 +143,7 @@ class Prefetch:
 
 
 class Prefetches:
-    """The prefetches of one owner, who cancels them together. Safe to share between threads."""
+    """A group of prefetches that are cancelled together. Safe to share between threads."""
 
     def __init__(self) -> None:
         self._started: list[Prefetch] = []
@@ -153,7 +153,7 @@ class Prefetches:
     def start(self, start: Callable[[], Prefetch]) -> None:
         """Start a prefetch. If ``cancel`` has been called, the prefetch is cancelled immediately.
 
-        This call blocks while it reads the table of tiles. It may thus run in a thread whose caller is cancelled in the meantime.
+        The call blocks while the table of tiles is read, so it may run in a thread whose caller is cancelled in the meantime.
         """
         prefetch = start()
         with self._lock:
@@ -162,7 +162,7 @@ class Prefetches:
                 prefetch.cancel()
 
     def cancel(self) -> None:
-        """Stop reading pictures in the background, now and for prefetches that start later."""
+        """Cancel all prefetches, including those that start later."""
         with self._lock:
             self._cancelled = True
             for prefetch in self._started:

@@ -7,23 +7,24 @@ from collections.abc import MutableMapping
 from threading import Lock
 from typing import Any
 
-Opened = MutableMapping[str, Any]
-"""The open viewpoints of one scene, by name."""
+OpenViewpoints = MutableMapping[str, Any]
+"""One scene's open viewpoints, by name."""
 
 
 class RecentViewpoints:
-    """A least-recently-used limit on the open viewpoints of several scenes. Safe to share between threads.
+    """A limit on the number of open viewpoints across scenes. Safe to share between threads.
 
-    A released viewpoint stays alive while other objects refer to it. The next request reads it again.
+    The least recently used viewpoints are released first. A released viewpoint stays alive while other objects refer to it. The
+    next request reads it again.
     """
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
         self._lock = Lock()
-        self._used: OrderedDict[tuple[int, str], Opened] = OrderedDict()
+        self._used: OrderedDict[tuple[int, str], OpenViewpoints] = OrderedDict()
 
-    def mark_used(self, opened: Opened, name: str) -> None:
-        """Record that the viewpoint ``name`` was requested. Release the least recently used viewpoints beyond the limit."""
+    def mark_used(self, opened: OpenViewpoints, name: str) -> None:
+        """Record that the viewpoint ``name`` was requested, and release the least recently used viewpoints beyond the limit."""
         with self._lock:
             self._used[id(opened), name] = opened
             self._used.move_to_end((id(opened), name))

@@ -1,8 +1,8 @@
-"""Re-projection: compute any view from the stored pictures of a viewpoint, with one map and one look-up.
+"""Re-projection: compute any view from a viewpoint's stored pictures, with one map and one look-up.
 
-The map gives the position of each pixel of the view on the sheet of stored pictures. It is computed exactly at the nodes of a
-coarse grid and interpolated between them; the grid is fine enough to keep errors below ``grid.MAX_MAP_ERROR_PX``. The same pack and
-projection always give the same bytes.
+The map gives each view pixel's position on the sheet of stored pictures. It is computed exactly at the nodes of a coarse grid and
+interpolated between them; the grid is fine enough to keep errors below ``grid.MAX_MAP_ERROR_PX``. The same pack and projection
+always give the same bytes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scope_ptz.simulator.mapping.tiles import Place
 from scope_ptz.simulator.sheets.atlas import Atlas
 from scope_ptz.simulator.viewpoint import Viewpoint
 
-STRIP_PX = 256  # rows whose colours are sampled at once
+STRIP_PX = 256  # number of rows whose colours are sampled at once
 
 
 def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint8]:
@@ -28,8 +28,8 @@ def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint
 
 
 def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
-    """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet, rounded to 1/32 of a pixel of the sheet."""
-    # OpenCV looks up rounded positions in about two thirds of the time that exact ones take. Strips need less memory.
+    """Return the (H, W, 3) colours at (H, W, 2) positions on an atlas's sheet. Positions are rounded to 1/32 of a sheet pixel."""
+    # OpenCV looks up rounded positions in about two thirds of the time that exact positions take. Strips need less memory.
     image = np.empty((*positions.shape[:2], atlas.sheet.shape[2]), np.uint8)
     for top in range(0, len(positions), STRIP_PX):
         strip = slice(top, top + STRIP_PX)
@@ -59,7 +59,7 @@ def view_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, part: P
 def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
     """Return distances along directions, and the instances on which they were measured.
 
-    Both are those of the nearest texel of the depth layer.
+    Both are taken from the nearest texel of the depth layer.
 
     Args:
         viewpoint: The viewpoint.

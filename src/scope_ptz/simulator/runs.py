@@ -1,4 +1,4 @@
-"""Measurements of instances in an image, computed from runs: consecutive pixels of a row with the same instance number."""
+"""Measure instances in an image from runs: consecutive pixels in a row that have the same instance number."""
 
 from __future__ import annotations
 
@@ -65,9 +65,9 @@ def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
 
 
 class _Runs:
-    """``number``, ``row``, ``start`` and ``stop`` of every run with a number other than 0, sorted by number.
+    """The runs in an image whose number is not 0, sorted by number.
 
-    ``first`` is the index of each number's first run.
+    ``number``, ``row``, ``start`` and ``stop`` have one element for each run. ``first`` is the index of each number's first run.
     """
 
     def __init__(self, numbers: NDArray[np.uint16]) -> None:
@@ -100,7 +100,7 @@ class _Runs:
         return measured
 
     def nearest(self, x: Floats, y: Floats, measured: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """Return, for each number, the centre of its pixel nearest to a point (in pixels)."""
+        """Return, for each number, the centre of the pixel nearest to a point (in pixels)."""
         if not len(self.first):
             return np.zeros(0), np.zeros(0)
         near_x = np.clip(x[self.group], self.start + 0.5, self.stop - 0.5)

@@ -1,4 +1,4 @@
-"""A cache of the static world in repeated views. While a camera stands still, only moving actors have to be rendered."""
+"""A cache for the static world in repeated views. While a camera stands still, only moving actors have to be rendered."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
 
-MAX_PICTURES = 2  # cached pictures; one camera with two streams may need two sizes
+MAX_PICTURES = 2  # number of cached pictures; one camera with two streams may need two sizes
 
-MAX_REQUESTS = 4  # recent views that a new request is compared with, to detect a repeated view
+MAX_REQUESTS = 4  # number of recent views with which a new request is compared, to detect repeated views
 
 Picture = NDArray[np.uint8]
 
@@ -34,7 +34,7 @@ class StillViews:
 
         Args:
             projection: The view.
-            render: A function that renders the picture. It is called if the picture is not cached.
+            render: Renders the picture. Called if the picture is not cached.
         """
         picture = self._find(projection)
         if picture is None:
@@ -44,7 +44,7 @@ class StillViews:
         return picture.copy()
 
     def is_cached(self, projection: Projection) -> bool:
-        """Return whether the picture of a view is cached."""
+        """Return whether a view's picture is cached."""
         return self._find(projection) is not None
 
     def _find(self, projection: Projection) -> Picture | None:

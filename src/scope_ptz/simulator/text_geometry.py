@@ -1,4 +1,4 @@
-"""The geometry of a scene's texts as seen from one viewpoint. It does not depend on the camera's pose."""
+"""The geometry of a scene's texts as seen from one viewpoint, independent of the camera's pose."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ Flags = NDArray[np.bool_]
 
 _ACROSS, _ALONG = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
 CELLS = _ACROSS.size
-"""Number of cells in the grid over the letters of a text. The text is sampled at the centres of the cells."""
+"""Number of cells in the grid over a text's letters. The text is sampled at the cell centres."""
 
 
 class TextGeometry:
-    """The texts that face a viewpoint. The object does not refer to the viewpoint, so that the viewpoint's layers can be released.
+    """The texts that face a viewpoint. This object does not refer to the viewpoint, so that the viewpoint's layers can be released.
 
     Attributes:
         texts: The texts that face the viewpoint.
         angle_deg: The angle between each text's normal and the line of sight, below 90.
-        rays: (n, CELLS, 3) vectors in metres from the optical centre to the cells of each text.
-        capitals: (n, 2, 3) vectors to the bottom and the top of a capital letter of each text.
+        rays: (n, CELLS, 3) vectors in metres from the optical centre to each text's cells.
+        capitals: (n, 2, 3) vectors to the bottom and the top of a capital letter in each text.
     """
 
     def __init__(self, texts: Iterable[SceneText], families: Mapping[str, frozenset[int]], viewpoint: Viewpoint) -> None:
@@ -59,7 +59,7 @@ class TextGeometry:
         behind = np.isnan(points).all(axis=(1, 2))
         return np.flatnonzero(~beyond & ~behind)
 
-    def unhidden(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown: NDArray[np.uint16]) -> Flags:
+    def unhidden_mask(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown: NDArray[np.uint16]) -> Flags:
         """Return a mask of the cells that are not hidden.
 
         Instance numbers show whether another object hides a text. Distances show whether a part of the same object hides it, such
@@ -67,8 +67,8 @@ class TextGeometry:
 
         Args:
             viewpoint: The viewpoint that this geometry belongs to.
-            texts: (n,) index of the text of each cell.
-            cells: (n,) index of each cell in the grid of its text.
+            texts: (n,) index of the text that each cell belongs to.
+            cells: (n,) index of each cell in its text's grid.
             shown: (n,) instance number of the pixel that each cell falls into.
         """
         self._measure(viewpoint, np.unique(texts))
@@ -76,7 +76,7 @@ class TextGeometry:
         return np.asarray(same_object & ~(self._nearer[texts, cells] & (self._owners[texts, cells] == shown)))
 
     def _measure(self, viewpoint: Viewpoint, texts: Ints) -> None:
-        """Compare the cells of texts with the depth layer, once for each text."""
+        """Compare text cells with the depth layer, once for each text."""
         new = texts[~self._measured[texts]]
         if not new.size:
             return
@@ -91,7 +91,7 @@ _GEOMETRIES: WeakKeyDictionary[Viewpoint, WeakKeyDictionary[Scene, TextGeometry]
 
 
 def text_geometry(scene: Scene, viewpoint: Viewpoint) -> TextGeometry:
-    """Return the geometry of a scene's texts from a viewpoint. It is computed once."""
+    """Return the geometry of a scene's texts as seen from a viewpoint. The result is cached."""
     by_scene = _GEOMETRIES.setdefault(viewpoint, WeakKeyDictionary())
     if scene not in by_scene:
         by_scene[scene] = TextGeometry(scene.file.texts, scene.families, viewpoint)
@@ -99,7 +99,7 @@ def text_geometry(scene: Scene, viewpoint: Viewpoint) -> TextGeometry:
 
 
 def _axes(text: SceneText) -> Sequence[Floats]:
-    """Return the centre and the vectors right and up of a text."""
+    """Return a text's centre and its right and up vectors."""
     return tuple(np.array(vector, dtype=np.float64) for vector in (text.centre_m, text.right, text.up))
 
 

@@ -29,15 +29,15 @@ MIN_CAP_HEIGHT_PX = 14.0
 """Capitals of a legible text are at least this high in the frame."""
 
 MAX_READING_ANGLE_DEG = 55.0
-"""The line of sight to a legible text is at most this many degrees from the normal of the text."""
+"""The line of sight to a legible text is at most this many degrees from the text's normal."""
 
 MIN_UNHIDDEN_FRACTION = 0.9
 """At least this fraction of a legible text is inside the frame and not hidden."""
 
 UNOCCLUDED_FRACTION = 0.95
-"""An instance is not occluded if at least this fraction of its silhouette inside the frame is visible.
+"""An instance counts as unoccluded if at least this fraction of its silhouette inside the frame is visible.
 
-The tolerance is needed because boundaries are not measured exactly.
+The tolerance is needed because boundaries cannot be measured exactly.
 """
 
 BoxTuple = tuple[float, float, float, float]
@@ -46,15 +46,15 @@ BoxTuple = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """One instance or actor with at least one pixel in the view.
+    """An instance or actor with at least one pixel in the view.
 
     Attributes:
         box: Encloses the instance's own pixels.
-        point: A point on one of these pixels, near their centre.
-        visible_fraction: Visible solid angle divided by the solid angle of the whole silhouette.
+        point: A point on one of these pixels, near the centre of all of them.
+        visible_fraction: Visible solid angle, divided by the solid angle of the whole silhouette.
         pan_deg: Pan of the centre of the visible part.
         tilt_deg: Tilt of the centre of the visible part.
-        distance_m: Distance to the nearest point.
+        distance_m: Distance to the instance's nearest point.
         cut: Whether the instance extends beyond the frame.
         occluded: Whether another object hides part of the instance.
     """
@@ -77,7 +77,7 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class TextSighting:
-    """One text that lies at least partly in the frame, with the measurements that decide whether it is legible."""
+    """A text that lies at least partly in the frame, with the measurements that determine whether it is legible."""
 
     text: SceneText
     box: BoxTuple
@@ -96,7 +96,7 @@ class TextSighting:
 
 @dataclass(frozen=True, slots=True)
 class ViewTruth:
-    """Everything that has pixels in a view, nearest first. Answers may only use ``visible`` instances and ``legible`` texts."""
+    """The instances and texts in a view, nearest first. Answers may only use ``visible`` instances and ``legible`` texts."""
 
     sightings: tuple[Sighting, ...]
     texts: tuple[TextSighting, ...]
@@ -180,7 +180,7 @@ def _fraction_inside(points: NDArray[np.float64], projection: Projection) -> flo
 
 
 def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
-    """Return the sightings of texts that face the camera and are at least partly in the frame."""
+    """Return the texts that face the camera and are at least partly in the frame."""
     if not scene.file.texts:
         return ()
     geometry = text_geometry(scene, viewpoint)
@@ -194,7 +194,7 @@ def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: 
     size = np.array([numbers.shape[1], numbers.shape[0]])
     texts, cells = np.nonzero(inside)
     pixels = (points[inside] * size).astype(int)
-    unhidden = geometry.unhidden(viewpoint, near[texts], cells, numbers[pixels[:, 1], pixels[:, 0]])
+    unhidden = geometry.unhidden_mask(viewpoint, near[texts], cells, numbers[pixels[:, 1], pixels[:, 0]])
     count = np.bincount(texts[unhidden], minlength=len(near))
     low = np.where(inside[..., None], points, np.inf).min(axis=1)
     high = np.where(inside[..., None], points, -np.inf).max(axis=1)

@@ -22,19 +22,19 @@ MAX_START_S = 120.0  # latest scene time at which a variation starts, in seconds
 CLEARANCE_M = 3.0
 """Minimum distance in metres between a held object and the path of a moving one."""
 
-_HOLD_ATTEMPTS = 16  # maximum number of random positions that are tried to keep held objects clear of all paths
+_HOLD_ATTEMPTS = 16  # number of random positions to try for held objects, which must be clear of all paths
 _PERIOD_FACTORS = (1.0, 1.5, 2.0)
 _ZOOMS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.6)
 _CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5  # thresholds for the names of presets
-_POSES = 14  # random poses from which each new preset is chosen
+_POSES = 14  # number of random poses from which each new preset is chosen
 _WIDTH, _HEIGHT = 1280, 720
-_MIN_OBJECT_PX = 900.0  # minimum area in pixels of an object that counts for a preset
+_MIN_OBJECT_PX = 900.0  # minimum area, in pixels, for an object to be counted in a preset
 _DIRECTIONS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
 @dataclass(frozen=True, slots=True)
 class HeldObject:
-    """A moving object that is frozen at its position at one scene time."""
+    """A moving object that stays at its position at one scene time."""
 
     actor: SceneActor
     time_s: float
@@ -42,7 +42,7 @@ class HeldObject:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A changed scene file. The objects in ``held`` are listed in the file as instances instead of actors."""
+    """A modified scene file. It lists the objects in ``held`` as instances instead of actors."""
 
     file: SceneFile
     held: tuple[HeldObject, ...]
@@ -65,7 +65,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
         update={
             "start_s": start_s,
             "actors": moving,
-            "instances": [*file.instances, *map(_as_instance, held)],
+            "instances": [*file.instances, *map(_to_instance, held)],
             "presets": presets,
             "home_preset": next(p.name for p in presets if p.viewpoint == home),
         }
@@ -82,14 +82,14 @@ def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
 
 
 def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
-    """Randomly delay each group of companions, hold it at one point of its path, or remove it."""
+    """Randomly delay each group of companions, hold it at one point on its path, or remove it."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
         treatment = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
         if treatment == "held":
             others = [a for a in actors if a not in group]
-            placements = (_hold(group, rng) for _ in range(_HOLD_ATTEMPTS))
-            accepted = next((s for s in placements if all(_clear(h, others) for h in s)), None)
+            placements = (_hold_group(group, rng) for _ in range(_HOLD_ATTEMPTS))
+            accepted = next((s for s in placements if all(_is_clear_of(h, others) for h in s)), None)
             if accepted is not None:
                 held += accepted
                 continue
@@ -102,12 +102,12 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 
 def _period(actor: SceneActor, rng: random.Random) -> float:
     """Return a random period, at least as long as the original one. Actors that never leave the scene keep their period."""
-    rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
+    absence_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
     longer = rng.choice(_PERIOD_FACTORS)
-    return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
+    return actor.period_s if absence_s < 0.1 else round(actor.period_s * longer, 3)
 
 
-def _hold(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObject]:
+def _hold_group(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObject]:
     fraction = rng.uniform(0.15, 0.85)
     return [
         HeldObject(a, round(a.delay_s + a.waypoints[0][0] + fraction * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group
@@ -123,7 +123,7 @@ def _place(held: HeldObject) -> tuple[float, float, float, float]:
     return x, y, z, math.atan2(two[1] - one[1], two[2] - one[2])
 
 
-def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
+def _is_clear_of(held: HeldObject, others: Sequence[SceneActor]) -> bool:
     """Return whether a held object is far enough from the paths of all other objects."""
     x, y, _, _ = _place(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
@@ -131,38 +131,38 @@ def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
 
 
 def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) -> float:
-    """Return the distance on the ground, in metres, from a point to the segment between two waypoints."""
+    """Return the ground distance, in metres, from a point to the segment between two waypoints."""
     start, along = np.array(one[1:3]), np.array(two[1:3]) - np.array(one[1:3])
     length = float(along @ along)
     fraction = 0.0 if length == 0.0 else min(max(float((np.array([x, y]) - start) @ along) / length, 0.0), 1.0)
     return float(np.linalg.norm(np.array([x, y]) - start - fraction * along))
 
 
-def _as_instance(held: HeldObject) -> SceneInstance:
-    """Return a held object as an instance of the scene, without its ``state``, because its sprite still shows it in motion."""
+def _to_instance(held: HeldObject) -> SceneInstance:
+    """Return a held object as a scene instance, without its ``state``, because its sprite still shows it in motion."""
     actor, (x, y, z, heading) = held.actor, _place(held)
     width, length, height = actor.size_m
     c, s = abs(math.cos(heading)), abs(math.sin(heading))
     half_x, half_y = (width * c + length * s) / 2, (width * s + length * c) / 2
-    facts: dict[str, Attribute] = {k: v for k, v in actor.attributes.items() if k != "state"}
+    attributes: dict[str, Attribute] = {k: v for k, v in actor.attributes.items() if k != "state"}
     return SceneInstance(
         id=actor.id,
         number=actor.number,
         category=actor.category,
         name=actor.name.removeprefix("walking ").removeprefix("moving "),
-        attributes=facts,
+        attributes=attributes,
         box_min_m=(x - half_x, y - half_y, z),
         box_max_m=(x + half_x, y + half_y, z + height),
     )
 
 
 def _presets(file: SceneFile, extents: Mapping[str, Sequence[Extent]], rng: random.Random) -> Iterator[ScenePreset]:
-    """Yield one new preset for each old one, at the same viewpoint: the random view that shows the most objects."""
+    """Yield one new preset for each old one, at the same viewpoint: the one of several random views that shows the most objects."""
     places = {place.name: place for place in file.viewpoints}
     used_names = {preset.name for preset in file.presets}
     presets = list(file.presets)
     for old in file.presets:
-        candidates = [_named(_pose(old, rng), places[old.viewpoint]) for _ in range(_POSES)]
+        candidates = [_name_preset(_pose(old, rng), places[old.viewpoint]) for _ in range(_POSES)]
         apart = [c for c in candidates if all(_is_apart(c, p) for p in presets if p.viewpoint == old.viewpoint)] or candidates
         free = [c for c in apart if c.name not in used_names] or apart
         best = max(free, key=lambda c: _objects_in(c, extents[old.viewpoint]))
@@ -197,11 +197,11 @@ def _objects_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
         return int(np.all((points > 0.05) & (points < 0.95), axis=-1).sum())
 
 
-def _named(preset: ScenePreset, place: SceneViewpoint) -> ScenePreset:
-    """Name a preset by viewpoint and direction, such as ``mast-south-east-close``, with a description in words."""
-    wind = _DIRECTIONS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
+def _name_preset(preset: ScenePreset, place: SceneViewpoint) -> ScenePreset:
+    """Name a preset after its viewpoint and direction, such as ``mast-south-east-close``, and describe it in words."""
+    compass_direction = _DIRECTIONS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
     close, far, low = preset.zoom >= _CLOSE_ZOOM, preset.tilt_deg > _FAR_TILT_DEG, preset.tilt_deg < _LOW_TILT_DEG
-    how = "-close" if close else "-far" if far else "-low" if low else ""
-    words = {"-close": ", close up", "-far": ", far off", "-low": ", at what is near", "": ""}[how]
-    description = f"looking {wind} from the {place.name}{words}"
-    return preset.model_copy(update={"name": f"{place.name}-{wind}{how}", "description": description})
+    suffix = "-close" if close else "-far" if far else "-low" if low else ""
+    words = {"-close": ", close up", "-far": ", far off", "-low": ", at what is near", "": ""}[suffix]
+    description = f"looking {compass_direction} from the {place.name}{words}"
+    return preset.model_copy(update={"name": f"{place.name}-{compass_direction}{suffix}", "description": description})

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 from typing import TypeVar
 
 import numpy as np
@@ -41,8 +42,8 @@ COLOUR_SCALES = (
     Scale(2**-3.0),
 )
 """Scales of colour pictures on a sheet, half an octave apart, so that no view undersamples its source. The first scale is for views
-that are about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and
-bilinear look-up; the amounts bring the Laplacian variance of views closest to that of directly rendered ones."""
+that are about as dense as the stored picture, or denser. Sharpening compensates for the blur that shrinking and bilinear look-up
+cause; with these amounts, the Laplacian variance of views comes closest to that of directly rendered views."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
@@ -52,10 +53,10 @@ class Viewpoint:
 
     Args:
         folder: The folder.
-        scene: The scene that it belongs to.
+        scene: The scene that the viewpoint belongs to.
         place: The scene's entry for this viewpoint.
-        tile_bytes: Limit on the memory of tiles at all scales; see ``Atlas``.
-        picture_cache: Cache on disk for decoded pictures.
+        tile_bytes: Memory limit for tiles at all scales; see ``Atlas``.
+        picture_cache: On-disk cache for decoded pictures.
 
     Raises:
         PackError: The manifest is missing, damaged or belongs to another scene.
@@ -74,8 +75,8 @@ class Viewpoint:
         self.name = place.name
         self.sprites = SpriteStore(self.pictures, picture_cache)
         self.still_views = StillViews()
-        self.helper = ThreadPoolExecutor(1, thread_name_prefix=f"views of {place.name}")
-        """A thread that renders the static world while the caller's thread renders the actors. It starts on first use."""
+        self._helper: ThreadPoolExecutor | None = None
+        self._helper_lock = Lock()
         self._choices: dict[int, SpriteChoice] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
@@ -87,7 +88,7 @@ class Viewpoint:
         tiles = manifest.tiles
         self.tiles = Tiles([tile.view for tile in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
-        # The sheets refer to the files and not to this object, because a reference cycle would delay freeing their memory.
+        # The sheets refer to the files, not to this object, because a reference cycle would delay the release of their memory.
         read, depth = self.pictures, manifest.depth
         pans_deg = [tile.pan_deg for tile in tiles]
         self.tile_blender = blender = TileBlender(
@@ -95,15 +96,13 @@ class Viewpoint:
         )
 
         def colour(atlas: Atlas, index: int) -> NDArray[np.uint8]:
-            return blender.blended(atlas, index - 1) if index else read.colour(manifest.base)
+            return blender.blend(atlas, index - 1) if index else read.colour(manifest.base)
 
         sizes = [_size(c) for c in colours]
         source = "" if picture_cache is None else _source(folder)
 
         def sheet_cache(kind: str, files: Sequence[Layer]) -> SheetCache | None:
-            return (
-                None if picture_cache is None else SheetCache(picture_cache, f"{kind} {source}", lambda i: read.checked(files[i]))
-            )
+            return None if picture_cache is None else SheetCache(picture_cache, f"{kind} {source}", lambda i: read.verify(files[i]))
 
         self.colour_atlas = Atlas(
             sizes,
@@ -131,6 +130,20 @@ class Viewpoint:
         )
         self.owner_atlas = NumberAtlas(size, lambda *_: _owners(id_atlas, depth), codes, disk_cache=sheet_cache("owners", depths))
 
+    def render_in_background(self, render: Callable[[], NDArray[np.uint8]]) -> Future[NDArray[np.uint8]]:
+        """Run ``render`` in this viewpoint's helper thread, so that the caller can render something else at the same time."""
+        with self._helper_lock:
+            if self._helper is None:
+                self._helper = ThreadPoolExecutor(1, thread_name_prefix=f"views of {self.name}")
+            return self._helper.submit(render)
+
+    def end_thread(self) -> None:
+        """End the helper thread once it is idle. The next view that needs it starts another."""
+        with self._helper_lock:
+            helper, self._helper = self._helper, None
+        if helper is not None:
+            helper.shutdown(wait=False)
+
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
         """World position of the optical centre."""
@@ -143,20 +156,20 @@ class Viewpoint:
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
-        """Whole silhouettes of the instances that are visible from this viewpoint, by instance number."""
+        """Complete silhouettes of the instances that are visible from this viewpoint, by instance number."""
         return {extent.number: extent for extent in self.manifest.extents}
 
     @cached_property
     def sheets(self) -> dict[int, ActorSheet]:
-        """Sprite sheets by number of the actor."""
+        """Sprite sheets by actor number."""
         return {sheet.number: sheet for sheet in self.manifest.actors}
 
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return world points (..., 3) as vectors from the optical centre, in metres in camera coordinates."""
+        """Convert world points (..., 3) to vectors from the optical centre, in metres and camera coordinates."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
 
     def files(self) -> Iterator[Layer]:
-        """Yield every file of the pack except the manifest."""
+        """Yield every file in the pack except the manifest."""
         manifest = self.manifest
         yield from (manifest.base, manifest.ids, manifest.depth)
         for tile in manifest.tiles:
@@ -172,7 +185,7 @@ class Viewpoint:
         Raises:
             PackError: A file is missing or does not match the manifest.
         """
-        return len([self.pictures.checked(layer) for layer in self.files()])
+        return len([self.pictures.verify(layer) for layer in self.files()])
 
     @cached_property
     def depth_metres(self) -> NDArray[np.float32]:
@@ -188,7 +201,7 @@ class Viewpoint:
         return Clearance(codes, self.depth_metres, self.manifest.band)
 
     def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
-        """Return the object that selects an actor's sprites. It is created once and shared."""
+        """Return the object that selects an actor's sprites. Each actor's object is created once and shared."""
         if actor.number not in self._choices:
             self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
         return self._choices[actor.number]
@@ -201,7 +214,7 @@ def _world_to_camera(manifest: Manifest) -> NDArray[np.float64]:
 
 
 def _detail_outlines(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.float64]]:
-    """Return outlines, each (n, 3) directions, of the texts that face the viewpoint and of all instances."""
+    """Return the outlines, each as (n, 3) directions, of all instances and of the texts that face the viewpoint."""
     turn = _world_to_camera(manifest)
     outlines = [direction(*np.array(e.hull, dtype=np.float64).T) for e in manifest.extents if len(e.hull) > 2]
     for text in scene.texts:
@@ -233,7 +246,7 @@ def _size(layer: Layer) -> tuple[int, int]:
 
 
 def read_json(path: Path, model: type[_File]) -> _File:
-    """Read and validate a JSON file of a pack.
+    """Read and validate a JSON file in a pack.
 
     Raises:
         PackError: The file is missing or damaged, or has a newer format.

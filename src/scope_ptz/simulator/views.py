@@ -1,4 +1,4 @@
-"""Pictures and instance numbers of a scene at one instant: the static world and its moving actors."""
+"""Pictures and instance numbers of a scene at one instant, with both the static world and moving actors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 
 RENDERING_VERSION = 3
-"""Version of the rendering, which traces record. It increases when the same pack, pose and time give different pixels.
+"""The rendering version, which traces record. It increases when the same pack, pose and time give different pixels.
 
 - 1: tiles end in hard edges; actors are shown by the sprite nearest on their path.
 - 2: tiles are blended and matched in tone; actors are shown by the sprites nearest in viewing angle, which are warped and blended.
@@ -30,14 +30,14 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     opened = scene.viewpoint(viewpoint)
     actors = composited_actors(scene, opened, time_s)
     atlas, still = opened.colour_atlas, opened.still_views
-    if not (opened.id_atlas.in_use and atlas.in_use) or still.is_cached(projection):
+    if not (opened.id_atlas.is_in_use and atlas.is_in_use) or still.is_cached(projection):
         # Render actors first: they need instance numbers, whose decoding takes the most memory, and colours are not in memory yet.
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))
     else:
         # Another thread renders the static world while this one renders the actors. OpenCV releases the GIL.
         opened.tiles.in_view(projection)  # both threads need the result, which is cached
-        static = opened.helper.submit(colour_view, opened, projection)
+        static = opened.render_in_background(lambda: colour_view(opened, projection))
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, static.result)
     for patch in patches:
@@ -51,7 +51,7 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     opened = scene.viewpoint(viewpoint)
     numbers = id_view(opened, projection)
     places = [(actor, place_of(actor, projection)) for actor in composited_appearances(scene, opened, time_s)]
-    # Read the distances for all actors first, because drawing changes the instance numbers that determine them.
+    # Read the distances for all actors first, because drawing changes the instance numbers on which the distances depend.
     depths = [(actor, outlined_depth_view(opened, projection, numbers, place)) for actor, place in places if place is not None]
     for actor, depth_m in depths:
         draw_numbers(opened, projection, actor, depth_m, numbers)

@@ -16,7 +16,7 @@ from scope_ptz.store.rows import AuditRow
 from scope_ptz.store.schema import AUDIT, AUDIT_FILES
 
 MAX_READ_BYTES = 4_000_000
-"""Maximum number of bytes to read at a time."""
+"""Maximum number of bytes to read in one call."""
 
 
 def index_audit_log(database: Database, path: Path) -> int:
@@ -58,7 +58,7 @@ def index_audit_log(database: Database, path: Path) -> int:
 def list_audit(
     database: Database, *, camera: str | None = None, since: datetime | None = None, until: datetime | None = None, limit: int = 100
 ) -> list[AuditRow]:
-    """Return entries of audit logs, newest first."""
+    """Return audit log entries, newest first."""
     query = select(AUDIT)
     if camera is not None:
         query = query.where(AUDIT.c.camera == camera)
@@ -81,7 +81,7 @@ def list_audit(
 
 
 def _log_position(connection: Connection, path: Path) -> tuple[int, int]:
-    """Return the number of an audit log in the index, and how many of its bytes are indexed. A new log is added."""
+    """Return an audit log's number in the index and the number of bytes indexed so far. A new log is added."""
     row = connection.execute(select(AUDIT_FILES).where(AUDIT_FILES.c.path == str(path))).mappings().first()
     if row is not None:
         return row["number"], row["offset"]

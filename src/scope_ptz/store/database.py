@@ -1,4 +1,4 @@
-"""The database file of a store: connections, transactions and error messages."""
+"""A store's database file: connections, transactions and error messages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BUSY_S = 5.0
 
 
 class Database:
-    """The database of a runs folder. Several threads and several processes may use it at the same time.
+    """The database in a runs folder. Several threads and several processes may use it at the same time.
 
     Args:
         path: The file. It is created if needed, and migrated to the newest version.

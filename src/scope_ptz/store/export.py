@@ -66,8 +66,8 @@ def write_atomically(out: Path, write: Callable[[IO[bytes]], int]) -> int:
 
 
 def _lines(database: Database, root: Path, runs: Iterable[str], kind: ExportFormat) -> Iterator[dict[str, Any]]:
-    make: Callable[[Database, Path, str], dict[str, Any] | None] = _chat_line if kind == "chat" else _data_line
-    return (line for run_id in runs if (line := make(database, root, run_id)) is not None)
+    make_line: Callable[[Database, Path, str], dict[str, Any] | None] = _chat_line if kind == "chat" else _data_line
+    return (line for run_id in runs if (line := make_line(database, root, run_id)) is not None)
 
 
 def _write_lines(lines: Iterable[dict[str, Any]], file: IO[bytes]) -> int:
@@ -94,7 +94,7 @@ def _write_zip(database: Database, root: Path, runs: Iterable[str], file: IO[byt
 
 
 def _ratings(database: Database, run_id: str) -> list[dict[str, str]]:
-    """Return the newest rating of a whole run as the only item of a list, for ``scope bench generate``; empty if there is none."""
+    """Return a list with the newest rating of a whole run, for ``scope bench generate``. It is empty if there is no rating."""
     rated = [each for each in feedback_on(database, run_id) if each.position is None and each.rating]
     return [{"run": run_id, "rating": "good" if each.rating > 0 else "bad", "note": each.comment} for each in rated[-1:]]
 

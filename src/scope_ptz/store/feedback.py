@@ -26,8 +26,8 @@ def add_feedback(
         run_id: The run.
         rating: 1 for good, -1 for bad, 0 for a comment without a rating.
         comment: The comment; may be empty.
-        actor: The person who gives the feedback.
-        position: The index of the call that it is about, counted from 0; None for the whole run.
+        actor: The person who gave the feedback.
+        position: Index of the call that the feedback is about, from 0; None for the whole run.
 
     Raises:
         UnknownNameError: There is no such run, or no such call.

@@ -54,16 +54,16 @@ def index_runs(database: Database, root: Path) -> IndexReport:
     with database.read_transaction() as connection:
         indexed = {row.id: row.trace_bytes for row in connection.execute(select(RUNS.c.id, RUNS.c.trace_bytes))}
     existing: set[str] = set()
-    waiting: list[tuple[Path, int]] = []
+    batch: list[tuple[Path, int]] = []
     for name, size in _folders(root):
         existing.add(name)
         if indexed.get(name) == size:
             continue
-        waiting.append((root / name, size))
-        if len(waiting) == BATCH:
-            _index_batch(database, waiting, report)
-            waiting = []
-    _index_batch(database, waiting, report)
+        batch.append((root / name, size))
+        if len(batch) == BATCH:
+            _index_batch(database, batch, report)
+            batch = []
+    _index_batch(database, batch, report)
     _remove_missing(database, [name for name in indexed if name not in existing], report)
     return report
 
@@ -79,7 +79,7 @@ def index_run(database: Database, folder: Path) -> None:
     size = (folder / TRACE).stat().st_size if (folder / TRACE).is_file() else 0
     row, steps, frames = _contents(folder, size)
     with database.write_transaction() as connection:
-        _put(connection, row, steps, frames)
+        _upsert(connection, row, steps, frames)
 
 
 def _folders(root: Path) -> Iterator[tuple[str, int]]:
@@ -100,9 +100,9 @@ def _folders(root: Path) -> Iterator[tuple[str, int]]:
                 yield entry.name, size
 
 
-def _index_batch(database: Database, waiting: list[tuple[Path, int]], report: IndexReport) -> None:
+def _index_batch(database: Database, batch: list[tuple[Path, int]], report: IndexReport) -> None:
     contents = []
-    for folder, size in waiting:
+    for folder, size in batch:
         try:
             contents.append(_contents(folder, size))
         except TraceError as error:
@@ -112,15 +112,15 @@ def _index_batch(database: Database, waiting: list[tuple[Path, int]], report: In
     added = updated = 0
     with database.write_transaction() as connection:
         for row, steps, frames in contents:
-            new = _put(connection, row, steps, frames)
+            new = _upsert(connection, row, steps, frames)
             added, updated = added + new, updated + (not new)
     report.added += added
     report.updated += updated
 
 
-def _remove_missing(database: Database, gone: list[str], report: IndexReport) -> None:
-    for start in range(0, len(gone), BATCH):
-        names = gone[start : start + BATCH]
+def _remove_missing(database: Database, missing: list[str], report: IndexReport) -> None:
+    for start in range(0, len(missing), BATCH):
+        names = missing[start : start + BATCH]
         with database.write_transaction() as connection:
             rated = select(FEEDBACK.c.run)
             removed = connection.execute(delete(RUNS).where(RUNS.c.id.in_(names), RUNS.c.number.not_in(rated))).rowcount
@@ -198,7 +198,7 @@ def folder_bytes(folder: Path) -> int:
     return total
 
 
-def _put(connection: Connection, row: dict[str, Any], steps: list[dict[str, Any]], frames: list[dict[str, Any]]) -> bool:
+def _upsert(connection: Connection, row: dict[str, Any], steps: list[dict[str, Any]], frames: list[dict[str, Any]]) -> bool:
     """Insert or update a run. Return whether it is new."""
     number = connection.execute(select(RUNS.c.number).where(RUNS.c.id == row["id"])).scalar()
     if new := number is None:

@@ -1,4 +1,4 @@
-"""Split texts into words as the full-text index does, ignoring case and accents."""
+"""Split text into words as the full-text index does, ignoring case and accents."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import unicodedata
 
 
 def words_of(text: str) -> list[str]:
-    """Return the words of a text in lower case, without accents."""
-    return re.findall(r"[^\W_]+", _plain(text))
+    """Return the words of the text in lower case, without accents."""
+    return re.findall(r"[^\W_]+", _fold_accents(text))
 
 
 def has_words(instruction: str, answer: str, words: str) -> int:
@@ -19,7 +19,7 @@ def has_words(instruction: str, answer: str, words: str) -> int:
         answer: The second text.
         words: The words, separated by spaces. The last one may be incomplete.
     """
-    text = _plain(f"{instruction}\n{answer}")
+    text = _fold_accents(f"{instruction}\n{answer}")
     *whole, beginning = words.split(" ")
     # A substring search rules out most texts. It is ten times as fast as splitting the texts into words.
     if beginning not in text or not all(word in text for word in whole):
@@ -28,7 +28,7 @@ def has_words(instruction: str, answer: str, words: str) -> int:
     return int(found.issuperset(whole) and any(word.startswith(beginning) for word in found))
 
 
-def _plain(text: str) -> str:
+def _fold_accents(text: str) -> str:
     if not text.isascii():
         text = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
     return text.lower()

@@ -1,4 +1,4 @@
-"""Queries for lists of runs and for the data of one run."""
+"""Query lists of runs, and the data for one run."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ MAX_PAGE = 500
 """Maximum number of runs on a page."""
 
 MAX_COUNT = 500
-"""Matching runs are counted only up to this number, because counting many runs exactly is slow."""
+"""Matching runs are counted only up to this number, because an exact count of many runs is slow."""
 
-_COMMON = 1_000
-"""Words that occur in at least this many runs are matched without the full-text index: testing runs from the newest on soon fills a
-page."""
+_COMMON_WORD_RUNS = 1_000
+"""Words that occur in at least this many runs are matched without the full-text index, because testing the newest runs
+first fills a page sooner."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunPage:
-    """A page of a list of runs, the newest first. ``next`` is the cursor of the next page; None on the last page."""
+    """A page of runs, newest first. ``next`` is the cursor for the next page; None on the last page."""
 
     runs: list[RunRow]
     next: str | None
@@ -44,14 +44,14 @@ class StoredRun:
     frames: list[FrameRow]
 
 
-def list_runs(database: Database, chosen: RunFilter, *, limit: int = 50, after: str | None = None) -> RunPage:
-    """Return runs, the newest first.
+def list_runs(database: Database, run_filter: RunFilter, *, limit: int = 50, after: str | None = None) -> RunPage:
+    """Return a page of runs, newest first.
 
     Args:
         database: The database.
-        chosen: The filter.
+        run_filter: The filter.
         limit: Maximum number of runs on the page, at most ``MAX_PAGE``.
-        after: The cursor ``next`` of the previous page.
+        after: The cursor ``next`` from the previous page.
 
     Raises:
         InputError: The cursor or the limit is invalid.
@@ -64,22 +64,22 @@ def list_runs(database: Database, chosen: RunFilter, *, limit: int = 50, after: 
         query = query.where(or_(RUNS.c.started < started, and_(RUNS.c.started == started, RUNS.c.number < number)))
         query = query.where(RUNS.c.started <= started)  # lets the database start in the middle of its index
     with database.read_transaction() as connection:
-        found = connection.execute(query.where(*_conditions(connection, chosen))).mappings().all()
+        found = connection.execute(query.where(*_conditions(connection, run_filter))).mappings().all()
         ratings = _ratings(connection, [row["number"] for row in found])
     runs = [_run(row, ratings) for row in found[:limit]]
     last = found[limit - 1] if len(found) > limit else None
     return RunPage(runs, None if last is None else f"{last['started']!r}:{last['number']}")
 
 
-def count_matching(database: Database, chosen: RunFilter, *, limit: int = MAX_COUNT) -> int:
+def count_matching(database: Database, run_filter: RunFilter, *, limit: int = MAX_COUNT) -> int:
     """Return the number of runs that match a filter, counted up to ``limit``."""
     with database.read_transaction() as connection:
-        matching = select(RUNS.c.number).where(*_conditions(connection, chosen)).limit(limit).subquery()
+        matching = select(RUNS.c.number).where(*_conditions(connection, run_filter)).limit(limit).subquery()
         return int(connection.execute(select(func.count()).select_from(matching)).scalar_one())
 
 
 def load_run(database: Database, run_id: str) -> StoredRun:
-    """Return the stored data of a run.
+    """Return the stored data for a run.
 
     Raises:
         UnknownNameError: There is no such run.
@@ -130,21 +130,21 @@ def utc_time(seconds: float) -> datetime:
 _COLUMNS = [column for column in RUNS.c if column.name != "trace_bytes"]
 
 
-def _conditions(connection: Connection, chosen: RunFilter) -> list[ColumnElement[bool]]:
+def _conditions(connection: Connection, run_filter: RunFilter) -> list[ColumnElement[bool]]:
     conditions: list[ColumnElement[bool]] = []
     for name in ("kind", "camera", "planner", "perception", "outcome", "conversation", "actor"):
-        if (value := getattr(chosen, name)) is not None:
+        if (value := getattr(run_filter, name)) is not None:
             conditions.append(RUNS.c[name] == value)
-    if chosen.since is not None:
-        conditions.append(RUNS.c.started >= chosen.since.timestamp())
-    if chosen.until is not None:
-        conditions.append(RUNS.c.started < chosen.until.timestamp())
-    if chosen.tool is not None:
-        conditions.append(exists().where(STEPS.c.tool == chosen.tool, STEPS.c.run == RUNS.c.number))
-    if chosen.rating is not None:
-        conditions.append(RUNS.c.number.in_(select(FEEDBACK.c.run).where(FEEDBACK.c.rating == chosen.rating)))
-    if chosen.text.strip():
-        conditions.append(_contains(connection, chosen.text))
+    if run_filter.since is not None:
+        conditions.append(RUNS.c.started >= run_filter.since.timestamp())
+    if run_filter.until is not None:
+        conditions.append(RUNS.c.started < run_filter.until.timestamp())
+    if run_filter.tool is not None:
+        conditions.append(exists().where(STEPS.c.tool == run_filter.tool, STEPS.c.run == RUNS.c.number))
+    if run_filter.rating is not None:
+        conditions.append(RUNS.c.number.in_(select(FEEDBACK.c.run).where(FEEDBACK.c.rating == run_filter.rating)))
+    if run_filter.text.strip():
+        conditions.append(_contains(connection, run_filter.text))
     return conditions
 
 
@@ -154,8 +154,8 @@ def _contains(connection: Connection, given: str) -> ColumnElement[bool]:
     if not words:
         return false()  # the text contains no words
     phrase = " ".join(f'"{word}"' for word in words[:-1]) + f' "{words[-1]}"*'
-    some = text(f"SELECT count(*) FROM (SELECT 1 FROM runs_text WHERE runs_text MATCH :words LIMIT {_COMMON})")  # noqa: S608
-    if connection.execute(some, {"words": phrase}).scalar_one() < _COMMON:
+    some = text(f"SELECT count(*) FROM (SELECT 1 FROM runs_text WHERE runs_text MATCH :words LIMIT {_COMMON_WORD_RUNS})")  # noqa: S608
+    if connection.execute(some, {"words": phrase}).scalar_one() < _COMMON_WORD_RUNS:
         found = "runs.number IN (SELECT rowid FROM runs_text WHERE runs_text MATCH :words)"
         return cast("ColumnElement[bool]", text(found).bindparams(words=phrase))
     return func.has_words(RUNS.c.instruction, RUNS.c.answer, " ".join(words)) == 1
@@ -170,7 +170,7 @@ def _cursor(after: str) -> tuple[float, int]:
 
 
 def _ratings(connection: Connection, numbers: Sequence[int]) -> dict[int, tuple[int, int]]:
-    """Return how many good and how many bad ratings runs have, by the number of the run."""
+    """Return the numbers of good and bad ratings for each run, by run number."""
     good = func.sum(case((FEEDBACK.c.rating > 0, 1), else_=0))
     bad = func.sum(case((FEEDBACK.c.rating < 0, 1), else_=0))
     query: Select[Any] = select(FEEDBACK.c.run, good, bad).where(FEEDBACK.c.run.in_(numbers)).group_by(FEEDBACK.c.run)

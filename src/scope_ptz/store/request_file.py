@@ -1,4 +1,4 @@
-"""The file ``request.json`` of a run folder. It stores who requested the run, and in which conversation."""
+"""The file ``request.json`` in a run folder, which stores who requested the run and in which conversation."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class RunRequest(BaseModel):
     """The request that started a run.
 
     Attributes:
-        kind: The kind of the run: an instruction, a dry run, or a tool call by a person.
-        camera: The camera's name at its site; empty if it has none.
-        conversation: The id of its conversation; None if it has none.
-        actor: The client that sent it; empty if unknown.
+        kind: The kind of run: an instruction, a dry run, or a tool call by a person.
+        camera: The camera's name in its site; empty if it has none.
+        conversation: Id of the conversation; None if the run belongs to none.
+        actor: The client that sent the request; empty if unknown.
     """
 
     model_config = ConfigDict(frozen=True)

@@ -1,4 +1,4 @@
-"""The data that the store returns: runs, their steps and frames, feedback, conversations, and entries of audit logs."""
+"""The data that the store returns: runs, their steps and frames, feedback, conversations, and audit log entries."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 RunKind = Literal["instruction", "tool", "dry_run"]
-"""The kind of a run: an instruction, a tool call by a person, or a dry run, which reports moves without making them."""
+"""The kind of run: an instruction, a tool call by a person, or a dry run, which reports moves without making them."""
 
 UNFINISHED = "unfinished"
 """The outcome of a run whose end is not recorded: it is still running, or its program was killed."""
 
 
 class Row(BaseModel):
-    """Base class of the data that the store returns."""
+    """Base class for the data that the store returns."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -24,13 +24,13 @@ class RunRow(Row):
     """A run.
 
     Attributes:
-        id: The name of its folder.
-        outcome: How it ended; "unfinished" if its end is not recorded.
-        conversation: The id of its conversation; None if it has none.
-        actor: The client that requested it; empty if unknown.
+        id: Name of the run folder.
+        outcome: The outcome; "unfinished" if the end is not recorded.
+        conversation: Id of the conversation; None if the run belongs to none.
+        actor: The client that requested the run; empty if unknown.
         calls: Number of tool calls.
         tools_s: Seconds spent in the agent loop and in the tools themselves.
-        kept: Whether it is exempt from ``prune``.
+        kept: Whether the run is exempt from ``prune``.
         thumbs_up: Number of good ratings.
         thumbs_down: Number of bad ratings.
     """
@@ -72,7 +72,7 @@ class RunRow(Row):
 
 
 class StepRow(Row):
-    """A tool call of a run. ``position`` counts the calls of the run from 0."""
+    """A tool call in a run. ``position`` counts the run's calls from 0."""
 
     position: int
     step: int
@@ -90,7 +90,7 @@ class StepRow(Row):
 
 
 class FrameRow(Row):
-    """A picture of a run: its path in the run folder, and the position of the call that took it (None for the first view)."""
+    """A picture from a run: its path in the run folder, and the position of the call that took it (None for the first view)."""
 
     name: str
     position: int | None
@@ -121,7 +121,7 @@ class ConversationRow(Row):
 
 
 class AuditRow(Row):
-    """An entry of an audit log."""
+    """An entry in an audit log."""
 
     time: datetime
     camera: str

@@ -1,4 +1,4 @@
-"""The store of a runs folder: the run folders together with their database."""
+"""The store for a runs folder: the run folders together with their database."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class RunStore:
     """The runs in a folder, with an index in its file ``store.sqlite``.
 
     The run folders are the primary data. A deleted database can be rebuilt from them, except for feedback, conversations
-    and the marks on runs that are to be kept. The modules ``feedback`` and ``conversations`` operate on ``database``.
+    and the marks that exempt runs from ``prune``. The modules ``feedback`` and ``conversations`` operate on ``database``.
 
     Args:
         root: The runs folder. It is created if needed.
@@ -61,7 +61,7 @@ class RunStore:
         return count_matching(self.database, run_filter or RunFilter())
 
     def run(self, run_id: str) -> StoredRun:
-        """Return the stored data of a run. Raises ``UnknownNameError`` if there is no such run."""
+        """Return the stored data for a run. Raises ``UnknownNameError`` if there is no such run."""
         return load_run(self.database, run_id)
 
     def folder(self, run_id: str) -> Path:
@@ -85,5 +85,5 @@ class RunStore:
             page = self.runs(run_filter, limit=MAX_PAGE, after=page.next)
 
     def export(self, runs: list[str], out: Path, kind: ExportFormat) -> int:
-        """Write runs to a file and return their number. See ``export_runs``."""
+        """Write runs to a file and return the number written. See ``export_runs``."""
         return export_runs(self.database, self.root, runs, out, kind)

@@ -1,4 +1,4 @@
-"""The tables of the store, for queries. The scripts in ``migrations`` create them."""
+"""The store's tables, for queries. The scripts in ``migrations`` create them."""
 
 from __future__ import annotations
 

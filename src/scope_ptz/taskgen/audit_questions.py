@@ -1,4 +1,4 @@
-"""Write the questions of a picture audit: the frames that a task's reference program observes, captioned with their views."""
+"""Write the questions of a picture audit, with the frames that a task's reference program observes."""
 
 from __future__ import annotations
 
@@ -26,21 +26,24 @@ async def write_question(
     """Write the pictures of an audit question to a folder, and return the question as JSON data.
 
     Args:
-        number: Number of the question, which also begins the names of its pictures.
+        number: Number of the question. The names of its pictures begin with it.
         task: The task.
         runner: Runs the task's reference program in its scene.
         out: Folder for the pictures.
-        notify: Called with a note if the reference program makes no perception call, so that there are no pictures.
+        notify: Called with a note if the question has no pictures, because the reference program makes no perception call.
+
+    Raises:
+        OutputError: A picture cannot be written.
     """
     episode = await runner.run(task, task.reference, "")
-    first = [call.observations[0] for call in episode.calls if call.observations]
-    views = list({(observation.viewpoint, observation.projection): observation for observation in first}.values())
+    observations = [call.observations[0] for call in episode.calls if call.observations]
+    views = list({(observation.viewpoint, observation.projection): observation for observation in observations}.values())
     pictures = []
     for index, view in enumerate(views, 1):
         name = f"{number}-{index}.jpg"
         image = picture(runner.scene, str(view.viewpoint), view.projection, view.time_s)
         if not cv2.imwrite(str(out / name), cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, 95]):
-            raise OutputError(f"{out / name} cannot be written. Check the permissions of the folder and the space on the disk.")
+            raise OutputError(f"{out / name} cannot be written. Check the folder's permissions and the free disk space.")
         pictures.append({"file": name, "caption": _caption(view, runner.scene)})
     if not pictures:
         notify(f"{task.id} has no pictures, because its reference program makes no perception call")

@@ -24,7 +24,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 
 QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
-"""Names of the files in the folder of an audit."""
+"""File names in an audit folder."""
 
 Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]
 
@@ -37,7 +37,7 @@ Row = TypeVar("Row", bound=_Row)
 
 
 class QuestionDraw(_Row):
-    """How questions were sampled. The same tasks, number and seed always give the same questions."""
+    """The parameters with which questions were sampled. The same tasks, number and seed always give the same questions."""
 
     number: int = Field(ge=1)
     seed: int
@@ -63,7 +63,7 @@ class DisagreementNote(_Row):
 class AuditedAnswer(_Row):
     """A reader's answer to a task, and whether it agrees with the expected answer.
 
-    ``digest`` is the ``task_digest`` at the time of the audit. If the task now has another one, it was changed after the audit.
+    ``digest`` is the task's ``task_digest`` at the time of the audit. A different digest now means that the task has changed since.
     """
 
     q: str
@@ -80,24 +80,24 @@ class AuditedAnswer(_Row):
 
 
 class Audit(_Row):
-    """The result of an audit, in the form in which it is published."""
+    """The published result of an audit."""
 
     draw: QuestionDraw
     rows: tuple[AuditedAnswer, ...]
 
-    def share(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
-        """Return the number of answers that agree, and the number of all answers. Unanswered questions are not counted.
+    def agreement_counts(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
+        """Return the number of answers that agree and the total number of answers. Unanswered questions are not counted.
 
-        By default, all rows of the audit are counted.
+        By default, all rows in the audit are counted.
         """
         counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
         return sum(row.outcome == "agrees" for row in counted), len(counted)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
-        agree, total = self.share()
+        agree, total = self.agreement_counts()
         categories = sorted({row.category for row in self.rows})
-        by_category = {name: self.share(r for r in self.rows if r.category == name) for name in categories}
+        by_category = {name: self.agreement_counts(r for r in self.rows if r.category == name) for name in categories}
         return {
             **self.model_dump(mode="json"),
             "agree": agree,
@@ -108,7 +108,7 @@ class Audit(_Row):
 
 
 def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
-    """Sample questions from the core tasks with an answer, stratified by category, scene and difficulty.
+    """Sample questions from the core tasks that have an answer, stratified by category, scene and difficulty.
 
     Args:
         tasks: The tasks.
@@ -116,7 +116,7 @@ def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[
         seed: Seed for the sampling.
 
     Returns:
-        Question numbers with their tasks. The questions are shuffled, so that a number does not reveal which task it stands for.
+        Question numbers with their tasks. The questions are shuffled, so that a number does not identify its task.
     """
     candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
     chosen = stratified_sample(candidates, number, seed)
@@ -125,7 +125,7 @@ def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[
 
 
 def task_digest(task: Task) -> str:
-    """Return a short digest of the instruction and the expected answer of a task."""
+    """Return a short digest of a task's instruction and expected answer."""
     return hashlib.sha256(f"{task.instruction}|{task.expected.model_dump_json()}".encode()).hexdigest()[:16]
 
 
@@ -135,27 +135,27 @@ def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
     Raises:
         InputError: A file is missing or damaged, or the questions were sampled from other tasks.
     """
-    (draw,) = _rows(folder / DRAW, QuestionDraw)
+    (draw,) = _read_rows(folder / DRAW, QuestionDraw)
     if draw.tasks != digest_of(tasks):
-        raise InputError(f"The questions in {folder} were sampled from other tasks. Name those tasks with --tasks.")
+        raise InputError(f"The questions in {folder} were sampled from other tasks. Specify those tasks with --tasks.")
     by_question: dict[str, list[ReaderAnswer]] = {}
-    for answer in _rows(folder / ANSWERS, ReaderAnswer):
+    for answer in _read_rows(folder / ANSWERS, ReaderAnswer):
         by_question.setdefault(answer.q, []).append(answer)
-    findings = {f.q: f.finding for f in _rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
+    findings = {f.q: f.finding for f in _read_rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
     questions = dict(draw_questions(tasks, draw.number, draw.seed))
     if unknown := sorted({*by_question, *findings} - set(questions)):
         raise InputError(
             f"{folder} contains an answer or a finding for {unknown[0]}, which is not one of its questions. Remove it."
         )
     rows = [
-        _audited(q, task, answer, findings)
+        _audit_answer(q, task, answer, findings)
         for q, task in questions.items()
         for answer in by_question.get(q) or [ReaderAnswer(q=q, answer="", reader="")]
     ]
     return Audit(draw=draw, rows=tuple(rows))
 
 
-def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, str]) -> AuditedAnswer:
+def _audit_answer(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, str]) -> AuditedAnswer:
     agreed = agrees(task.expected, parse_answer(task.expected, answer.answer)) if answer.answer.strip() else None
     outcome: Outcome = "agrees" if agreed else "disagrees" if agreed is False else "not readable"
     return AuditedAnswer(
@@ -186,7 +186,7 @@ def read_audit(path: Path) -> Audit:
         raise InputError(f"{path} is not a published audit: {error}.") from error
 
 
-def _rows(path: Path, row_type: type[Row]) -> list[Row]:
+def _read_rows(path: Path, row_type: type[Row]) -> list[Row]:
     """Return the rows of a JSONL file."""
     try:
         lines = path.read_text("utf-8").splitlines()

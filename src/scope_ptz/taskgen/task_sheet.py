@@ -1,4 +1,4 @@
-"""Show a task to a person: its text, its reference run, and pictures of the start view and the evidence."""
+"""Show a person a task: its text, its reference run, and pictures of the start view and the evidence."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from scope_ptz.agent.drawing import (
     SECONDARY_TEXT_COLOUR,
     TEXT_COLOUR,
     Canvas,
-    printable,
     shorten,
+    to_printable,
     wrap,
 )
 from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
@@ -33,11 +33,11 @@ from scope_ptz.simulator.views import picture
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
-_MARGIN, _HEAD, _LINE = 28, 118, 24
+_MARGIN, _HEADER, _LINE_HEIGHT = 28, 118, 24  # pixels
 _SWEEP_WIDTH = 2200.0
-"""Width in pixels of the picture of a sweep."""
+"""Width of a sweep's picture in pixels."""
 _CLOSE_UP = (260, 146)
-"""Size in pixels of the close-ups below the picture of a sweep."""
+"""Size of the close-ups below a sweep's picture, in pixels."""
 
 
 def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
@@ -57,7 +57,7 @@ def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
 
 
 def reference_run(task: Task, scene: Scene, make_context: MakeToolContext) -> Iterator[str]:
-    """Run the reference program of a task, and yield its calls with their results, its answer and its verdict."""
+    """Run a task's reference program, and yield lines with its calls and their results, its answer, and the verdict."""
     text, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
     runner = ProgramRunner(scene, make_context, TASK_CAMERA)
     episode = anyio.run(runner.run, task, task.reference, text, outcome)
@@ -69,12 +69,12 @@ def reference_run(task: Task, scene: Scene, make_context: MakeToolContext) -> It
 
 
 def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
-    """Write a picture of the start view and one of each evidence view with its items outlined, and yield their paths."""
+    """Write a picture of the start view, and one of each evidence view with its items outlined, and yield the paths."""
     start = next(p for p in scene.file.presets if p.name == task.preset)
-    at_start = TASK_CAMERA.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
-    sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, at_start, (), f"start: preset {start.name}"))]
+    start_projection = TASK_CAMERA.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
+    sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, start_projection, (), f"start: preset {start.name}"))]
     for number, view in enumerate(task.evidence, 1):
-        caption = f"evidence {number} of {len(task.evidence)}: {_where(view)}"
+        caption = f"evidence {number} of {len(task.evidence)}: {_view_caption(view)}"
         sheets.append((f"{task.id}-{number}.png", _sheet(task, scene, view.aim.viewpoint, _projection(view), view.items, caption)))
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -85,7 +85,7 @@ def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
         raise OutputError(f"Pictures cannot be written to {out}: {error.strerror}. Choose another with --out.") from error
 
 
-def _where(view: EvidenceView) -> str:
+def _view_caption(view: EvidenceView) -> str:
     aim = view.aim
     if view.scope == "full":
         return f"everything around {aim.viewpoint}"
@@ -100,30 +100,30 @@ def _projection(view: EvidenceView) -> Projection:
 def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str) -> Image.Image:
     """Draw the task's text, the frame and the list of outlined items. For a sweep, also draw a close-up of each item."""
     image = Image.fromarray(picture(scene, viewpoint, projection, task.time_s))
-    swept = isinstance(projection, Equirectangular)
-    width = _SWEEP_WIDTH if swept else float(projection.width)
+    is_sweep = isinstance(projection, Equirectangular)
+    width = _SWEEP_WIDTH if is_sweep else float(projection.width)
     height = width * projection.height / projection.width
-    columns = int(width / (_CLOSE_UP[0] + 12)) if swept else 2
-    cell = (width / columns, _CLOSE_UP[1] + _LINE + 18 if swept else _LINE)
+    columns = int(width / (_CLOSE_UP[0] + 12)) if is_sweep else 2
+    cell = (width / columns, _CLOSE_UP[1] + _LINE_HEIGHT + 18 if is_sweep else _LINE_HEIGHT)
     rows = -(-len(items) // columns)
-    canvas = Canvas(width + 2 * _MARGIN, _HEAD + height + _MARGIN + (rows * cell[1] + 24 if rows else 0))
+    canvas = Canvas(width + 2 * _MARGIN, _HEADER + height + _MARGIN + (rows * cell[1] + 24 if rows else 0))
     lines = wrap(task.instruction, 24, width, 2)
     for index, line in enumerate(lines):
         canvas.text(_MARGIN, (72 if len(lines) == 1 else 42) + 30 * index, line, 24, TEXT_COLOUR, bold=True)
-    canvas.text(_MARGIN, _HEAD - 16, shorten(printable(f"{task.id} · {caption}"), 17, width), 17, SECONDARY_TEXT_COLOUR)
-    canvas.picture(image, _MARGIN, _HEAD, width, height)
+    canvas.text(_MARGIN, _HEADER - 16, shorten(to_printable(f"{task.id} · {caption}"), 17, width), 17, SECONDARY_TEXT_COLOUR)
+    canvas.picture(image, _MARGIN, _HEADER, width, height)
     for number, item in enumerate(items, 1):
         _outline(canvas, projection, item, number, width, height)
         row, column = divmod(number - 1, columns)
-        x, y = _MARGIN + column * cell[0], _HEAD + height + 34 + row * cell[1]
-        if swept:
+        x, y = _MARGIN + column * cell[0], _HEADER + height + 34 + row * cell[1]
+        if is_sweep:
             close_up = Image.fromarray(picture(scene, viewpoint, _close_up_view(item), task.time_s))
             canvas.picture(close_up, x, y - 16, *_CLOSE_UP)
             y += _CLOSE_UP[1] + 8
         canvas.panel(x, y - 14, 34, 20, PANEL_COLOUR, radius=6, edge=EDGE_COLOUR)
         canvas.text(x + 17, y - 4, str(number), 14, AMBER, bold=True, anchor="mm")
         caption_text = item.instance if item.value is None or isinstance(item.value, bool) else f"{item.instance}: {item.value}"
-        canvas.text(x + 44, y, shorten(printable(caption_text), 17, cell[0] - 60), 17, TEXT_COLOUR)
+        canvas.text(x + 44, y, shorten(to_printable(caption_text), 17, cell[0] - 60), 17, TEXT_COLOUR)
     return canvas.finish()
 
 
@@ -140,10 +140,10 @@ def _outline(canvas: Canvas, projection: Projection, item: Item, number: int, wi
     if np.isnan(points).any():
         return
     (x0, y0), (x1, y1) = (tuple(map(float, corner)) for corner in (points.min(axis=0), points.max(axis=0)))
-    canvas.frame(_MARGIN + x0, _HEAD + y0, x1 - x0, y1 - y0, CYAN)
+    canvas.frame(_MARGIN + x0, _HEADER + y0, x1 - x0, y1 - y0, CYAN)
     canvas.tag(
         _MARGIN + min(max(x0, 12), width - 12),
-        _HEAD + max(y0 - 12, 12),
+        _HEADER + max(y0 - 12, 12),
         str(number),
         13,
         fill=AMBER,

@@ -1,1 +1,1 @@
-"""The nine tools of the paper. They depend only on the camera and perception contracts."""
+"""The nine tools from the paper, which depend only on the camera and perception contracts."""

@@ -14,7 +14,7 @@ from scope_ptz.tools.results import MoveResult
 from scope_ptz.tools.tool import Tool
 
 MAX_REQUESTED_ZOOM = 1e6
-"""Maximum requested magnification, so that a huge zoom factor cannot overflow. No camera reaches it."""
+"""Maximum magnification that a call can request, far beyond any camera. It prevents overflow from huge zoom factors."""
 
 
 class AdjustPtz(Arguments):

@@ -1,8 +1,8 @@
-"""Calculate the pose that shows a box in the middle of the frame at a requested size.
+"""Calculate the pose that shows a box in the centre of the frame at a requested size.
 
-All calculations use directions on the sphere. Adding angles in the image to pan and tilt would be inexact away from the middle of
-the frame, and wrong at steep tilts. The *limiting side* of a target is its width or its height, whichever fills the larger fraction
-of the frame.
+All calculations use directions on the sphere. Adding image angles to pan and tilt would be inexact away from the centre of the
+frame, and wrong at steep tilts. The *limiting side* of a target is its width or height, whichever fills the larger fraction of the
+frame.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Fraction of the frame that the limiting side of a framed target fills. The paper requires 60 to 90%."""
+"""Fraction of the frame that the limiting side of a framed target should fill. The paper requires 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Aim:
 
     Attributes:
         pose: The pose, within the camera's limits.
-        fill: The fraction of the frame that the limiting side should fill; None for a pose at a given zoom.
-        limited_by: The limits that prevent the target from being centred or from reaching the requested size.
+        fill: Fraction of the frame that the limiting side should fill; None for a pose at a given zoom.
+        limited_by: The axes whose limits prevent the target from being centred or from reaching the requested size.
     """
 
     pose: Pose
@@ -45,10 +45,10 @@ class Aim:
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
     """Return directions of shape ``(4 * per_side, 3)`` along the border of a box."""
-    return outline_in(frame.projection, box, per_side)
+    return projection_outline(frame.projection, box, per_side)
 
 
-def outline_in(projection: Projection, box: Box, per_side: int = 9) -> Floats:
+def projection_outline(projection: Projection, box: Box, per_side: int = 9) -> Floats:
     """Return directions of shape ``(4 * per_side, 3)`` along the border of a box in a view."""
     import numpy as np
 
@@ -65,7 +65,7 @@ def view(info: CameraInfo, pose: Pose) -> Perspective:
 
 
 def bounds(points: Floats) -> tuple[float, float, float, float]:
-    """Return left, top, right and bottom of normalised points. They are infinite if any point lies behind the camera."""
+    """Return the left, top, right and bottom of normalised points. All are infinite if any point is behind the camera."""
     import numpy as np
 
     if np.isnan(points).any():
@@ -75,7 +75,7 @@ def bounds(points: Floats) -> tuple[float, float, float, float]:
 
 
 def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[float, float]]:
-    """Measure the size and the position of a target in the view at a pose.
+    """Measure the size and position of a target in the view at a pose.
 
     Args:
         info: The camera.
@@ -83,8 +83,8 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
         target: Directions of shape ``(n, 3)`` along the target's outline.
 
     Returns:
-        The fraction of the frame that the limiting side fills, and the offset of the target's middle from the frame's middle, as
-        fractions of width and height.
+        The fraction of the frame that the limiting side fills, and the offset of the target's centre from the frame's centre, as
+        fractions of the frame's width and height.
     """
     left, top, right, bottom = bounds(view(info, pose).points(target))
     if not math.isfinite(left):
@@ -93,9 +93,9 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 
 
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
-    """Return the pose within the limits that centres a target, and at which its limiting side fills ``fill`` of the frame.
+    """Return the pose within the limits that centres a target and makes its limiting side fill ``fill`` of the frame.
 
-    The calculation is iterative, because the bounding box of the target and its middle change with the view.
+    The calculation is iterative, because the target's bounding box and its centre change with the view.
     """
     import numpy as np
 
@@ -104,7 +104,7 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
     pose, clamped = start, set[Axis]()
     for _ in range(8):
         pan, tilt = (float(v) for v in geometry.pan_tilt_deg(middle))
-        zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
+        zoom = _zoom_for_fill(info, Pose(pan, tilt, start.zoom), target, fill)
         requested = pose_towards(info, pan, tilt, zoom)
         pose, clamped_axes = limits.clamp(requested)
         clamped = set(clamped_axes)
@@ -112,27 +112,27 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
         if not math.isfinite(left):
             break
         middle = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
-    return Aim(pose, fill, sorted_axes(clamped))
+    return Aim(pose, fill, sort_axes(clamped))
 
 
 def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
-    """Return the pose within the limits that looks at the middle of a target at a given magnification."""
+    """Return the pose within the limits that aims at the centre of a target at a given magnification."""
     pan, tilt = (float(v) for v in geometry.pan_tilt_deg(target.mean(axis=0)))
     pose, clamped = info.limits.clamp(pose_towards(info, pan, tilt, zoom))
     return Aim(pose, None, clamped)
 
 
-def sorted_axes(axes: set[Axis]) -> tuple[Axis, ...]:
+def sort_axes(axes: set[Axis]) -> tuple[Axis, ...]:
     """Return the axes in the order pan, tilt, zoom."""
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
     return tuple(name for name in order if name in axes)
 
 
-def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
+def _zoom_for_fill(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
     """Return the magnification at which the target fills the requested fraction.
 
-    In a centred view, sizes are proportional to the focal length. A focal length outside the range of the lens gives a zoom outside
-    the camera's limits, so that clamping reports the limit.
+    In a centred view, sizes are proportional to the focal length. A focal length outside the lens's range gives a zoom outside the
+    camera's limits, so that clamping reports the limit.
     """
     optics = info.optics
     current_fill, _ = measure(info, pose, target)
@@ -147,12 +147,12 @@ def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> floa
 
 
 def touches_border(box: Box, margin: float = 0.004) -> bool:
-    """Return whether a box touches the border of its frame, so that the target may continue outside."""
+    """Return whether a box touches the border of its frame, which means that the target may extend beyond it."""
     return min(box.x_min, box.y_min, 1 - box.x_max, 1 - box.y_max) <= margin
 
 
-def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
-    """Return the box nearest to the expected position of the target; None if no box is near enough to be the target."""
+def nearest_box(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
+    """Return the box nearest to the target's expected position; None if no box is close enough to be the target."""
     left, top, right, bottom = bounds(frame.projection.points(target))
     if not boxes or not math.isfinite(left):
         return None
@@ -166,13 +166,13 @@ def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floa
 
 
 def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float) -> Pose:
-    """Return the pose that looks in a direction, with a pan within the limits if possible."""
+    """Return the pose that aims in a direction, with a pan within the limits if possible."""
     limits = info.limits
     return Pose(pan_deg if limits.pan_endless else limits.aim_pan_deg(pan_deg), tilt_deg, zoom)
 
 
-def lookahead(previous: Floats, current: Floats, ratio: float) -> Floats:
-    """Return where a motion from ``previous`` to ``current`` leads after another ``ratio`` times the time between the two.
+def extrapolate(previous: Floats, current: Floats, ratio: float) -> Floats:
+    """Extrapolate a motion from ``previous`` to ``current`` by ``ratio`` times its length.
 
     All directions are unit vectors of shape ``(3,)``.
     """

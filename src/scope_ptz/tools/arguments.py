@@ -1,4 +1,4 @@
-"""The base class and the shared types of tool arguments. Planners receive the JSON schemas that pydantic generates from them."""
+"""The base class and shared types for tool arguments. Planners receive JSON schemas that pydantic generates from them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Phrase = Annotated[str, Field(min_length=1, max_length=500, pattern=r"\S")]
 
 
 class Arguments(BaseModel):
-    """Base class of a tool's arguments.
+    """Base class for tool arguments.
 
     Wrong types, unknown fields, NaN and infinities are errors. Finite values beyond a limit are clamped by the camera.
     """

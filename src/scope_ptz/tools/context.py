@@ -1,4 +1,4 @@
-"""The context of a tool call: a camera, a perception backend, and a store for pictures."""
+"""The context of a tool call: a camera, a perception backend, and a picture store."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from scope_ptz.tools.results import MoveResult, PoseData
 
 
 class ImageStore(Protocol):
-    """A store that saves pictures under unique names, relative to the run folder."""
+    """A store that saves pictures under unique names relative to the run folder."""
 
     async def save_frame(self, frame: Frame) -> str:
-        """Save a frame of the run, such as one that perception received, with lossy compression, and return its name."""
+        """Save a frame with lossy compression, such as one that perception received, and return its name."""
         ...
 
     async def save_picture(self, frame: Frame) -> str:
@@ -24,32 +24,32 @@ class ImageStore(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """The camera, the perception backend and the picture store of a run."""
+    """The camera, perception backend and picture store of a run."""
 
     camera: Camera
     perception: Perception
     images: ImageStore
 
 
-def move_result(camera: Camera, what: str, arrival: Arrival, preset: str | None = None) -> MoveResult:
+def move_result(camera: Camera, action: str, arrival: Arrival, preset: str | None = None) -> MoveResult:
     """Return the result of a move.
 
     Args:
         camera: The camera.
-        what: What the camera did, at the beginning of a sentence.
-        arrival: Where it arrived.
-        preset: The preset that it went to.
+        action: The completed action as the start of a sentence, such as "At home".
+        arrival: Where and how the move ended.
+        preset: The preset to which the camera moved; None for other moves.
     """
-    # In a dry run, every move is held back, which its answer states once.
+    # In a dry run, every move is held back, and the answer to the user says so once.
     held_back_by = None if camera.info.dry_run else arrival.limited_by or None
     return MoveResult(
-        message=f"{what}; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped, preset=preset,
+        message=f"{action}; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped, preset=preset,
         held_back_by=held_back_by,
     )  # fmt: skip
 
 
 def pose_text(arrival: Arrival) -> str:
-    """Describe the camera's pose, and the limits that stopped it, in words that end a sentence."""
+    """Return the end of a sentence that describes the camera's pose and the limits that stopped it."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
     if arrival.limited_by:

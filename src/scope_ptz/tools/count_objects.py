@@ -1,4 +1,4 @@
-"""The tool ``count_objects``: count objects in the current view or in the full scene."""
+"""The tool ``count_objects``: count objects in the current view or the full scene."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class CountResult(PerceptionResult):
 
 
 async def count_objects(context: ToolContext, arguments: CountObjects) -> CountResult:
-    """Count the objects that perception detects."""
+    """Count the objects that perception detects in a view."""
     frame = await view_frame(context, arguments.view)
     detections = await context.perception.detect(frame, arguments.description)
     count = len(detections.boxes)

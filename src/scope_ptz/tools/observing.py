@@ -1,4 +1,4 @@
-"""Helpers for ``count_objects`` and ``query_answer``: the frame of a view, and sentences about the notes of an observation."""
+"""Helpers for ``count_objects`` and ``query_answer``: the frame for a view, and sentences about an observation's notes."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from scope_ptz.tools.context import ToolContext
 
 
 async def view_frame(context: ToolContext, view: View) -> Frame:
-    """Return the current frame or, for the full view, the panorama of a sweep."""
+    """Return the current frame or, for the full view, a panorama from a sweep."""
     if view == "full":
-        from scope_ptz.tools.sweep import sweep  # only a sweep needs OpenCV
+        from scope_ptz.tools.sweep import sweep  # imported here, because only sweeps require OpenCV
 
         return await sweep(context.camera)
     return await context.camera.frame()
 
 
 def note_sentences(observation: Detections | Answer) -> str:
-    """Return sentences about corrections to an observation and about a second backend that disagrees, each preceded by a space."""
+    """Return sentences, each preceded by a space, about corrections to an observation and disagreement with a second backend."""
     sentences = list(observation.notes)
     agreement = observation.agreement
     if agreement is not None and not agreement.agrees:

@@ -1,4 +1,4 @@
-"""The registry of the nine camera tools of the paper. To add a tool, write a module for it and add it to ``TOOLS``."""
+"""The registry of the nine camera tools from the paper. To add a tool, write a module for it and add it to ``TOOLS``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from scope_ptz.tools.zoom_to_object import ZOOM_TO_OBJECT
 
 
 class ToolRegistry(Mapping[str, Tool]):
-    """Tools by name, in the order in which planners receive them.
+    """A mapping from names to tools, in the order in which planners receive them.
 
     Args:
         tools: The tools, in this order.
@@ -60,7 +60,7 @@ class ToolRegistry(Mapping[str, Tool]):
         """Validate a call, and return its tool and its arguments.
 
         Raises:
-            ToolCallError: The name or the arguments are invalid. The message states how to correct the call.
+            ToolCallError: The name or the arguments are invalid. The message explains how to correct the call.
         """
         tool = self._tools.get(name)
         if tool is None:

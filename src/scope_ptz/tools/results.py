@@ -1,4 +1,4 @@
-"""The results of tools. Every result contains the pose after the call and the axes that a limit stopped."""
+"""Tool results. Each result contains the pose after the call and the axes that stopped at a limit."""
 
 from __future__ import annotations
 
@@ -46,7 +46,8 @@ class MoveResult(Result):
 
     Attributes:
         preset: The preset that the camera went to; None for other moves.
-        held_back_by: The rule of the site that held the move back, in words; None if there is none. It is then not serialized.
+        held_back_by: A phrase that names what held the move back, such as a rule of the site; None if nothing did. None is not
+            serialized.
     """
 
     preset: str | None = None

@@ -1,8 +1,7 @@
 """Read and write a stored copy of the tool schemas, for commands that only print them.
 
-The schemas belong to ``scope_ptz.tools.registry``, which generates them from pydantic models. Importing the models takes longer
-than reading ``data/tools.json``. A test compares the two. After changing a tool, run ``write_stored_schemas()`` to rewrite
-the copy.
+``scope_ptz.tools.registry`` generates the schemas from pydantic models, but importing the models takes longer than reading
+``data/tools.json``. A test compares the two. After changing a tool, run ``write_stored_schemas()`` to update the copy.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 
 
 def stored_schemas() -> list[dict[str, Any]]:
-    """Return all tools in the OpenAI function format, as ``ToolRegistry.schemas`` does."""
+    """Return the stored schemas, which equal those from ``ToolRegistry.schemas``."""
     schemas: list[dict[str, Any]] = json.loads(_path().read_bytes())
     return schemas
 

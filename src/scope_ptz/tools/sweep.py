@@ -1,7 +1,7 @@
-"""Sweep the camera: take frames of the full scene at the widest zoom, and stitch them into one panorama.
+"""Sweep the camera: take frames of the full scene at the widest zoom, and stitch them into a panorama.
 
-A PTZ camera turns about its optical centre, so overlapping frames differ only by a re-projection. Each block of the panorama
-is copied from the frame whose middle is nearest. Frames are not blended, so that no object appears twice.
+A PTZ camera rotates about its optical centre, so overlapping frames differ only by a re-projection. Each block of the panorama
+is copied from the frame whose centre is nearest. Frames are not blended, so that no object appears twice.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scope_ptz.camera.base import Camera, CameraInfo, Frame
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Equirectangular, Limits, Perspective, Pose, wrap_pan_deg
 
-_GRID_PX = 8  # The projection is computed on a grid of this spacing and interpolated, with an error below 0.02 px.
+_GRID_PX = 8  # spacing of the grid on which the projection is computed exactly; interpolation errors are below 0.02 px
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +34,12 @@ class Block:
 
 
 def plan_sweep(info: CameraInfo) -> list[Block]:
-    """Return the blocks of a sweep over all directions that the camera can reach, row by row from the top, left to right."""
+    """Return the blocks of a sweep over all directions in the camera's range, row by row from the top, left to right."""
     limits, hfov = info.limits, info.optics.hfov_deg(info.limits.min_zoom)
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # Frames cover less height towards their sides. This is half the height at a column's edge, less 1 degree for tilted frames.
+    # Frames cover less height towards their sides: this is half the height at a column's edge, minus 1 degree for tilted frames.
     half_height_at_edge = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + half_height_at_edge, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - half_height_at_edge)
@@ -63,9 +63,9 @@ def _pan_span_deg(limits: Limits) -> float:
 
 
 async def sweep(camera: Camera) -> Frame:
-    """Take the frames of a sweep at one instant of scene time and stitch them. The camera always returns to its pose.
+    """Take the frames of a sweep at one instant of scene time, and stitch them. The camera always returns to its initial pose.
 
-    In a dry run the moves are reported, and the result is a frame of the view at the start.
+    In a dry run, the moves are reported, and the result is a frame of the initial view.
     """
     start = await camera.pose()
     blocks = plan_sweep(camera.info)
@@ -86,7 +86,7 @@ async def sweep(camera: Camera) -> Frame:
 
 
 def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
-    """Stitch the frames of a sweep into one equirectangular frame, at the pixel density in the middle of the frames."""
+    """Stitch the frames of a sweep into an equirectangular frame, at the pixel density in the centre of the frames."""
     first = frames[0]
     if any((f.width, f.height) != (first.width, first.height) for f in frames):
         raise CameraError("The camera changed its picture size during the sweep.")
@@ -97,7 +97,7 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
     width, height = round(span * density), round((top - bottom) * density)
     projection = Equirectangular(left, span, top, bottom, width, height)
     if all(frame.image.strides == (0, 0, 0) and frame.image[0, 0, 0] == first.image[0, 0, 0] for frame in frames):
-        # The camera does not render: its images repeat one value, and so does the panorama, which saves memory and time.
+        # Rendering is off: each image repeats a single value, and so does the panorama, which saves memory and time.
         return Frame(np.broadcast_to(first.image[:1, :1], (height, width, 3)), pose, span, first.time_s, projection, first.origin)
     panorama = np.empty((height, width, 3), np.uint8)
     for block, frame in zip(blocks, frames, strict=True):
@@ -106,7 +106,7 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
         if not isinstance(frame.projection, Perspective):
             raise CameraError("A sweep supports only perspective frames.")
         map_x, map_y = _block_maps(projection, frame.projection, x0, y0, x1, y1)
-        # A site's rules may keep the camera from turning to a block. Pixels that its frame does not show stay black.
+        # A site's rules may prevent the camera from aiming at a block. Pixels that its frame does not cover stay black.
         border = cv2.BORDER_REPLICATE if _aims_at(frame, block) else cv2.BORDER_CONSTANT
         panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=border)
     return Frame(panorama, pose, span, first.time_s, projection, first.origin)
@@ -120,7 +120,7 @@ def _aims_at(frame: Frame, block: Block) -> bool:
 def _block_maps(
     panorama: Equirectangular, view: Perspective, x0: int, y0: int, x1: int, y1: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return the source pixel of every panorama pixel of a block, interpolated from a coarse grid of exact values."""
+    """Return the source coordinates for each pixel in a block of the panorama, interpolated from a coarse grid."""
     columns, rows = (x1 - x0) // _GRID_PX + 2, (y1 - y0) // _GRID_PX + 2
     xs = (x0 + 0.5 + np.arange(columns) * _GRID_PX) / panorama.width
     ys = (y0 + 0.5 + np.arange(rows) * _GRID_PX) / panorama.height

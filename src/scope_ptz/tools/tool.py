@@ -1,4 +1,4 @@
-"""The definition of a tool."""
+"""Tool definitions."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ class Tool:
 
     Attributes:
         name: The name in calls.
-        arguments: The model that validates a call's arguments. Its docstring is the description that planners receive.
-        run: Carries out a call.
+        arguments: The pydantic model that validates a call's arguments. Its docstring is the description that planners receive.
+        run: The function that carries out a call.
         title: The display name, such as "Turn and zoom".
-        repeatable: Whether two equal calls, one after the other, have the same effect as one.
+        repeatable: Whether two identical consecutive calls have the same effect as one.
         moves: Whether the tool can move the camera.
         perceives: Whether the tool calls perception.
-        only_reads: Returns whether a call with the given arguments only reads the current view. Consecutive calls of this kind run
-            concurrently and share one frame.
+        only_reads: A function that returns whether a call with the given arguments only reads the current view. Consecutive calls
+            of this kind run concurrently and share one frame.
     """
 
     name: str
@@ -67,6 +67,6 @@ class Tool:
         return result
 
     def defaults(self) -> dict[str, Any]:
-        """Return the arguments that have a default other than None, with their defaults."""
+        """Return the defaults of the arguments whose default is not None."""
         fields = self.arguments.model_fields.items()
         return {name: field.default for name, field in fields if not field.is_required() and field.default is not None}

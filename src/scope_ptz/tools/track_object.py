@@ -12,7 +12,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Axis
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import lookahead, pose_towards, sorted_axes
+from scope_ptz.tools.aiming import extrapolate, pose_towards, sort_axes
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import PerceptionResult, PoseData
@@ -22,30 +22,30 @@ if TYPE_CHECKING:
     from scope_ptz.tools.aiming import Floats
 
 PERIOD_S = 0.5
-"""Time between two detections, in seconds. The paper's control loop runs at 2 Hz."""
+"""Time between detections in seconds. The paper's control loop runs at 2 Hz."""
 
 DEAD_ZONE = 0.06
-"""Offsets below this fraction of the frame are not corrected, to spare the motors."""
+"""Maximum offset, as a fraction of the frame, that is left uncorrected to reduce wear on the motors."""
 
 FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
-"""A target that fills a fraction of the frame outside ``FILL_RANGE`` is zoomed to ``TRACKING_FILL``.
+"""If the target fills a fraction of the frame outside ``FILL_RANGE``, the zoom is changed so that it fills ``TRACKING_FILL``.
 
-That leaves room for motion, and enough pixels to recognise the target.
+This leaves room for motion, and enough pixels to recognise the target.
 """
 
 MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
 MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
-"""Maximum speeds at which a target can deviate from the expected direction, before and after its motion is known.
+"""Maximum speeds at which a target may deviate from its expected direction, before and after its motion is known.
 
 A match that deviates faster is assumed to be a different object.
 """
 
 LOST_DETECTIONS = 2
 LOST_ZOOM_FACTOR = 0.6
-"""The zoom is multiplied by ``LOST_ZOOM_FACTOR`` after ``LOST_DETECTIONS`` consecutive detections without the target.
+"""After ``LOST_DETECTIONS`` consecutive detections without the target, the zoom is multiplied by ``LOST_ZOOM_FACTOR``.
 
-It is multiplied again after each further detection without the target, because a wider view is more likely to show it.
+This is repeated after each further detection without the target, because a wider view is more likely to show it.
 """
 
 
@@ -85,7 +85,7 @@ class TrackResult(PerceptionResult):
 
 
 class _Target:
-    """The state of a tracked target: its size, and the directions of its middle at the last two detections."""
+    """The state of a tracked target: its size, and the directions of its centre in the last two detections."""
 
     def __init__(self, frame: Frame, box: Box) -> None:
         self.size_deg = _size_deg(frame, box)
@@ -103,10 +103,10 @@ class _Target:
         if self.previous is None or self.time_s <= self.previous[1]:
             return self.middle
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
-        return lookahead(self.previous[0], self.middle, ahead / (self.time_s - self.previous[1]))
+        return extrapolate(self.previous[0], self.middle, ahead / (self.time_s - self.previous[1]))
 
     def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
-        """Return the box nearest to the expected direction, or None if the target cannot have moved that far."""
+        """Return the box nearest to the expected direction; None if the target cannot have moved that far."""
         expected = self.at(frame.time_s)
         angles = [float(geometry.angle_between_deg(_middle(frame, box), expected)) for box in boxes]
         if not angles:
@@ -130,7 +130,7 @@ def _size_deg(frame: Frame, box: Box) -> float:
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
-    """Keep an object in the middle of the view. If several objects match, the first one that perception lists is followed."""
+    """Keep an object in the centre of the view. If several objects match, follow the first one that perception lists."""
     camera, description = context.camera, arguments.description
     frame = await camera.frame()
     detections = await context.perception.detect(frame, description)
@@ -152,14 +152,14 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
         elif misses >= LOST_DETECTIONS:
             pose = await camera.pose()
             clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM_FACTOR)) - {"zoom"}
-        left_s = arguments.duration_s - (camera.clock.now_s() - started)
-        if left_s <= 1e-6:
+        remaining_s = arguments.duration_s - (camera.clock.now_s() - started)
+        if remaining_s <= 1e-6:
             break
         due_s = started + PERIOD_S * len(path)
         now_s = camera.clock.now_s()
-        await camera.clock.sleep(min(max(due_s - now_s, 0.05), left_s))
-        if camera.clock.now_s() <= now_s:  # otherwise the requested time would never pass
-            raise CameraError("Scene time is stopped, so nothing moves that could be followed. Let it pass, and try again.")
+        await camera.clock.sleep(min(max(due_s - now_s, 0.05), remaining_s))
+        if camera.clock.now_s() <= now_s:  # without this check, the loop would never end
+            raise CameraError("Scene time is stopped, so nothing in the scene moves. Start it, and try again.")
         frame = await camera.frame()
         detections = await context.perception.detect(frame, description)
         seen = target.find(frame, detections.boxes)
@@ -172,7 +172,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
 
 
 async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[Axis, ...]:
-    """Aim at where the target will be at the next detection, and correct the zoom if the target is too small or too large."""
+    """Aim at the target's expected direction at the next detection. If the target is too small or too large, correct the zoom."""
     info = context.camera.info
     fill = max(seen.width, seen.height)
     offset = max(abs(seen.centre[0] - 0.5), abs(seen.centre[1] - 0.5))
@@ -195,13 +195,13 @@ def _report(
     arguments: TrackObject, source: str, frame: Frame, path: list[TrackPoint], clamped: set[Axis], saved: list[str]
 ) -> TrackResult:
     share = _held_share(path)
-    stops = sorted_axes(clamped)
-    bound = f" The {' and '.join(stops)} limit was reached." if stops else ""
+    limited_axes = sort_axes(clamped)
+    limit_note = f" The {' and '.join(limited_axes)} limit was reached." if limited_axes else ""
     return TrackResult(
         message=f"Followed '{arguments.description}' for {arguments.duration_s:g} s; "
-        f"it was in view {share:.0%} of the time.{bound}",
+        f"it was in view {share:.0%} of the time.{limit_note}",
         pose=PoseData.of(frame.pose),
-        clamped=stops,
+        clamped=limited_axes,
         source=source,
         frames=tuple(saved),
         description=arguments.description,
@@ -213,7 +213,7 @@ def _report(
 
 
 def _held_share(path: list[TrackPoint]) -> float:
-    """Return the fraction of the time with the target in view. Each detection counts for the time since the previous one."""
+    """Return the fraction of the time that the target was in view. Each detection counts for the time since the previous one."""
     visible_s = sum((current.time_s - previous.time_s) for previous, current in pairwise(path) if current.seen)
     span = max(path[-1].time_s, 1e-9)
     return min(visible_s / span, 1.0) if len(path) > 1 else 1.0

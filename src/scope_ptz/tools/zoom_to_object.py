@@ -11,7 +11,7 @@ from scope_ptz import geometry
 from scope_ptz.camera.base import Arrival, CameraInfo, Frame
 from scope_ptz.geometry import Axis, Pose
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import TARGET_FILL, Aim, aim, aim_at_zoom, measure, nearest, outline, touches_border
+from scope_ptz.tools.aiming import TARGET_FILL, Aim, aim, aim_at_zoom, measure, nearest_box, outline, touches_border
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext, pose_text
 from scope_ptz.tools.results import PerceptionResult, PoseData
@@ -24,18 +24,20 @@ MAX_DETECTIONS = 3
 """Maximum number of perception calls per tool call."""
 
 SMALL_FILL = 0.05
-"""A target whose limiting side fills less than this fraction of the frame is detected again at a closer zoom, for a better box."""
+"""Fraction of the frame below which a target is detected again at a closer zoom, to obtain a better box."""
 
 CLOSER_FILL = 0.45
-"""Fraction of the frame that the limiting side of a small target fills for the next detection."""
+"""Fraction of the frame that the limiting side of a small target should fill for the next detection."""
 
 CUT_OFF_ZOOM_FACTOR = 0.4
-"""Factor by which the zoom changes for the next detection of a target that the frame cuts off, so that the whole target fits."""
+"""Factor by which to change the zoom for the next detection of a target that the frame cuts off, so that all of it fits."""
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
-"""The camera moves no further if the target's offset from the middle is at most ``SETTLED_OFFSET``, a fraction of the frame, and
-its fill is within ``SETTLED_FILL``."""
+"""Maximum offset of a framed target from the centre, as a fraction of the frame, and range of its fill.
+
+A target that meets both criteria is not framed again.
+"""
 
 
 class ZoomToObject(Arguments):
@@ -70,7 +72,7 @@ class ZoomResult(PerceptionResult):
 
 @dataclass(frozen=True, slots=True)
 class _Detection:
-    """The target in one frame."""
+    """A detection of the target in a frame."""
 
     frame: Frame
     box: Box
@@ -85,13 +87,13 @@ class _Detection:
 async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomResult:
     """Centre an object, and zoom so that its limiting side fills ``TARGET_FILL`` of the frame.
 
-    If several objects match, the first one that perception lists is used; the ground truth lists the largest first. After a move,
-    the match nearest to the expected position is assumed to be the same object. The camera does not move if nothing is found.
+    If several objects match, the first one that perception lists is used; ground truth lists the largest first. After a move, the
+    match nearest to the expected position is assumed to be the same object. If nothing is found, the camera does not move.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)
     if isinstance(first, Frame):
-        return await _nothing_found(context, arguments.description, first)
+        return await _not_found_result(context, arguments.description, first)
     last, detections, target = first, 1, first.target
     frames = [await context.images.save_frame(first.frame)]
     try:
@@ -107,7 +109,7 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
             redetected = await _locate(context, arguments.description, target)
             detections += 1
             if isinstance(redetected, Frame):
-                # Perception may not recognise the target in a close-up. Its direction is still known.
+                # Perception may not recognise the target in a close-up, but its direction is still known.
                 if is_interim:
                     await context.camera.move(aim(context.camera.info, arrival.pose, target).pose)
                 break
@@ -121,9 +123,9 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
 
 
 def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: int) -> Aim:
-    """Return the next move: the final framing if the box shows the whole target, otherwise a pose for a better detection."""
+    """Plan the next move: to the final framing if the box shows the whole target, otherwise to a pose for a better detection."""
     if detections < MAX_DETECTIONS and touches_border(box):
-        # A large target, or one that is cut off again, may need the widest view to fit.
+        # A large target, or one that is cut off again, may fit only in the widest view.
         large = max(box.width, box.height) > 0.25
         zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_OFF_ZOOM_FACTOR, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
@@ -150,18 +152,18 @@ async def _locate(context: ToolContext, description: str, expected: Floats | Non
     Args:
         context: The context of the call.
         description: The description of the target.
-        expected: Directions along the target's outline, if it was detected before; None for the first detection.
+        expected: Directions along the target's outline if it has been detected before; None for the first detection.
     """
     frame = await context.camera.frame()
     observation = await context.perception.detect(frame, description)
-    box = nearest(context.camera.info, frame, observation.boxes, expected) if expected is not None else None
+    box = nearest_box(context.camera.info, frame, observation.boxes, expected) if expected is not None else None
     if expected is None and observation.boxes:
         box = observation.boxes[0]
     return frame if box is None else _Detection(frame, box, len(observation.boxes), observation.source)
 
 
-async def _nothing_found(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
-    """Return the result when nothing in view matches the description."""
+async def _not_found_result(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
+    """Return the result for a description that nothing in view matches."""
     return ZoomResult(
         message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
         pose=PoseData.of(frame.pose),
@@ -177,16 +179,16 @@ async def _report(context: ToolContext, description: str, first: _Detection, tar
     frame = await context.camera.frame()
     info = context.camera.info
     fill, offset = measure(info, frame.pose, target)
-    limited = tuple(axis for axis in aim(info, frame.pose, target).limited_by if info.limits.at_stop(frame.pose, axis))
-    several = f" ({first.matches} match; this is the first that {first.source} names)" if first.matches > 1 else ""
-    bound = f" The {' and '.join(limited)} limit keeps it from being framed better." if limited else ""
+    limited_axes = tuple(axis for axis in aim(info, frame.pose, target).limited_by if info.limits.at_stop(frame.pose, axis))
+    match_note = f" ({first.matches} match; this is the first that {first.source} names)" if first.matches > 1 else ""
+    limit_note = f" The {' and '.join(limited_axes)} limit keeps it from being framed better." if limited_axes else ""
     points = frame.projection.points(target)
     low, high = points.min(axis=0).clip(0, 1), points.max(axis=0).clip(0, 1)
     name = first.box.label or description
     return ZoomResult(
-        message=f"Zoomed to {name}{several}: it fills {fill:.0%} of the frame; {pose_text(Arrival(frame.pose))}.{bound}",
+        message=f"Zoomed to {name}{match_note}: it fills {fill:.0%} of the frame; {pose_text(Arrival(frame.pose))}.{limit_note}",
         pose=PoseData.of(frame.pose),
-        clamped=limited,
+        clamped=limited_axes,
         source=first.source,
         frames=(*frames, await context.images.save_frame(frame)),
         description=description,
@@ -195,7 +197,7 @@ async def _report(context: ToolContext, description: str, first: _Detection, tar
         chosen=name,
         fill=round(fill, 4),
         offset=(round(offset[0], 4), round(offset[1], 4)),
-        limited_by=limited,
+        limited_by=limited_axes,
         box=Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=first.box.label),
     )
 

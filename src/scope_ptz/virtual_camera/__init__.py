@@ -1,1 +1,1 @@
-"""A virtual network camera: a scene behind the protocols of real pan-tilt-zoom cameras."""
+"""A virtual network camera: a scene served over the protocols of real pan-tilt-zoom cameras."""

@@ -8,19 +8,19 @@ from enum import IntEnum
 
 
 class Role(IntEnum):
-    """The permissions of an account. Each role includes the permissions of all roles with lower numbers."""
+    """The permissions of an account. Each role includes those of all roles with lower numbers."""
 
     VIEWER = 1
     """May view pictures and streams."""
     OPERATOR = 2
-    """May also move the camera and go to presets."""
+    """May also move the camera, including to presets."""
     ADMINISTRATOR = 3
-    """May also change presets, home and parameters."""
+    """May also change presets, the home position and parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """A user name with its password and role. The password does not appear in ``repr``."""
+    """A user name with its password and role. The password is hidden from ``repr``."""
 
     name: str
     password: str = field(repr=False)
@@ -28,7 +28,7 @@ class Account:
 
 
 class Accounts:
-    """The accounts of one camera.
+    """The accounts of a camera.
 
     Args:
         accounts: The accounts. If there are none, the camera requires no password.
@@ -38,7 +38,7 @@ class Accounts:
         self._accounts = {account.name: account for account in accounts}
 
     @property
-    def open_to_all(self) -> bool:
+    def is_open(self) -> bool:
         """Whether the camera requires no password."""
         return not self._accounts
 

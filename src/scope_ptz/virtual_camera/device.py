@@ -1,4 +1,4 @@
-"""The virtual device that all protocols share: motors, presets, accounts, faults, and the image at the current pose."""
+"""The virtual device behind all protocols: motors, presets, accounts, faults, and the image at the current pose."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from scope_ptz.virtual_camera.faults import Faults
 from scope_ptz.virtual_camera.lens import VirtualLens
 
 REBOOT_S = 10.0
-"""Default number of seconds for which a rebooting camera is off the network."""
+"""Default time in seconds for which a rebooting camera is off the network."""
 
 REPLY_S = 0.3
-"""Seconds that a request for a reboot has for its reply, before the camera leaves the network."""
+"""Delay in seconds before a rebooting camera goes off the network, so that the reboot request still gets a reply."""
 
 MAX_PRESETS = 256
-"""Number of presets that the device can store, as on the AXIS M5075-G."""
+"""Maximum number of presets, the same as on the AXIS M5075-G."""
 
-_STUCK_FIELDS = {"pan": "pan_deg", "tilt": "tilt_deg", "zoom": "zoom"}
+_POSE_FIELDS = {"pan": "pan_deg", "tilt": "tilt_deg", "zoom": "zoom"}
 
 
 @dataclass(frozen=True, slots=True)
 class DevicePreset:
-    """A stored pose. Protocols address it by number (VAPIX) or token (ONVIF: the number as text), or by name."""
+    """A stored pose, which clients address by name, by number (VAPIX), or by token (the number as text, ONVIF)."""
 
     number: int
     name: str
@@ -46,13 +46,13 @@ class DevicePreset:
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """An image that the sensor captured, with its pose and times.
+    """A captured image, with its pose and times.
 
     Attributes:
         image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
-        pose: The pose that the encoders reported at exposure.
-        time_s: Scene time of the exposure, in seconds.
-        taken_s: Time of the exposure in seconds, on the clock of ``time.monotonic``.
+        pose: The pose that the encoders reported at the time of exposure.
+        time_s: Scene time of the exposure in seconds.
+        taken_s: ``time.monotonic`` time of the exposure in seconds.
     """
 
     image: NDArray[np.uint8]
@@ -62,25 +62,25 @@ class Exposure:
 
 
 class VirtualDevice:
-    """A pan-tilt-zoom camera at one viewpoint of a scene.
+    """A pan-tilt-zoom camera at a viewpoint of a scene.
 
-    Commands come from one thread. ``expose`` may run in another one at the same time.
+    Commands must come from a single thread. ``expose`` may run in another thread at the same time.
 
     Args:
         scene: The scene.
-        viewpoint: The viewpoint of the camera; by default, that of the scene's home preset.
-        name: Name of the device, which clients show to their users; by default, the names of the scene and the viewpoint.
-        accounts: The accounts that may use it. If there are none, it requires no password.
-        clock: The scene clock, which moves the actors. It can be paused while the motors keep moving.
-        head: The motors; the default is those of the AXIS M5075-G.
+        viewpoint: The camera's viewpoint; by default, that of the scene's home preset.
+        name: Device name, which clients show to their users; by default, the names of the scene and the viewpoint.
+        accounts: The accounts that may use the camera. If there are none, it requires no password.
+        clock: The scene clock, which moves the actors. It can be paused independently of the motors.
+        head: The motors; by default, those of the AXIS M5075-G.
         width: Width of a full-size picture in pixels.
         height: Height of a full-size picture in pixels.
         time_scale: Speed of the motors, as a multiple of the real speed.
 
     Attributes:
-        faults: The current faults; assign another ``Faults`` to change them.
+        faults: The current faults; assign a new ``Faults`` to change them.
         observers: Functions that are called with each new exposure, in the thread that captures it.
-        lens: Focus and iris of the camera.
+        lens: The camera's focus and iris.
     """
 
     def __init__(
@@ -111,8 +111,8 @@ class VirtualDevice:
         self.lens = VirtualLens(self.now_s)
         self._last_stop_sent_s = -np.inf
         self._faults, self._faults_since_s = Faults(), 0.0
-        self._frozen: Exposure | None = None
-        self._reboot_s = (-np.inf, -np.inf)  # start and end of the last reboot, on the clock of ``time.monotonic``
+        self._frozen_exposure: Exposure | None = None
+        self._reboot_s = (-np.inf, -np.inf)  # ``time.monotonic`` times at which the last reboot started and ended
         self.observers: list[Callable[[Exposure], None]] = []
 
     @property
@@ -121,89 +121,89 @@ class VirtualDevice:
 
     @faults.setter
     def faults(self, faults: Faults) -> None:
-        self._faults, self._faults_since_s, self._frozen = faults, self.now_s(), None
+        self._faults, self._faults_since_s, self._frozen_exposure = faults, self.now_s(), None
 
     @property
     def down(self) -> bool:
-        """Whether the camera is off the network, because of the fault ``down`` or a reboot."""
+        """Whether the camera is off the network because of the fault ``down`` or a reboot."""
         start_s, end_s = self._reboot_s
         return self._faults.down or start_s <= monotonic() < end_s
 
     def now_s(self) -> float:
-        """Return the motors' time in seconds, which runs ``time_scale`` times as fast as the wall clock."""
+        """Return the motor time in seconds, which runs ``time_scale`` times as fast as the wall clock."""
         return (monotonic() - self._started_s) * self.time_scale
 
     def pose(self) -> Pose:
         """Return the pose that the encoders report."""
         return self._motion.pose(self.now_s())
 
-    def moving(self) -> bool:
-        """Return whether a motor is turning or the image has not settled yet."""
-        return self._motion.moving(self.now_s())
+    def is_moving(self) -> bool:
+        """Return whether a motor is moving or the image has not settled yet."""
+        return self._motion.is_moving(self.now_s())
 
     def reported_moving(self) -> bool | None:
-        """Return the move status reported to clients; None if the device does not report one."""
+        """Return the move status that is reported to clients; None if the device does not report one."""
         status = self._faults.move_status
-        return None if status == "missing" else (self.moving() and status != "lying")
+        return None if status == "missing" else (self.is_moving() and status != "lying")
 
     @property
     def destination(self) -> Pose:
-        """The target of the last move; the current pose if the camera was driven at a velocity instead."""
+        """The target of the last move; the current pose if the last command was a drive."""
         return self._motion.end or self.pose()
 
     def move(self, pose: Pose, *, speed_fraction: float = 1.0, zoom_fraction: float | None = None) -> None:
-        """Start a move to a pose. Values beyond a limit are clamped, and an axis with the fault ``stuck`` does not move.
+        """Start a move to a pose. Values beyond a limit are clamped, and axes with the fault ``stuck`` do not move.
 
         Args:
             pose: The target.
-            speed_fraction: Speed as a fraction of the top speed of each axis.
-            zoom_fraction: Speed of the zoom as a fraction of its top speed; by default, ``speed_fraction``.
+            speed_fraction: Speed as a fraction of each axis's top speed.
+            zoom_fraction: Zoom speed as a fraction of its top speed; by default, ``speed_fraction``.
         """
-        reachable, _ = self.limits.clamp(pose)
-        here = self.pose()
-        stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_fraction=speed_fraction, zoom_fraction=zoom_fraction)
+        clamped, _ = self.limits.clamp(pose)
+        current = self.pose()
+        stuck = {_POSE_FIELDS[axis]: getattr(current, _POSE_FIELDS[axis]) for axis in self._faults.stuck}
+        self._motion.move(replace(clamped, **stuck), self.now_s(), speed_fraction=speed_fraction, zoom_fraction=zoom_fraction)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
-        """Move continuously. A command that was sent before the last ``stop``, but arrives after it, is dropped.
+        """Move continuously. A command that was sent before the last ``stop`` but arrives after it is dropped.
 
         Args:
-            velocity: The velocities. Those above the top speed of an axis are reduced to it.
+            velocity: The velocities, which are capped at the top speed of each axis.
             timeout_s: Seconds of motor time after which the device stops on its own; None for never.
-            sent_s: The time at which the client sent the command, in Unix seconds, if known.
+            sent_s: The time at which the client sent the command in Unix seconds, if known.
 
         Returns:
-            Whether the command is carried out.
+            False if the command was dropped.
         """
         if sent_s is not None and sent_s < self._last_stop_sent_s:
             return False
         stuck = self._faults.stuck
-        free = Velocity(
+        unblocked = Velocity(
             0.0 if "pan" in stuck else velocity.pan_dps,
             0.0 if "tilt" in stuck else velocity.tilt_dps,
             0.0 if "zoom" in stuck else velocity.zoom_rate,
         )
         # Without a timeout, the motors run until the next command or the end of their range. A year stands for "never".
-        self._motion.drive(free, self.now_s(), 3.2e7 if timeout_s is None else timeout_s)
+        self._motion.drive(unblocked, self.now_s(), 3.2e7 if timeout_s is None else timeout_s)
         return True
 
     @property
     def velocity(self) -> Velocity:
-        """The current velocity of a head that ``drive`` moves; zero during a move to a pose."""
+        """The current velocity of a drive; zero during a move to a pose."""
         return self._motion.velocity(self.now_s())
 
     @property
     def commanded_velocity(self) -> Velocity:
-        """The velocity that the last ``drive`` command requested; zero after its timeout, and during a move to a pose."""
+        """The velocity requested by the last ``drive``; zero after its timeout and during a move to a pose."""
         return self._motion.commanded_velocity(self.now_s())
 
     def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
-        """Stop pan and tilt, the zoom, or both. The other axes keep moving.
+        """Stop pan and tilt, zoom, or both. The other axes keep moving.
 
         Args:
-            pan_tilt: Whether pan and tilt stop.
-            zoom: Whether the zoom stops.
-            sent_s: The time at which the client sent the command, in Unix seconds, if known.
+            pan_tilt: Whether to stop pan and tilt.
+            zoom: Whether to stop zoom.
+            sent_s: The time at which the client sent the command in Unix seconds, if known.
         """
         if sent_s is not None:
             self._last_stop_sent_s = max(self._last_stop_sent_s, sent_s)
@@ -217,13 +217,13 @@ class VirtualDevice:
             self._motion.brake(now_s)
 
     def reboot(self, down_s: float = 0.0, *, after_s: float = 0.0) -> None:
-        """Return to the home position immediately, as after a reboot. Presets are kept; focus and iris become automatic.
+        """Simulate a reboot. The camera returns to its home position, keeps its presets, and sets focus and iris to automatic.
 
-        Earlier stop commands no longer cause ``drive`` commands to be dropped.
+        Stop commands from before the reboot no longer cause ``drive`` commands to be dropped.
 
         Args:
             down_s: Seconds for which the camera is off the network.
-            after_s: Seconds until it leaves the network, so that the client that requested the reboot still gets a reply.
+            after_s: Seconds until the camera goes off the network, so that the client that requested the reboot still gets a reply.
         """
         start_s = monotonic() + after_s
         self._reboot_s = (start_s, start_s + down_s)
@@ -232,7 +232,7 @@ class VirtualDevice:
         self._last_stop_sent_s = -np.inf
 
     def presets(self) -> list[DevicePreset]:
-        """Return the presets in the order of their numbers."""
+        """Return the presets, sorted by number."""
         return [self._presets[number] for number in sorted(self._presets)]
 
     def find_preset(self, name: str) -> DevicePreset:
@@ -241,10 +241,10 @@ class VirtualDevice:
         Raises:
             UnknownNameError: There is no such preset.
         """
-        found = next((preset for preset in self._presets.values() if preset.name == name), None)
-        if found is None:
+        preset = next((preset for preset in self._presets.values() if preset.name == name), None)
+        if preset is None:
             raise UnknownNameError("preset", name, [preset.name for preset in self._presets.values()])
-        return found
+        return preset
 
     def preset(self, number: int) -> DevicePreset:
         """Return a preset by number.
@@ -257,21 +257,21 @@ class VirtualDevice:
         return self._presets[number]
 
     def save_preset(self, name: str, *, number: int | None = None) -> DevicePreset:
-        """Store the current pose as a preset. A preset with this number is replaced.
+        """Store the current pose as a preset. An existing preset with the same number is replaced.
 
         Args:
             name: The name.
-            number: The number; by default, that of the preset with this name, or else the first free one.
+            number: The number; by default, that of the existing preset with this name, or else the first free number.
 
         Raises:
-            InputError: The name is empty, too long, or contains unprintable characters.
+            InputError: The name is empty or too long, or contains unprintable characters.
             CameraError: No number is free, or the number is out of range.
         """
         check_preset_name(name)
         if number is None:
-            same = (preset.number for preset in self._presets.values() if preset.name == name)
-            free = (k for k in range(1, MAX_PRESETS + 1) if k not in self._presets)
-            number = next(same, None) or next(free, None)
+            with_name = (preset.number for preset in self._presets.values() if preset.name == name)
+            unused = (k for k in range(1, MAX_PRESETS + 1) if k not in self._presets)
+            number = next(with_name, None) or next(unused, None)
         if number is None or not 1 <= number <= MAX_PRESETS:
             raise CameraError(f"All {MAX_PRESETS} presets are in use. Remove one first.")
         self._presets[number] = DevicePreset(number, name, self.pose())
@@ -282,7 +282,7 @@ class VirtualDevice:
 
         Raises:
             UnknownNameError: There is no such preset.
-            InputError: The name is empty, too long, in use, or contains unprintable characters.
+            InputError: The name is empty, too long or already in use, or contains unprintable characters.
         """
         check_preset_name(name)
         if any(preset.name == name and preset.number != number for preset in self._presets.values()):
@@ -302,11 +302,11 @@ class VirtualDevice:
         self.home = self.pose()
 
     def prefetch(self) -> Prefetch:
-        """Read the files of the viewpoint in the background, so that later exposures do not have to wait for them."""
+        """Start reading the viewpoint's files in the background, so that later exposures do not have to wait for them."""
         return Prefetch(self.scene.viewpoint(self.viewpoint), self.width, self.optics, self.limits)
 
     def expose(self, width: int | None = None, height: int | None = None) -> Exposure:
-        """Capture the image at the current pose. This blocks until the image is rendered.
+        """Capture the image at the current pose. This blocks until the image has been rendered.
 
         The horizontal field of view depends only on the zoom, not on the image size.
 
@@ -315,8 +315,8 @@ class VirtualDevice:
             height: Height of the image in pixels; by default, the full size.
         """
         faults = self._faults
-        if faults.picture == "frozen" and self._frozen is not None:
-            return self._frozen
+        if faults.picture == "frozen" and self._frozen_exposure is not None:
+            return self._frozen_exposure
         width, height = width or self.width, height or self.height
         if faults.picture == "size":
             width, height = width // 2, height // 2
@@ -332,5 +332,5 @@ class VirtualDevice:
         for observe in self.observers:
             observe(exposure)
         if faults.picture == "frozen":
-            self._frozen = exposure
+            self._frozen_exposure = exposure
         return exposure

@@ -1,4 +1,4 @@
-"""Faults that a virtual camera simulates on demand."""
+"""Faults that a virtual camera can simulate."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ class Faults(BaseModel):
     """The faults of a virtual camera. By default, there are none.
 
     Attributes:
-        drop: Fraction of requests whose connection is closed without a reply.
-        stall_s: Seconds by which every reply is delayed.
+        drop: Fraction of requests for which the connection is closed without a reply.
+        stall_s: Delay in seconds before each reply.
         unauthorized: Whether every account is rejected.
-        garbage: Whether reply bodies are replaced by invalid data.
-        picture: The image fault: ``truncated`` JPEGs, a ``frozen`` image, a ``black`` image, or a wrong ``size``; empty for none.
-        stuck: Axes whose motors do not turn.
-        drift_dps: Degrees per second by which the image drifts away from the pose that the encoders report.
-        move_status: The fault of the move status: ``lying`` (always idle) or ``missing`` (not reported); empty for none.
+        garbage: Whether reply bodies are replaced with invalid data.
+        picture: The picture fault: ``truncated`` JPEGs, a ``frozen`` picture, a ``black`` picture, or a wrong ``size``; empty for
+            none.
+        stuck: Axes that do not move.
+        drift_dps: Speed in degrees per second at which the picture drifts away from the reported pose.
+        move_status: The move status fault: ``lying`` (always reported as idle) or ``missing`` (not reported); empty for none.
         down: Whether the camera is off the network, as during a reboot.
-        clock_skew_s: Seconds by which the camera's clock is ahead.
+        clock_skew_s: Seconds by which the camera's clock is fast.
     """
 
     model_config = ConfigDict(extra="forbid", validate_assignment=True)
@@ -42,7 +43,7 @@ class Faults(BaseModel):
 
 
 def validate_faults(content: Mapping[str, object]) -> Faults:
-    """Return the faults from a mapping of their names to values, after checking both.
+    """Validate a mapping of fault names to values, and return the faults.
 
     Raises:
         InputError: A fault is unknown or has an invalid value.
@@ -53,5 +54,9 @@ def validate_faults(content: Mapping[str, object]) -> Faults:
         first = error.errors()[0]
         name = ".".join(str(part) for part in first["loc"][:1])
         known = ", ".join(Faults.model_fields)
-        what = f"There is no fault '{name}'. Known: {known}." if first["type"] == "extra_forbidden" else f"{name}: {first['msg']}."
-        raise InputError(what) from error
+        message = (
+            f"There is no fault '{name}'. Known faults: {known}."
+            if first["type"] == "extra_forbidden"
+            else f"{name}: {first['msg']}."
+        )
+        raise InputError(message) from error

@@ -1,4 +1,4 @@
-"""Limit the memory use of a program that creates and releases many pictures in several threads."""
+"""Limit the memory use of a process that creates and releases many pictures in several threads."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import anyio
 
 from scope_ptz.simulator.sheets.memory import release_free_memory
 
-RELEASE_EVERY_S = 60.0  # seconds between two releases of freed memory
+RELEASE_EVERY_S = 60.0  # seconds between releases of freed memory
 
-_M_ARENA_MAX = -8  # number of the parameter M_ARENA_MAX in calls of mallopt (GNU C library)
+_M_ARENA_MAX = -8  # the value of M_ARENA_MAX for mallopt in the GNU C library
 
 
 def use_one_heap() -> bool:
-    """Make all threads of this program share one heap. Call it before threads are started.
+    """Make all threads in this process share one heap. Call this before starting threads.
 
-    The GNU C library gives each thread its own heap. Short-lived pictures fragment these heaps, so the memory use of a camera with
-    streams grows by about 100 MB within minutes. Sharing one heap takes no additional processor time. With another C library or on
-    another system, nothing changes.
+    The GNU C library gives each thread its own heap. Short-lived pictures fragment these heaps, so the memory use of a streaming
+    camera grows by about 100 MB within minutes. Sharing one heap costs no additional processor time. With other C libraries and on
+    other systems, this has no effect.
 
     Returns:
         Whether the setting was accepted.
@@ -33,9 +33,9 @@ def use_one_heap() -> bool:
 
 
 async def release_memory_regularly(every_s: float = RELEASE_EVERY_S) -> None:
-    """Return freed memory to the operating system at regular intervals, until cancelled.
+    """Return freed memory to the operating system at regular intervals until cancelled.
 
-    Pictures of different sizes fragment the heap, so its size would otherwise grow by 1 to 2% in ten minutes of streaming.
+    Pictures of different sizes fragment the heap, which would otherwise grow by 1 to 2% in ten minutes of streaming.
     """
     while True:
         await anyio.sleep(every_s)

@@ -1,4 +1,4 @@
-"""Focus and iris of the virtual device, and their effect on its picture."""
+"""The focus and iris of a virtual device, and their effect on its picture."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 SHARP_FOCUS = 0.62
-"""The focus position at which the scene is sharp. It does not depend on the zoom, because the lens is parfocal."""
+"""The focus position at which the scene is sharp. The lens is parfocal, so this does not depend on the zoom."""
 
 AUTO_IRIS = 0.5
-"""The iris opening for correct exposure of the scene."""
+"""The iris opening at which the scene is correctly exposed."""
 
 TRAVEL_S = 3.0
-"""Time in seconds that the focus takes to travel its whole range at top speed."""
+"""Time in seconds for the focus to travel its whole range at top speed."""
 
-_BLUR_PX = 12.0  # standard deviation of the blur for a defocus of the whole range, at 1x in an image 1280 pixels wide
-_MAX_BLUR_PX = 8.0  # maximum standard deviation of the blur, in an image 1280 pixels wide
-_STOPS = 4.0  # stops (factors of two) of light from the closed to the open iris
+_BLUR_PX = 12.0  # standard deviation of the blur for a focus error of the whole range, at 1x in an image 1280 pixels wide
+_MAX_BLUR_PX = 8.0  # maximum standard deviation of the blur in an image 1280 pixels wide
+_STOPS = 4.0  # stops (factors of two) of light between the closed and the open iris
 _GAMMA = 2.2  # exponent that converts pixel values to light
 
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """The state of a lens: its modes, its manual iris opening, and the last motion of the focus.
+    """The state of a lens: its modes, its manual iris opening, and the last focus motion.
 
-    The motion begins at ``start`` at the time ``started_s``, and has a ``speed`` in fractions of the range per second.
+    The motion goes from ``start`` to ``end``, begins at the time ``started_s``, and has a ``speed`` in fractions of the range per
+    second.
     """
 
     autofocus: bool = True
@@ -42,12 +43,12 @@ class _State:
 
 
 class VirtualLens:
-    """Focus and iris. Positions are fractions of their ranges: 0 is near or closed, 1 is far or open.
+    """A lens with focus and iris. Positions are fractions of their ranges: 0 is near or closed, 1 is far or open.
 
-    Commands come from one thread. ``VirtualDevice.expose`` may run in another one at the same time.
+    Commands must come from a single thread. ``VirtualDevice.expose`` may run in another thread at the same time.
 
     Args:
-        now_s: Returns the motors' time in seconds.
+        now_s: A function that returns the motor time in seconds.
     """
 
     def __init__(self, now_s: Callable[[], float]) -> None:
@@ -67,30 +68,30 @@ class VirtualLens:
 
     @property
     def focus(self) -> float:
-        """The current position of the focus."""
+        """The current focus position."""
         state = self._state
-        way = state.end - state.start
-        done = state.speed * (self._now_s() - state.started_s)
-        return state.end if done >= abs(way) else state.start + math.copysign(done, way)
+        distance = state.end - state.start
+        travelled = state.speed * (self._now_s() - state.started_s)
+        return state.end if travelled >= abs(distance) else state.start + math.copysign(travelled, distance)
 
     @property
-    def focusing(self) -> bool:
+    def is_focusing(self) -> bool:
         """Whether the focus is moving."""
         return self.focus != self._state.end
 
     def set_autofocus(self, *, on: bool) -> None:
-        """Turn autofocus on, which starts to focus at once, or off, which keeps the current focus."""
+        """Turn autofocus on or off. When turned on, it starts focusing immediately; when turned off, it keeps the current focus."""
         if on:
             self._travel(SHARP_FOCUS, 1 / TRAVEL_S, autofocus=True)
         else:
             self.stop_focus()
 
     def move_focus(self, position: float) -> None:
-        """Move the focus to a position within its range. This turns autofocus off."""
+        """Move the focus to a position. This turns autofocus off."""
         self._travel(_clamp(position), 1 / TRAVEL_S)
 
     def drive_focus(self, speed: float) -> None:
-        """Move the focus towards the far (``speed`` above 0) or near end of its range. This turns autofocus off.
+        """Move the focus towards the far end (``speed`` above 0) or the near end of its range. This turns autofocus off.
 
         Args:
             speed: Signed fraction of the top speed, from -1 to 1; 0 stops the focus.
@@ -105,7 +106,7 @@ class VirtualLens:
         self._travel(self.focus, 0.0)
 
     def set_autoiris(self, *, on: bool) -> None:
-        """Turn the automatic iris on, or off, which keeps the current opening."""
+        """Turn the automatic iris on or off. When turned off, it keeps the current opening."""
         self._state = replace(self._state, autoiris=on, iris=self.iris)
 
     def set_iris(self, opening: float) -> None:
@@ -113,11 +114,11 @@ class VirtualLens:
         self._state = replace(self._state, autoiris=False, iris=_clamp(opening))
 
     def apply(self, image: NDArray[np.uint8], zoom: float) -> NDArray[np.uint8]:
-        """Apply the effect of the lens to an image: blur it if it is out of focus, and darken or brighten it with the iris.
+        """Apply the lens to an image: blur it if it is out of focus, and darken or brighten it according to the iris.
 
         Args:
-            image: Array of shape ``(H, W, 3)``, uint8. It is returned unchanged if the lens is in focus with an automatic iris.
-            zoom: The magnification. The depth of field decreases with it.
+            image: Array of shape ``(H, W, 3)``, uint8. It is returned unchanged if the lens is in focus and the iris is automatic.
+            zoom: The magnification. The depth of field decreases as it increases.
         """
         width = image.shape[1]
         blur_px = min(_BLUR_PX * abs(self.focus - SHARP_FOCUS) * math.sqrt(zoom), _MAX_BLUR_PX) * width / 1280
@@ -130,8 +131,8 @@ class VirtualLens:
         return image
 
     def _travel(self, end: float, speed: float, *, autofocus: bool = False) -> None:
-        here, now_s = self.focus, self._now_s()
-        self._state = replace(self._state, autofocus=autofocus, start=here, end=end, speed=speed, started_s=now_s)
+        current, now_s = self.focus, self._now_s()
+        self._state = replace(self._state, autofocus=autofocus, start=current, end=end, speed=speed, started_s=now_s)
 
 
 def _clamp(value: float) -> float:

@@ -1,4 +1,4 @@
-"""The live picture of a device. While at least one client watches, each frame is exposed once for all streams."""
+"""A device's live picture. Each frame is exposed once for all streams, and only while at least one client is watching."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 
 
 class LiveSource:
-    """Exposes frames at a constant rate and passes the newest one to every subscriber.
+    """Exposes frames at a constant rate and provides the newest one to every subscriber.
 
-    A slow subscriber misses frames and never delays the others. Frames are exposed only while ``run`` is running.
+    A slow subscriber misses frames but does not delay the others. Frames are exposed only while ``run`` is running.
 
     Args:
         device: The camera.
@@ -32,7 +32,7 @@ class LiveSource:
         self._newest: Exposure | None = None
         self._number = 0
         self._changed = anyio.Event()
-        self._watched = anyio.Event()
+        self._has_subscribers = anyio.Event()
         self._subscribers = 0
 
     @property
@@ -41,31 +41,31 @@ class LiveSource:
         return self._subscribers
 
     async def run(self) -> None:
-        """Expose frames while at least one client watches. Run it in a task group; cancel it to stop."""
+        """Expose frames whenever at least one client is watching. Run this in a task group, and cancel it to stop."""
         while True:
-            await self._watched.wait()
+            await self._has_subscribers.wait()
             async with anyio.create_task_group() as group:
                 await self._expose_while_watched(group)
 
     @asynccontextmanager
     async def subscribe(self) -> AsyncIterator[AsyncIterator[Exposure]]:
-        """Return a context with an endless iterator over exposures. Each step waits for a new frame."""
+        """Return a context manager that provides an endless iterator over exposures. Each step waits for a new frame."""
         self._subscribers += 1
-        self._watched.set()
+        self._has_subscribers.set()
         try:
             yield self._exposures()
         finally:
             self._subscribers -= 1
             if not self._subscribers:
-                self._watched = anyio.Event()
+                self._has_subscribers = anyio.Event()
                 self._newest = None
 
     async def _exposures(self) -> AsyncIterator[Exposure]:
-        seen = self._number if self._newest is None else self._number - 1
+        last_number = self._number if self._newest is None else self._number - 1
         while True:
-            while self._number == seen or self._newest is None:
+            while self._number == last_number or self._newest is None:
                 await self._changed.wait()
-            seen = self._number
+            last_number = self._number
             yield self._newest
 
     async def _expose_while_watched(self, group: TaskGroup) -> None:

@@ -1,4 +1,4 @@
-"""Parse requested image sizes, and fit images to a size."""
+"""Parse requested image sizes, and crop and scale images to a size."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.device import VirtualDevice
 
-MIN_SIDE_PX = 16  # minimum width and height of a requested image, in pixels
+MIN_SIDE_PX = 16  # minimum width and height of a requested image in pixels
 
 
 def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
     """Parse ``WIDTHxHEIGHT``. An empty string means the camera's full size.
 
     Raises:
-        InputError: The text has another form, or the size is too small or larger than the camera's.
+        InputError: The text does not have this form, or the size is too small or larger than the camera's.
     """
     if not text:
         return device.width, device.height
@@ -31,7 +31,7 @@ def parse_resolution(device: VirtualDevice, text: str) -> tuple[int, int]:
 
 
 def crop_and_scale(image: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-    """Scale an image to a size. If the aspect ratio differs, the image is cropped, never stretched.
+    """Scale an image to a size. If the aspect ratio differs, the image is cropped rather than stretched.
 
     Args:
         image: Array of shape ``(H, W, 3)``.

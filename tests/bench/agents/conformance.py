@@ -1,12 +1,12 @@
-"""A suite that every channel to an external agent passes.
+"""Conformance suite for channels to external agents.
 
-A test module defines a subclass with a fixture ``connected``::
+A test module defines a subclass with a fixture ``connection``::
 
     class TestPipeChannel(ChannelConformance):
         @pytest.fixture
-        async def connected(self, tmp_path):
+        async def connection(self, tmp_path):
             async with ... as (channel, peer):
-                yield Connected(channel, peer)
+                yield Connection(channel, peer)
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Peer(Protocol):
     """The agent's side of a channel."""
 
     async def send(self, message: bytes) -> None:
-        """Send a message as it is: JSON text, or something that is not."""
+        """Send raw bytes, which need not be valid JSON."""
 
     async def receive(self) -> dict[str, Any]:
         """Wait for a message from the host."""
@@ -52,41 +52,41 @@ class Peer(Protocol):
 
 
 @dataclass(frozen=True)
-class Connected:
+class Connection:
     """Both sides of a channel."""
 
     channel: AgentChannel
     peer: Peer
 
-    async def says(self, message: dict[str, Any]) -> None:
+    async def send(self, message: dict[str, Any]) -> None:
         await self.peer.send(json.dumps(message).encode())
 
 
-def after(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
+def state_after(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     """Return the state after the calls of a decision, with their results."""
     outcomes = tuple(ToolOutcome(call=c, result=r) for c, r in zip(decision.calls, results, strict=True))
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
 
 class ChannelConformance:
-    """The suite. Each test gets a new channel from the fixture ``connected``."""
+    """The conformance suite. Each test gets a new channel from the fixture ``connection``."""
 
-    async def test_messages_arrive_complete_and_in_order(self, connected: Connected) -> None:
+    async def test_messages_arrive_complete_and_in_order(self, connection: Connection) -> None:
         with anyio.fail_after(TIMEOUT_S):
-            await connected.says(HELLO)
-            assert await connected.channel.receive() == Hello(protocol=1, name="peer", sees=True)
+            await connection.send(HELLO)
+            assert await connection.channel.receive() == Hello(protocol=1, name="peer", sees=True)
             calls = {
                 "type": "calls",
                 "calls": [{"id": "ä\n", "name": "query_answer", "arguments": {"question": "🎈\n\u2028" * 9000}}],
             }
-            await connected.says(calls)
-            received = await connected.channel.receive()
+            await connection.send(calls)
+            received = await connection.channel.receive()
             assert isinstance(received, Calls) and received.model_dump(mode="json") == calls
-            await connected.channel.send(Results(results=(CallResult(id="ä\n", result={"answer": "\n🎈" * 50_000}),)))
-            results = await connected.peer.receive()
+            await connection.channel.send(Results(results=(CallResult(id="ä\n", result={"answer": "\n🎈" * 50_000}),)))
+            results = await connection.peer.receive()
             assert results["type"] == "results" and results["results"][0]["result"] == {"answer": "\n🎈" * 50_000}
-            await connected.says({"type": "reply", "text": "done"})
-            assert await connected.channel.receive() == Reply(text="done")
+            await connection.send({"type": "reply", "text": "done"})
+            assert await connection.channel.receive() == Reply(text="done")
 
     @pytest.mark.parametrize(
         ("message", "problem"),
@@ -102,61 +102,63 @@ class ChannelConformance:
             (b"\xff\xfe\x00", "JSON"),
         ],
     )
-    async def test_an_invalid_message_is_the_agents_failure(self, connected: Connected, message: bytes, problem: str) -> None:
+    async def test_an_invalid_message_is_a_failure_of_the_agent(self, connection: Connection, message: bytes, problem: str) -> None:
         with anyio.fail_after(TIMEOUT_S):
-            await connected.peer.send(message)
-            with pytest.raises(PlannerError, match=problem) as failed:
-                await connected.channel.receive()
-            assert failed.value.kind == "agent-protocol"
+            await connection.peer.send(message)
+            with pytest.raises(PlannerError, match=problem) as excinfo:
+                await connection.channel.receive()
+            assert excinfo.value.kind == "agent-protocol"
 
-    async def test_a_message_that_is_too_long_is_the_agents_failure(self, connected: Connected) -> None:
+    async def test_a_message_that_is_too_long_is_a_failure_of_the_agent(self, connection: Connection) -> None:
         with anyio.fail_after(TIMEOUT_S):
             async with anyio.create_task_group() as group:
-                # The host stops reading when it has seen too much, and then the agent cannot write on.
-                group.start_soon(connected.peer.send, b'{"type": "reply", "text": "' + b"x" * (MAX_MESSAGE_BYTES + 100_000) + b'"}')
-                with pytest.raises(PlannerError, match="bytes") as failed:
-                    await connected.channel.receive()
-                assert failed.value.kind == "agent-output"
+                # The host stops reading at the limit, and the agent's write then blocks.
+                group.start_soon(
+                    connection.peer.send, b'{"type": "reply", "text": "' + b"x" * (MAX_MESSAGE_BYTES + 100_000) + b'"}'
+                )
+                with pytest.raises(PlannerError, match="bytes") as excinfo:
+                    await connection.channel.receive()
+                assert excinfo.value.kind == "agent-output"
                 group.cancel_scope.cancel()
 
-    async def test_an_agent_that_leaves_has_failed(self, connected: Connected) -> None:
+    async def test_an_agent_that_leaves_has_failed(self, connection: Connection) -> None:
         with anyio.fail_after(TIMEOUT_S):
-            await connected.says(HELLO)
-            await connected.channel.receive()
-            await connected.peer.leave()
+            await connection.send(HELLO)
+            await connection.channel.receive()
+            await connection.peer.leave()
             for _ in range(2):
-                with pytest.raises(PlannerError) as failed:
-                    await connected.channel.receive()
-                assert failed.value.kind in AGENT_FAULTS
+                with pytest.raises(PlannerError) as excinfo:
+                    await connection.channel.receive()
+                assert excinfo.value.kind in AGENT_FAULTS
 
-    async def test_a_cancelled_receive_loses_nothing(self, connected: Connected) -> None:
+    async def test_a_cancelled_receive_loses_nothing(self, connection: Connection) -> None:
         with anyio.fail_after(TIMEOUT_S):
             with anyio.move_on_after(0.05) as waiting:
-                await connected.channel.receive()
+                await connection.channel.receive()
             assert waiting.cancelled_caught
-            await connected.says({"type": "view"})
-            assert await connected.channel.receive() == ViewRequest()
+            await connection.send({"type": "view"})
+            assert await connection.channel.receive() == ViewRequest()
 
-    async def test_closing_tells_the_agent_why_and_can_be_repeated(self, connected: Connected) -> None:
+    async def test_closing_tells_the_agent_why_and_can_be_repeated(self, connection: Connection) -> None:
         with anyio.fail_after(TIMEOUT_S):
-            await connected.says(HELLO)
-            await connected.channel.receive()
+            await connection.send(HELLO)
+            await connection.channel.receive()
             async with anyio.create_task_group() as group:
-                group.start_soon(connected.channel.close, "That is all.")
-                assert await connected.peer.receive() == {"type": "end", "reason": "That is all."}
-                await connected.peer.leave()
-            await connected.channel.close("Again.")
+                group.start_soon(connection.channel.close, "That is all.")
+                assert await connection.peer.receive() == {"type": "end", "reason": "That is all."}
+                await connection.peer.leave()
+            await connection.channel.close("Again.")
 
-    async def test_a_run(self, connected: Connected) -> None:
-        planner = ChannelPlanner(connected.channel)
-        peer = connected.peer
+    async def test_a_complete_run(self, connection: Connection) -> None:
+        planner = ChannelPlanner(connection.channel)
+        peer = connection.peer
         with anyio.fail_after(TIMEOUT_S):
-            await connected.says(HELLO)
+            await connection.send(HELLO)
             await planner.connect()
             assert (planner.name, planner.sees) == ("peer", True)
-            await connected.says({"type": "view"})
+            await connection.send({"type": "view"})
             calls = [{"id": "b", "name": "count_objects", "arguments": {"description": "x"}}, {"id": "a", "name": "take_image"}]
-            await connected.says({"type": "calls", "calls": calls})
+            await connection.send({"type": "calls", "calls": calls})
             decision = await planner.step(STATE)
             task = await peer.receive()
             assert task["type"] == "task" and task["instruction"] == STATE.instruction and task["presets"] == ["gate", "yard"]
@@ -167,8 +169,8 @@ class ChannelConformance:
             assert isinstance(decision, CallTools) and decision.opened
             assert [call.name for call in decision.calls] == ["count_objects", "take_image"]
             assert len({call.id for call in decision.calls}) == 2
-            await connected.says({"type": "reply", "text": "Which balls?", "kind": "clarification"})
-            end = await planner.step(after(STATE, decision, {"count": 2}, {"file": "x.jpg"}))
+            await connection.send({"type": "reply", "text": "Which balls?", "kind": "clarification"})
+            end = await planner.step(state_after(STATE, decision, {"count": 2}, {"file": "x.jpg"}))
             results = await peer.receive()
             assert [(r["id"], r["result"]) for r in results["results"]] == [("b", {"count": 2}), ("a", {"file": "x.jpg"})]
             assert isinstance(end, Finish)
@@ -176,5 +178,5 @@ class ChannelConformance:
             await peer.leave()
             await planner.close()
 
-    async def test_the_label_is_known(self, connected: Connected) -> None:
-        assert connected.channel.isolation in ISOLATIONS
+    async def test_the_isolation_label_is_valid(self, connection: Connection) -> None:
+        assert connection.channel.isolation in ISOLATIONS

@@ -1,4 +1,4 @@
-"""Agents for tests: written as modules into a folder, started as the evaluation starts them, and driven without a camera."""
+"""Agents for tests: write them as modules, start them as an evaluation does, and run them without a camera."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.bench.agents.conformance import STATE
 
 Answer = Callable[[ToolCall], dict[str, Any]]
 
-CLASS = """
+AGENT_SOURCE = """
 {imports}
 
 class Agent:
@@ -30,11 +30,11 @@ class Agent:
 def write_agent(folder: Path, body: str, *, imports: str = "", sees: bool = False, module: str = "their_agent") -> str:
     """Write an agent as a module, and return its name."""
     indented = textwrap.indent(textwrap.dedent(body).strip(), " " * 8)
-    (folder / f"{module}.py").write_text(CLASS.format(imports=textwrap.dedent(imports), sees=sees, body=indented))
+    (folder / f"{module}.py").write_text(AGENT_SOURCE.format(imports=textwrap.dedent(imports), sees=sees, body=indented))
     return f"{module}:Agent"
 
 
-def started_in(folder: Path, agent: str, options: AgentOptions | None = None, hidden: tuple[Path, ...] = ()) -> LocalAgent:
+def local_agent_in(folder: Path, agent: str, options: AgentOptions | None = None, hidden: tuple[Path, ...] = ()) -> LocalAgent:
     """Return an agent whose working folder is ``folder``."""
     before = Path.cwd()
     os.chdir(folder)
@@ -44,13 +44,15 @@ def started_in(folder: Path, agent: str, options: AgentOptions | None = None, hi
         os.chdir(before)
 
 
-def make_environment(folder: Path) -> None:
-    """Make an empty virtual environment."""
+def create_environment(folder: Path) -> None:
+    """Create an empty virtual environment."""
     venv.create(folder, symlinks=True)
 
 
-async def play(agent: LocalAgent, answer: Answer = lambda _: {}, state: State = STATE) -> tuple[Finish, list[list[ToolCall]]]:
-    """Run an agent to its reply. Return the reply and the calls of each step. A failure of the agent is raised."""
+async def run_to_reply(
+    agent: LocalAgent, answer: Answer = lambda _: {}, state: State = STATE
+) -> tuple[Finish, list[list[ToolCall]]]:
+    """Run an agent until it replies, and return the reply and the calls of each step. A failure of the agent is raised."""
     planner, steps = await agent.open(), list[list[ToolCall]]()
     try:
         while True:

@@ -1,4 +1,4 @@
-"""Whether sandboxes can be created where the tests run."""
+"""A marker for tests that need a sandbox, and the reason if no sandbox can be created here."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from scope_ptz.bench.agents.sandbox import require_sandbox
 from scope_ptz.errors import ConfigError
 
 
-def reason_against() -> str:
-    """Return why no sandbox can be created here; empty if one can."""
+def sandbox_problem() -> str:
+    """Return the reason why no sandbox can be created here, or an empty string."""
     try:
         require_sandbox()
     except ConfigError as error:
@@ -17,5 +17,5 @@ def reason_against() -> str:
     return ""
 
 
-REASON = reason_against()
-needs_sandbox = pytest.mark.skipif(bool(REASON), reason=REASON or "never")
+SANDBOX_PROBLEM = sandbox_problem()
+needs_sandbox = pytest.mark.skipif(bool(SANDBOX_PROBLEM), reason=SANDBOX_PROBLEM or "never")

@@ -1,4 +1,4 @@
-"""Agents in processes of their own get what they need, and nothing else."""
+"""Agents in separate processes get what they need and nothing else."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from scope_ptz.bench.agents.source import find_module
 from scope_ptz.bench.engine.external_agents import AgentReply
 from scope_ptz.errors import ConfigError
 from tests.bench.agents.conformance import FRAME
-from tests.bench.agents.programs import make_environment, play, started_in, write_agent
-from tests.bench.agents.sandboxes import REASON
+from tests.bench.agents.programs import create_environment, local_agent_in, run_to_reply, write_agent
+from tests.bench.agents.sandboxes import SANDBOX_PROBLEM
 
 
 async def test_calls_that_are_awaited_together_are_one_step(tmp_path: Path) -> None:
@@ -25,14 +25,14 @@ async def test_calls_that_are_awaited_together_are_one_step(tmp_path: Path) -> N
     three = await session.call("go_home")
     return f"{one['count']} {two['count']} {three['count']}"
     """
-    agent = started_in(tmp_path, write_agent(tmp_path, body, imports="import asyncio"))
+    agent = local_agent_in(tmp_path, write_agent(tmp_path, body, imports="import asyncio"))
     counts = {"count_objects": 2, "take_image": 3, "go_home": 5}
-    reply, steps = await play(agent, lambda call: {"count": counts[call.name]})
+    reply, steps = await run_to_reply(agent, lambda call: {"count": counts[call.name]})
     assert [[call.name for call in step] for step in steps] == [["count_objects", "take_image"], ["go_home"]]
     assert steps[0][0].arguments == {"description": "a"} and (reply.kind, reply.text) == ("answered", "2 3 5")
 
 
-async def test_the_session(tmp_path: Path) -> None:
+async def test_session_attributes(tmp_path: Path) -> None:
     body = """
     assert session.instruction == "Zähle die Bälle 🎈", session.instruction
     assert session.presets == ("gate", "yard") and session.tools[0]["function"]["name"] == "count_objects"
@@ -41,7 +41,7 @@ async def test_the_session(tmp_path: Path) -> None:
     return repr(session.view())
     """
     for sees, view in ((True, FRAME), (False, None)):
-        reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, sees=sees)))
+        reply, _ = await run_to_reply(local_agent_in(tmp_path, write_agent(tmp_path, body, sees=sees)))
         assert reply.text == repr(view) and reply.opened is sees
 
 
@@ -55,15 +55,15 @@ async def test_the_session(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize("module", ["scope_agent", "scope_ptz.bench.engine.external_agents"])
 async def test_replies(tmp_path: Path, result: str, module: str) -> None:
-    agent = started_in(
+    agent = local_agent_in(
         tmp_path, write_agent(tmp_path, f"return {result}", imports=f"import types\nfrom {module} import AgentReply")
     )
-    reply, _ = await play(agent)
+    reply, _ = await run_to_reply(agent)
     assert (reply.kind, reply.text) == ("clarification", "Which?")
     assert AgentReply("Which?", "clarification") == AgentReply("Which?", "clarification")
 
 
-async def test_what_an_agent_prints_is_no_message(tmp_path: Path) -> None:
+async def test_printed_text_is_not_read_as_a_message(tmp_path: Path) -> None:
     body = """
     print('{"type": "reply", "text": "printed"}', flush=True)
     sys.stdout.write("x" * 100_000)
@@ -73,7 +73,7 @@ async def test_what_an_agent_prints_is_no_message(tmp_path: Path) -> None:
     return "returned"
     """
     imports = "import os, subprocess, sys\nprint('imported')"
-    reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, imports=imports)))
+    reply, _ = await run_to_reply(local_agent_in(tmp_path, write_agent(tmp_path, body, imports=imports)))
     assert reply.text == "returned"
 
 
@@ -81,13 +81,13 @@ async def test_the_environment_is_clean(tmp_path: Path, monkeypatch: pytest.Monk
     for name in ("SCOPE_PLANNER_KEY", "OPENAI_API_KEY", "THEIR_KEY", "LC_TIME"):
         monkeypatch.setenv(name, "value")
     name = write_agent(tmp_path, "return json.dumps(sorted(os.environ))", imports="import json, os")
-    seen = set(json.loads((await play(started_in(tmp_path, name)))[0].text))
-    assert "PATH" in seen and "LC_TIME" in seen and not seen & {"SCOPE_PLANNER_KEY", "OPENAI_API_KEY", "THEIR_KEY"}
+    variables = set(json.loads((await run_to_reply(local_agent_in(tmp_path, name)))[0].text))
+    assert "PATH" in variables and "LC_TIME" in variables and not variables & {"SCOPE_PLANNER_KEY", "OPENAI_API_KEY", "THEIR_KEY"}
     options = AgentOptions(variables=("THEIR_KEY",))
-    seen = set(json.loads((await play(started_in(tmp_path, name, options)))[0].text))
-    assert "THEIR_KEY" in seen and "OPENAI_API_KEY" not in seen
+    variables = set(json.loads((await run_to_reply(local_agent_in(tmp_path, name, options)))[0].text))
+    assert "THEIR_KEY" in variables and "OPENAI_API_KEY" not in variables
     with pytest.raises(ConfigError, match="NOT_SET"):
-        started_in(tmp_path, name, AgentOptions(variables=("NOT_SET",)))
+        local_agent_in(tmp_path, name, AgentOptions(variables=("NOT_SET",)))
 
 
 async def test_open_files_are_not_inherited(tmp_path: Path) -> None:
@@ -96,14 +96,14 @@ async def test_open_files_are_not_inherited(tmp_path: Path) -> None:
     return " ".join(os.readlink(path) for path in descriptors if os.path.exists(path))
     """
     secret = tmp_path / "tasks.jsonl"
-    with secret.open("w") as opened:
-        os.set_inheritable(opened.fileno(), True)
-        reply, _ = await play(started_in(tmp_path, write_agent(tmp_path, body, imports="import os")))
+    with secret.open("w") as file:
+        os.set_inheritable(file.fileno(), True)
+        reply, _ = await run_to_reply(local_agent_in(tmp_path, write_agent(tmp_path, body, imports="import os")))
     assert "tasks.jsonl" not in reply.text
 
 
-async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
-    make_environment(tmp_path / "env")
+async def test_another_interpreter_uses_its_own_environment(tmp_path: Path) -> None:
+    create_environment(tmp_path / "env")
     python = tmp_path / "env" / "bin" / "python"
     (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
     (packages / "only_there.py").write_text("ANSWER = 7\n")
@@ -114,23 +114,23 @@ async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
         return AgentReply(f"{only_there.ANSWER} {sys.prefix}")
     """
     name = write_agent(tmp_path, body, imports="import only_there, sys\nfrom scope_agent import AgentReply")
-    reply, _ = await play(started_in(tmp_path, name, AgentOptions(python=python)))
+    reply, _ = await run_to_reply(local_agent_in(tmp_path, name, AgentOptions(python=python)))
     assert reply.text == f"7 {tmp_path / 'env'}"
     with pytest.raises(ConfigError, match="does not exist"):
-        started_in(tmp_path, name, AgentOptions(python=tmp_path / "nothing"))
+        local_agent_in(tmp_path, name, AgentOptions(python=tmp_path / "nothing"))
     with pytest.raises(ConfigError, match="exit code 1"):
-        await started_in(tmp_path, name, AgentOptions(python=Path("/bin/false"))).check()
+        await local_agent_in(tmp_path, name, AgentOptions(python=Path("/bin/false"))).check()
 
 
 def test_an_environment_is_read_without_running_it(tmp_path: Path) -> None:
-    make_environment(tmp_path / "env")
+    create_environment(tmp_path / "env")
     (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
     (packages / "loud.pth").write_text(f"import os; open({str(tmp_path / 'it-ran')!r}, 'w')\n{tmp_path / 'linked'}\n")
     (tmp_path / "linked").mkdir()
     (tmp_path / "agent").mkdir()
     write_agent(tmp_path / "linked", "return 'x'")
-    options = AgentOptions(python=tmp_path / "env" / "bin" / "python", sandbox=not REASON)
-    assert started_in(tmp_path / "agent", "their_agent:Agent", options).source
+    options = AgentOptions(python=tmp_path / "env" / "bin" / "python", sandbox=not SANDBOX_PROBLEM)
+    assert local_agent_in(tmp_path / "agent", "their_agent:Agent", options).source
     assert not (tmp_path / "it-ran").exists()
 
 
@@ -146,22 +146,22 @@ echo "{\"type\": \"reply\", \"text\": \"There are $count $1.\"}"
 
 async def test_a_shell_script(tmp_path: Path) -> None:
     (tmp_path / "their agent.sh").write_text(SHELL)
-    agent = started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'"))
+    agent = local_agent_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'"))
     assert (agent.name, agent.isolation) == ("command:their agent.sh", "isolated")
-    reply, steps = await play(agent, lambda _: {"count": 4})
+    reply, steps = await run_to_reply(agent, lambda _: {"count": 4})
     assert reply.text == "There are 4 $HOME; balls." and steps[0][0].arguments == {"description": "balls"}
     before = agent.source
     (tmp_path / "their agent.sh").write_text(SHELL + "#")
-    assert started_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'")).source != before
+    assert local_agent_in(tmp_path, "scope", AgentOptions(command="sh 'their agent.sh' '$HOME; balls'")).source != before
 
 
 @pytest.mark.parametrize("command", ["", "nothing-of-this-name", "sh 'open", "   "])
-def test_commands_that_cannot_be_run(tmp_path: Path, command: str) -> None:
+def test_invalid_commands_are_rejected(tmp_path: Path, command: str) -> None:
     with pytest.raises(ConfigError):
-        started_in(tmp_path, "scope", AgentOptions(command=command))
+        local_agent_in(tmp_path, "scope", AgentOptions(command=command))
 
 
-def test_options_that_contradict_each_other(tmp_path: Path) -> None:
+def test_contradictory_options_are_rejected(tmp_path: Path) -> None:
     for options in (
         AgentOptions(command="sh", in_process=True),
         AgentOptions(command="sh", python=Path(sys.executable)),
@@ -169,17 +169,17 @@ def test_options_that_contradict_each_other(tmp_path: Path) -> None:
         AgentOptions(in_process=True, python=Path(sys.executable)),
     ):
         with pytest.raises(ConfigError):
-            started_in(tmp_path, "a:B", options)
+            local_agent_in(tmp_path, "a:B", options)
 
 
 async def test_an_agent_that_does_not_start_is_an_error_before_the_first_run(tmp_path: Path) -> None:
     write_agent(tmp_path, "return 'x'", imports="import nothing_of_this_name")
     with pytest.raises(ConfigError, match="nothing_of_this_name"):
-        await started_in(tmp_path, "their_agent:Agent").check()
+        await local_agent_in(tmp_path, "their_agent:Agent").check()
     with pytest.raises(ConfigError, match="no attribute"):
-        await started_in(tmp_path, "json:Nothing").check()
+        await local_agent_in(tmp_path, "json:Nothing").check()
     with pytest.raises(ConfigError, match="exit code 1"):
-        await started_in(tmp_path, "scope", AgentOptions(command=shlex.join(["sh", "-c", "exit 1"]))).check()
+        await local_agent_in(tmp_path, "scope", AgentOptions(command=shlex.join(["sh", "-c", "exit 1"]))).check()
 
 
 def test_the_source_is_found_without_running_it(tmp_path: Path) -> None:

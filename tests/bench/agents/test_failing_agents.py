@@ -1,4 +1,4 @@
-"""Crashes, hangs, floods and the like are the agent's failures, and nothing of the agent is left."""
+"""Crashes, hangs and floods count as failures of the agent, and no process or open file is left."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from scope_ptz.bench.agents.planner import AgentTimes
 from scope_ptz.bench.scoring.verdict import AGENT_FAILURES
 from scope_ptz.errors import PlannerError
 from tests.bench.agents.conformance import STATE
-from tests.bench.agents.programs import play, started_in, write_agent
+from tests.bench.agents.programs import local_agent_in, run_to_reply, write_agent
 
 QUICK = AgentTimes(step_s=1.0, run_s=5.0)
 
 
 def is_running(pid: int) -> bool:
-    """Return whether a process exists and is not merely waiting to be collected."""
+    """Return whether a process exists and is not a zombie."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
     except OSError:
@@ -57,25 +57,25 @@ def wait_for_end(pid: int) -> None:
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left() -> Iterator[None]:
+def check_for_leaks() -> Iterator[None]:
     """Check that no file descriptor and no child process is left."""
     before = open_files()
     yield
     children = [pid for task in Path("/proc/self/task").glob("*/children") for pid in task.read_text().split()]
     assert not [pid for pid in children if is_running(int(pid)) and b"keeper.py" in Path(f"/proc/{pid}/cmdline").read_bytes()]
-    assert open_files() <= before + 2  # an event loop keeps its own
+    assert open_files() <= before + 2  # an event loop keeps two open
 
 
 async def failure_of(folder: Path, body: str, options: AgentOptions | None = None, imports: str = "") -> PlannerError:
-    agent = started_in(folder, write_agent(folder, body, imports=imports), options or AgentOptions(times=QUICK))
-    with pytest.raises(PlannerError) as failed:
-        await play(agent)
-    assert failed.value.kind in AGENT_FAULTS and failed.value.kind in AGENT_FAILURES
-    return failed.value
+    agent = local_agent_in(folder, write_agent(folder, body, imports=imports), options or AgentOptions(times=QUICK))
+    with pytest.raises(PlannerError) as excinfo:
+        await run_to_reply(agent)
+    assert excinfo.value.kind in AGENT_FAULTS and excinfo.value.kind in AGENT_FAILURES
+    return excinfo.value
 
 
 @pytest.mark.parametrize(
-    ("body", "kind", "says"),
+    ("body", "kind", "message"),
     [
         ("raise ZeroDivisionError('oops')", "agent-error", "ZeroDivisionError: oops"),
         ("os.kill(os.getpid(), 11)", "agent-exited", "SIGSEGV"),
@@ -96,9 +96,9 @@ async def failure_of(folder: Path, body: str, options: AgentOptions | None = Non
         ("raise MemoryError", "agent-memory", "MB"),
     ],
 )
-async def test_what_an_agent_does_wrong(tmp_path: Path, body: str, kind: str, says: str) -> None:
+async def test_failures_of_an_agent(tmp_path: Path, body: str, kind: str, message: str) -> None:
     error = await failure_of(tmp_path, body, imports="import asyncio, os, signal, sys, time")
-    assert error.kind == kind and says in str(error)
+    assert error.kind == kind and message in str(error)
 
 
 async def test_memory_above_the_limit(tmp_path: Path) -> None:
@@ -108,7 +108,7 @@ async def test_memory_above_the_limit(tmp_path: Path) -> None:
     assert error.kind == "agent-memory" and "150 MB" in str(error)
 
 
-async def test_memory_of_all_processes_together(tmp_path: Path) -> None:
+async def test_the_memory_limit_applies_to_all_processes_together(tmp_path: Path) -> None:
     body = """
     for _ in range(4):
         if os.fork() == 0:
@@ -140,19 +140,19 @@ async def test_a_flood_on_stderr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert error.kind == "agent-output"
 
 
-async def test_the_time_of_a_whole_run(tmp_path: Path) -> None:
+async def test_the_time_limit_of_a_run(tmp_path: Path) -> None:
     body = "while True:\n    await asyncio.sleep(0.2)\n    await session.call('take_image')"
     error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimes(step_s=30, run_s=1)), "import asyncio")
-    assert error.kind == "agent-timeout" and "in one run" in str(error)
+    assert error.kind == "agent-timeout" and "for the whole run" in str(error)
 
 
-async def test_frames_without_end(tmp_path: Path) -> None:
-    agent = started_in(
+async def test_too_many_frames(tmp_path: Path) -> None:
+    agent = local_agent_in(
         tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True)
     )
-    with pytest.raises(PlannerError, match="more than 100 frames") as failed:
-        await play(agent)
-    assert failed.value.kind == "agent-protocol"
+    with pytest.raises(PlannerError, match="more than 100 frames") as excinfo:
+        await run_to_reply(agent)
+    assert excinfo.value.kind == "agent-protocol"
 
 
 @pytest.mark.parametrize("ending", ["return 'done'", "raise RuntimeError('no')", "time.sleep(60)", "os._exit(1)"])
@@ -174,13 +174,13 @@ async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, endin
     {ending}
     """
     name = write_agent(tmp_path, body, imports="import os, signal, time")
-    agent = started_in(tmp_path, name, AgentOptions(times=AgentTimes(3, 30)))
+    agent = local_agent_in(tmp_path, name, AgentOptions(times=AgentTimes(3, 30)))
     if ending.startswith("return"):
-        reply, _ = await play(agent)
+        reply, _ = await run_to_reply(agent)
         assert reply.text == "done"
     else:
         with pytest.raises(PlannerError):
-            await play(agent)
+            await run_to_reply(agent)
     pids = pids_in(tmp_path)
     assert len(pids) == 2 and not any(map(is_running, pids))
 
@@ -214,7 +214,7 @@ async def test_an_agent_that_attacks_its_keeper(tmp_path: Path, attack: str, mon
 
 async def test_an_agent_that_is_cancelled_while_it_starts(tmp_path: Path) -> None:
     name = write_agent(tmp_path, "return 'x'", imports="import os, time\nopen(f'pid-{os.getpid()}', 'w').close()\ntime.sleep(60)")
-    starting = asyncio.ensure_future(started_in(tmp_path, name).open())
+    starting = asyncio.ensure_future(local_agent_in(tmp_path, name).open())
     await asyncio.to_thread(wait_for_pid, tmp_path)
     starting.cancel()
     with pytest.raises(asyncio.CancelledError):
@@ -230,7 +230,7 @@ async def test_a_cancelled_run_ends_the_agent(tmp_path: Path) -> None:
     finally:
         open("ended", "w").close()
     """
-    agent = started_in(tmp_path, write_agent(tmp_path, body, imports="import os"))
+    agent = local_agent_in(tmp_path, write_agent(tmp_path, body, imports="import os"))
     planner = await agent.open()
     await planner.step(STATE)
     await asyncio.wait_for(planner.close(), 30)
@@ -261,17 +261,17 @@ async def test_garbage(tmp_path: Path, data: str, kind: str) -> None:
     (tmp_path / "garbage.py").write_text(GARBAGE.format(data=data).replace("os.write(1,", "sys.stdout.buffer.write("))
     (tmp_path / "garbage.py").write_text((tmp_path / "garbage.py").read_text().replace("os.read", "sys.stdout.flush(); os.read"))
     options = AgentOptions(command=f"{shlex.quote(sys.executable)} -S garbage.py", times=QUICK)
-    with pytest.raises(PlannerError) as failed:
-        await play(started_in(tmp_path, "scope", options))
-    assert failed.value.kind == kind
+    with pytest.raises(PlannerError) as excinfo:
+        await run_to_reply(local_agent_in(tmp_path, "scope", options))
+    assert excinfo.value.kind == kind
 
 
 async def test_a_program_that_does_not_read(tmp_path: Path) -> None:
     (tmp_path / "deaf.sh").write_text('echo \'{"type": "hello", "protocol": 1, "name": "deaf"}\'; trap "" TERM; sleep 60; sleep 60')
     options = AgentOptions(command="sh deaf.sh", times=QUICK)
-    with pytest.raises(PlannerError, match="longer than 1 s") as failed:
-        await play(started_in(tmp_path, "scope", options))
-    assert failed.value.kind == "agent-timeout"
+    with pytest.raises(PlannerError, match="longer than 1 s") as excinfo:
+        await run_to_reply(local_agent_in(tmp_path, "scope", options))
+    assert excinfo.value.kind == "agent-timeout"
 
 
 def test_agents_do_not_outlive_a_scorer_that_is_killed(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Messages: the examples of the documentation are valid and complete, and arbitrary bytes never do harm."""
+"""Messages: the documented examples are valid and complete, and arbitrary bytes are rejected."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.bench.agents.messages import (
     MAX_QUOTED_CHARS,
     Calls,
     RequestedCall,
-    line_of,
+    encode_message,
     parse_agent_message,
     parse_host_message,
     printable,
@@ -51,17 +51,17 @@ def test_every_message_is_documented() -> None:
 
 
 @given(st.dictionaries(st.text(), JSON_VALUES, max_size=4))
-def test_arguments_survive(arguments: dict[str, Any]) -> None:
+def test_arguments_survive_a_round_trip(arguments: dict[str, Any]) -> None:
     message = Calls(calls=(RequestedCall(id="1", name="x", arguments=arguments),))
-    line = line_of(message)
+    line = encode_message(message)
     assert line.count(b"\n") == 1 and parse_agent_message(line) == message
 
 
 @given(st.binary(max_size=200) | JSON_VALUES.map(lambda value: json.dumps(value).encode()))
 def test_arbitrary_bytes_are_rejected(data: bytes) -> None:
-    with pytest.raises(PlannerError) as failed:
+    with pytest.raises(PlannerError) as excinfo:
         parse_agent_message(data)
-    assert failed.value.kind == "agent-protocol" and len(str(failed.value)) < MAX_QUOTED_CHARS + 100
+    assert excinfo.value.kind == "agent-protocol" and len(str(excinfo.value)) < MAX_QUOTED_CHARS + 100
 
 
 @given(st.text(min_size=1), st.integers(1, 50))
@@ -80,10 +80,10 @@ def test_quoted_text_can_be_printed(text: str, length: int) -> None:
         "[]",
     ],
 )
-def test_arguments_that_no_tool_can_use(arguments: str) -> None:
-    with pytest.raises(PlannerError) as failed:
+def test_invalid_arguments_are_rejected(arguments: str) -> None:
+    with pytest.raises(PlannerError) as excinfo:
         parse_agent_message(f'{{"type": "calls", "calls": [{{"id": "1", "name": "x", "arguments": {arguments}}}]}}')
-    assert failed.value.kind == "agent-protocol"
+    assert excinfo.value.kind == "agent-protocol"
 
 
 def test_ids_must_differ() -> None:

@@ -1,4 +1,4 @@
-"""The channel to an agent's process passes the suite. The agent is a relay, which connects its pipes to the test."""
+"""The channel to an agent process passes the conformance suite. The agent is a relay that connects its pipes to the test."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from anyio.streams.buffered import BufferedByteReceiveStream
 
 from scope_ptz.bench.agents.launch import AgentLaunch
 from scope_ptz.bench.agents.pipe import PipeChannel
-from tests.bench.agents.conformance import ChannelConformance, Connected
+from tests.bench.agents.conformance import ChannelConformance, Connection
 
 RELAY = """
 import os, socket, sys, threading
@@ -54,10 +54,10 @@ class RelayPeer:
 
 
 class TestPipeChannel(ChannelConformance):
-    """A process of its own."""
+    """The suite for the channel to an agent process."""
 
     @pytest.fixture
-    async def connected(self, tmp_path: Path) -> AsyncIterator[Connected]:
+    async def connection(self, tmp_path: Path) -> AsyncIterator[Connection]:
         address = tmp_path / "link"
         listener = await anyio.create_unix_listener(address)
         command = (sys.executable, "-I", "-c", RELAY, str(address))
@@ -66,7 +66,7 @@ class TestPipeChannel(ChannelConformance):
             with anyio.fail_after(30):
                 stream = await listener.accept()
         try:
-            yield Connected(channel, RelayPeer(stream))
+            yield Connection(channel, RelayPeer(stream))
         finally:
             await channel.close("The test has ended.")
             await stream.aclose()

@@ -1,4 +1,4 @@
-"""What an agent in a sandbox can and cannot reach."""
+"""Access of sandboxed agents to files, processes and the network."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ import pytest
 import scope_ptz
 from scope_ptz.bench.agents.launch import AgentOptions
 from scope_ptz.bench.agents.planner import AgentTimes
-from scope_ptz.bench.agents.sandbox import SandboxContents, require_sandbox, sandboxed
+from scope_ptz.bench.agents.sandbox import SandboxContents, require_sandbox, sandbox_command
 from scope_ptz.errors import ConfigError, PlannerError
-from tests.bench.agents.programs import make_environment, play, started_in, write_agent
+from tests.bench.agents.programs import create_environment, local_agent_in, run_to_reply, write_agent
 from tests.bench.agents.sandboxes import needs_sandbox
 
 SANDBOX = AgentOptions(sandbox=True)
 
 
 async def answer_of(folder: Path, body: str, *, imports: str = "", hidden: tuple[Path, ...] = ()) -> str:
-    reply, _ = await play(started_in(folder, write_agent(folder, body, imports=imports), SANDBOX, hidden))
+    reply, _ = await run_to_reply(local_agent_in(folder, write_agent(folder, body, imports=imports), SANDBOX, hidden))
     return reply.text
 
 
 @needs_sandbox
-async def test_an_agent_works_as_outside(tmp_path: Path) -> None:
+async def test_an_agent_works_as_it_does_outside(tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("WORD = 'helped'\n")
     body = """
     with tempfile.TemporaryDirectory() as folder:
@@ -34,9 +34,9 @@ async def test_an_agent_works_as_outside(tmp_path: Path) -> None:
     return f"{seen['count']} {helper.WORD} {sys.version_info[0]} {os.getcwd()}"
     """
     name = write_agent(tmp_path, body, imports="import helper, os, sys, tempfile")
-    agent = started_in(tmp_path, name, SANDBOX)
+    agent = local_agent_in(tmp_path, name, SANDBOX)
     assert agent.isolation == "sandboxed"
-    reply, _ = await play(agent, lambda _: {"count": 4})
+    reply, _ = await run_to_reply(agent, lambda _: {"count": 4})
     assert reply.text == f"4 helped 3 {tmp_path}"
 
 
@@ -44,7 +44,7 @@ WRITE_ATTEMPTS = ("/usr/x", "/x", "new.txt", "/etc/passwd", "/proc/sys/kernel/co
 
 
 @needs_sandbox
-async def test_what_is_out_of_reach(tmp_path: Path) -> None:
+async def test_inaccessible_resources(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
     body = f"""
     def attempt(work):
@@ -69,14 +69,14 @@ async def test_what_is_out_of_reach(tmp_path: Path) -> None:
         "environment": sorted(os.environ),
     }})
     """
-    seen = json.loads(await answer_of(tmp_path, body, imports="import json, os, socket"))
-    assert seen["import"] == "ModuleNotFoundError" and not seen["package"] and seen["found"] == []
-    assert seen["network"] in ("ConnectionRefusedError", "OSError") and set(seen["interfaces"]) <= {"lo"}
-    assert seen["processes"] <= 3 and not seen["home"]
+    report = json.loads(await answer_of(tmp_path, body, imports="import json, os, socket"))
+    assert report["import"] == "ModuleNotFoundError" and not report["package"] and report["found"] == []
+    assert report["network"] in ("ConnectionRefusedError", "OSError") and set(report["interfaces"]) <= {"lo"}
+    assert report["processes"] <= 3 and not report["home"]
     mounted = {*tmp_path.parts, *Path(sys.prefix).parts, *Path(sys.base_prefix).parts}  # the tests themselves may run in /tmp
-    assert [name for name in seen["tmp"] if name not in mounted] == []
-    assert all(error in ("OSError", "PermissionError") for error in seen["write"])
-    assert not [name for name in seen["environment"] if name.startswith("SCOPE_")]
+    assert [name for name in report["tmp"] if name not in mounted] == []
+    assert all(error in ("OSError", "PermissionError") for error in report["write"])
+    assert not [name for name in report["environment"] if name.startswith("SCOPE_")]
 
 
 @needs_sandbox
@@ -85,9 +85,9 @@ async def test_hidden_files_within_the_agents_folder(tmp_path: Path) -> None:
     (tmp_path / "logs" / "a.eval").write_text("answers")
     (tmp_path / "tasks.jsonl").write_text("answers")
     (tmp_path / "notes.txt").write_text("notes")
-    installed = tmp_path / "env" / "lib" / "python3.11" / "site-packages" / "scope_ptz" / "data"
-    installed.mkdir(parents=True)
-    (installed / "tasks.jsonl").write_text("answers")
+    installed_data = tmp_path / "env" / "lib" / "python3.11" / "site-packages" / "scope_ptz" / "data"
+    installed_data.mkdir(parents=True)
+    (installed_data / "tasks.jsonl").write_text("answers")
     body = """
     try:
         tasks = open("tasks.jsonl").read()
@@ -110,8 +110,8 @@ async def test_a_linked_folder_hides_the_same_files(tmp_path: Path) -> None:
 
 
 @needs_sandbox
-async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
-    make_environment(tmp_path / "env")
+async def test_another_interpreter_uses_its_own_environment(tmp_path: Path) -> None:
+    create_environment(tmp_path / "env")
     (packages,) = (tmp_path / "env").glob("lib/python*/site-packages")
     (packages / "only_there.py").write_text("ANSWER = 7\n")
     (packages / "scope_ptz").mkdir()
@@ -120,17 +120,17 @@ async def test_the_environment_of_another_interpreter(tmp_path: Path) -> None:
     body = "import scope_ptz\nreturn f'{only_there.ANSWER} {hasattr(scope_ptz, \"SECRET\")}'"
     name = write_agent(tmp_path / "agent", body, imports="import only_there")
     options = AgentOptions(sandbox=True, python=tmp_path / "env" / "bin" / "python")
-    reply, _ = await play(started_in(tmp_path / "agent", name, options))
+    reply, _ = await run_to_reply(local_agent_in(tmp_path / "agent", name, options))
     assert reply.text == "7 False"
 
 
 @needs_sandbox
-async def test_a_program(tmp_path: Path) -> None:
+async def test_a_command(tmp_path: Path) -> None:
     (tmp_path / "agent.sh").write_text(
         'echo \'{"type": "hello", "protocol": 1, "name": "sh"}\'; read -r task; '
         'echo "{\\"type\\": \\"reply\\", \\"text\\": \\"$(ls /tmp /home | tr -d \'\\n\')$(pwd)\\"}"'
     )
-    reply, _ = await play(started_in(tmp_path, "scope", AgentOptions(sandbox=True, command="sh agent.sh")))
+    reply, _ = await run_to_reply(local_agent_in(tmp_path, "scope", AgentOptions(sandbox=True, command="sh agent.sh")))
     assert str(tmp_path) in reply.text
 
 
@@ -147,20 +147,20 @@ async def test_a_program(tmp_path: Path) -> None:
 )
 async def test_failures_in_a_sandbox(tmp_path: Path, body: str, kind: str) -> None:
     options = AgentOptions(sandbox=True, memory_mb=300, times=AgentTimes(step_s=20 if "urandom" in body else 2, run_s=30))
-    with pytest.raises(PlannerError) as failed:
-        await play(started_in(tmp_path, write_agent(tmp_path, body, imports="import os, time"), options))
-    assert failed.value.kind == kind
+    with pytest.raises(PlannerError) as excinfo:
+        await run_to_reply(local_agent_in(tmp_path, write_agent(tmp_path, body, imports="import os, time"), options))
+    assert excinfo.value.kind == kind
 
 
-def test_folders_that_a_sandbox_cannot_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_folders_that_a_sandbox_must_not_expose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path / "people" / "me"))
     (tmp_path / "people" / "me" / "agent").mkdir(parents=True)
     for folder in (Path("/"), tmp_path / "people", tmp_path / "people" / "me"):
         with pytest.raises(ConfigError, match="home folder"):
-            sandboxed(["true"], SandboxContents(folder, (), None, ()))
+            sandbox_command(["true"], SandboxContents(folder, (), None, ()))
     with pytest.raises(ConfigError, match="hides"):
-        sandboxed(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, (tmp_path / "people" / "me",)))
-    assert "--unshare-all" in sandboxed(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, ()))
+        sandbox_command(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, (tmp_path / "people" / "me",)))
+    assert "--unshare-all" in sandbox_command(["true"], SandboxContents(tmp_path / "people" / "me" / "agent", (), None, ()))
 
 
 def test_without_bubblewrap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

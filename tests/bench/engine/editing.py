@@ -1,4 +1,4 @@
-"""Edit logs as an attacker would: the JSON files in the ZIP archive of a log."""
+"""Edit logs as an attacker would, by changing the JSON files in the ZIP archive of a log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Change = Callable[[Json], Any]
 
 
 def files_of(log: Path) -> dict[str, Any]:
-    """The files of a log by name."""
+    """Return the files of a log by name."""
     with ZipFile(log) as archive:
         return {name: json.loads(archive.read(name)) for name in archive.namelist()}
 
@@ -28,8 +28,8 @@ def write_log(files: Mapping[str, Any], out: Path) -> Path:
     return out
 
 
-def edited(log: Path, out: Path, change: Change, only: Iterable[str]) -> Path:
-    """A copy of a log in which some samples, by their names in trials, are changed in place."""
+def edit_log(log: Path, out: Path, change: Change, only: Iterable[str]) -> Path:
+    """Write a copy of a log, with ``change`` applied to the samples named in ``only`` (``task#epoch``). Return its path."""
     files, names = files_of(log), set(only)
     changed = 0
     for name, content in files.items():
@@ -57,7 +57,7 @@ def set_trace(sample: Json, records: Iterable[Json] | str) -> None:
 
 
 def trace_change(change: Callable[[list[Json]], list[Json] | None]) -> Change:
-    """A change of the records of a trace."""
+    """Return a change of a sample that edits the records of its trace."""
 
     def apply(sample: Json) -> None:
         records = records_of(sample)

@@ -49,42 +49,42 @@ def test_an_external_agent(scope: Scope, tasks_file: Path, tmp_path: Path, monke
     (tmp_path / "their_loop.py").write_text(MODULE)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
-    done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", "their_loop:Agent", "--out", "logs", "--json")
-    assert done.code == 0, done.err
-    evaluation = read_evaluation(Path(done.json["log"]))
+    run_result = scope("bench", "run", "--tasks", str(tasks_file), "--agent", "their_loop:Agent", "--out", "logs", "--json")
+    assert run_result.code == 0, run_result.err
+    evaluation = read_evaluation(Path(run_result.json["log"]))
     assert (evaluation.card.agent, evaluation.card.isolation) == ("their_loop:Agent", "isolated")
-    assert done.json["isolation"] == "isolated"
+    assert run_result.json["isolation"] == "isolated"
     headlines = {t.task.id.split("yard-")[1]: t.headline for t in evaluation.trials}
     assert headlines == {
         "counting-001": "correct", "counting-002": "unscored", "single-call-001": "correct", "single-call-002": "correct",
     }  # fmt: skip
-    turned = next(t for t in evaluation.trials if t.task.category == "single_call")
-    assert (turned.bad_calls, turned.tool_calls) == (1, {"adjust_ptz": 2})
-    assert open_sample(Path(done.json["log"]), turned.sample).trace.started.planner == "their_loop:Agent"
+    turning_trial = next(t for t in evaluation.trials if t.task.category == "single_call")
+    assert (turning_trial.bad_calls, turning_trial.tool_calls) == (1, {"adjust_ptz": 2})
+    assert open_sample(Path(run_result.json["log"]), turning_trial.sample).trace.started.planner == "their_loop:Agent"
 
 
-SEEING = """
+SEEING_AGENT = """
 class Agent:
     sees = True
 
     async def run(self, session):
-        {looks}
+        {body}
         return "There are 3 balls."
 """
 
 
-@pytest.mark.parametrize(("looks", "headline"), [("session.view()", "correct"), ("pass", "incorrect")])
+@pytest.mark.parametrize(("body", "headline"), [("session.view()", "correct"), ("pass", "incorrect")])
 def test_only_opened_pictures_count_as_observations(
-    looks: str, headline: str, scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    body: str, headline: str, scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    module = f"seeing_loop_{looks[:4]}"
-    (tmp_path / f"{module}.py").write_text(SEEING.format(looks=looks))
+    module = f"seeing_loop_{body[:4]}"
+    (tmp_path / f"{module}.py").write_text(SEEING_AGENT.format(body=body))
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     options = ("--category", "counting", "--limit", "1", "--out", "logs", "--json")
-    done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options)
-    assert done.code == 0, done.err
-    (trial,) = read_evaluation(Path(done.json["log"])).trials
+    run_result = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options)
+    assert run_result.code == 0, run_result.err
+    (trial,) = read_evaluation(Path(run_result.json["log"])).trials
     assert trial.headline == headline
 
 
@@ -112,7 +112,7 @@ def test_changed_source_is_a_different_evaluation(
     first = run_as("x")
     assert first.code == 0, first.err
     assert "2 runs of quick_loop:Agent + ground-truth" in first.out
-    # Somebody else's loop plans: nothing is said of a planner of ours, and nothing is promised of costs.
+    # The external agent plans, so the output mentions neither a built-in planner nor its costs.
     assert "grammar" not in first.out and "of the planner" not in first.out and "paid server" not in first.out
     assert "cost    unknown: the agent's own model calls are not measured" in first.out
     assert "already complete" in run_as("x").err
@@ -120,7 +120,7 @@ def test_changed_source_is_a_different_evaluation(
     assert "already complete" not in changed.err
     assert re.search(r"The source of quick_loop:Agent differs from that in logs/\S+\.eval: this is a new evaluation\.", changed.out)
     assert "measured on 2 earlier runs of this agent" in changed.out
-    # Names of logs begun in the same second do not tell which was the first.
+    # Logs started in the same second cannot be ordered by name.
     evaluations = sorted(map(read_evaluation, Path("logs").glob("*.eval")), key=lambda e: len(e.trials[0].answer))
     assert [{t.answer for t in e.trials} for e in evaluations] == [{"x"}, {"a longer answer"}]
     digests = [e.card.sampling["agent_source"] for e in evaluations]
@@ -135,7 +135,7 @@ def test_the_source_of_a_package_includes_all_its_modules(tmp_path: Path, monkey
     for name, text in (("__init__.py", ""), ("loop.py", QUICK.format(answer="x")), ("parts/words.py", "WORD = 1\n")):
         (tmp_path / "their_package" / name).write_text(text)
     before = source_digest("their_package.loop:Agent")
-    (tmp_path / "elsewhere.py").write_text("no part of it")
+    (tmp_path / "elsewhere.py").write_text("not part of the package")
     assert source_digest("their_package.loop:Agent") == before
     (tmp_path / "their_package" / "parts" / "words.py").write_text("WORD = 2\n")
     assert source_digest("their_package.loop:Agent") != before
@@ -151,7 +151,7 @@ def source_digest(agent: str) -> str:
 STATE = State(instruction="look around", briefing=Briefing(presets=("gate",), pose=Pose(), limits=Limits()))
 
 
-def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
+def state_after(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     outcomes = tuple(ToolOutcome(call=c, result=r) for c, r in zip(decision.calls, results, strict=True))
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
@@ -170,7 +170,7 @@ async def test_calls_that_are_awaited_together_are_one_step() -> None:
     decision = await planner.step(STATE)
     assert isinstance(decision, CallTools)
     assert [c.name for c in decision.calls] == ["count_objects", "take_image"]
-    end = await planner.step(told(STATE, decision, {"count": 2}, {"file": "x.jpg"}))
+    end = await planner.step(state_after(STATE, decision, {"count": 2}, {"file": "x.jpg"}))
     assert isinstance(end, Finish)
     assert (end.kind, end.text) == ("clarification", "2 x.jpg")
 
@@ -179,9 +179,9 @@ async def test_a_failing_agent_is_not_an_infrastructure_failure() -> None:
     async def run(self: Any, session: AgentSession) -> str:
         raise ZeroDivisionError("oops")
 
-    with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
+    with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as excinfo:
         await external(run).step(STATE)
-    assert failed.value.kind == "agent-error" and failed.value.kind in AGENT_FAILURES
+    assert excinfo.value.kind == "agent-error" and excinfo.value.kind in AGENT_FAILURES
 
 
 async def test_an_agent_without_an_answer() -> None:

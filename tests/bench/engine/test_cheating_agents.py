@@ -1,4 +1,4 @@
-"""Agents that cheat: what each kind of isolation prevents. One task has a wrong answer, which only cheats give."""
+"""Cheating agents under each isolation mode. One task has a wrong expected answer, which only a cheating agent gives."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ MODES = {"in-process": ["--agent-in-process"], "isolated": [], "sandboxed": ["--
 @pytest.fixture
 def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunCheat:
     """Run a cheat on the counting tasks, and return the trial of the task with the wrong answer."""
-    monkeypatch.setattr(trial_records, "score_episode", score_episode)  # the end of the test restores it
+    monkeypatch.setattr(trial_records, "score_episode", score_episode)  # so that monkeypatch restores it after the test
 
     def run(source: str, mode: str) -> Trial:
         folder = tmp_path / "agent"
@@ -72,10 +72,10 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
         monkeypatch.chdir(folder)
         monkeypatch.syspath_prepend(str(folder))
         options = ("--no-pictures", "--category", "counting", "--out", str(tmp_path / "logs"), "--json")
-        done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options, *MODES[mode])
-        assert done.code == 0, done.err
-        evaluation = read_evaluation(Path(done.json["log"]))
-        assert (evaluation.card.isolation, done.json["isolation"]) == (mode, mode)
+        result = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options, *MODES[mode])
+        assert result.code == 0, result.err
+        evaluation = read_evaluation(Path(result.json["log"]))
+        assert (evaluation.card.isolation, result.json["isolation"]) == (mode, mode)
         return next(trial for trial in evaluation.trials if trial.task.id.endswith("counting-002"))
 
     return run
@@ -83,7 +83,7 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
 
 @pytest.mark.full
 @pytest.mark.parametrize(
-    ("source", "mode", "wins"),
+    ("source", "mode", "succeeds"),
     [
         pytest.param(READS_THE_ANSWERS, "isolated", True, id="reading, isolated"),
         pytest.param(READS_THE_ANSWERS, "sandboxed", False, id="reading, sandboxed", marks=needs_sandbox),
@@ -95,7 +95,10 @@ def run_cheat(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytes
         pytest.param(REPLACES_THE_CHECKS, "sandboxed", False, id="checks, sandboxed", marks=needs_sandbox),
     ],
 )
-def test_what_a_cheat_wins(run_cheat: RunCheat, source: str, mode: str, wins: bool) -> None:
+def test_whether_a_cheat_succeeds(run_cheat: RunCheat, source: str, mode: str, succeeds: bool) -> None:
     trial = run_cheat(source, mode)
-    assert trial.headline == ("correct" if wins else "incorrect")
-    assert trial.outcome == "answered" or (source, mode) == (REPLACES_THE_CHECKS, "sandboxed")  # it cannot import SCOPE there
+    assert trial.headline == ("correct" if succeeds else "incorrect")
+    assert trial.outcome == "answered" or (source, mode) == (
+        REPLACES_THE_CHECKS,
+        "sandboxed",
+    )  # a sandboxed agent cannot import SCOPE

@@ -1,4 +1,4 @@
-"""Evaluations of external agents: failures are scored, labels are kept, and runs of different labels do not mix."""
+"""Evaluations of external agents: failures are scored, labels are kept, and runs with different labels are not mixed."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Agent:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder of the agent's own, which is the working folder."""
+    """Return the agent's folder, which is also the working folder."""
     (tmp_path / "agent").mkdir()
     monkeypatch.chdir(tmp_path / "agent")
     return tmp_path / "agent"
@@ -44,9 +44,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_failures_of_the_agent_are_scored(scope: Scope, tasks_file: Path, folder: Path) -> None:
     (folder / "failing_agent.py").write_text(FAILING)
     options = ("--agent", "failing_agent:Agent", "--agent-step-s", "5", "--no-pictures", "--out", "logs", "--json")
-    done = scope("bench", "run", "--tasks", str(tasks_file), *options)
-    assert done.code == 0, done.err
-    trials = {trial.task.id.split("yard-")[1]: trial for trial in read_evaluation(Path(done.json["log"])).trials}
+    result = scope("bench", "run", "--tasks", str(tasks_file), *options)
+    assert result.code == 0, result.err
+    trials = {trial.task.id.split("yard-")[1]: trial for trial in read_evaluation(Path(result.json["log"])).trials}
     assert {name: trial.headline for name, trial in trials.items()} == {
         "counting-001": "incorrect", "counting-002": "incorrect", "single-call-001": "incorrect", "single-call-002": "correct",
     }  # fmt: skip
@@ -56,9 +56,9 @@ def test_failures_of_the_agent_are_scored(scope: Scope, tasks_file: Path, folder
     assert "SIGABRT" in trials["counting-001"].answer
     assert trials["counting-002"].reason.startswith("the agent failed (agent-timeout): ")
     assert "ZeroDivisionError: after the work" in trials["single-call-001"].reason
-    (summary,) = [line for line in done.json["failure_summary"] if "agent failed" in line]
+    (summary,) = [line for line in result.json["failure_summary"] if "agent failed" in line]
     assert "3 of 4 runs" in summary and "agent-timeout 1" in summary
-    assert done.json["micro"] == 0.25
+    assert result.json["micro"] == 0.25
 
 
 QUICK = """
@@ -74,9 +74,9 @@ def test_labels_and_limits_are_part_of_the_identity(scope: Scope, tasks_file: Pa
 
     def run_with(*options: str) -> str:
         common = ("--tasks", str(tasks_file), "--agent", "quick_agent:Agent", "--limit", "1", "--no-pictures", "--out", "../logs")
-        done = scope("bench", "run", *common, *options)
-        assert done.code == 0, done.err
-        return done.out + done.err
+        result = scope("bench", "run", *common, *options)
+        assert result.code == 0, result.err
+        return result.out + result.err
 
     assert "agent   isolated: " in run_with() and "agent      isolated: " in run_with()
     assert "already complete" in run_with()
@@ -86,8 +86,8 @@ def test_labels_and_limits_are_part_of_the_identity(scope: Scope, tasks_file: Pa
     assert "already complete" not in run_with("--agent-python", sys.executable)
     labels = sorted(read_evaluation(log).card.isolation or "" for log in (folder.parent / "logs").glob("*.eval"))
     assert labels == ["in-process", "isolated", "isolated", "isolated"]
-    done = scope("bench", "report", *map(str, (folder.parent / "logs").glob("*.eval")), "--out", "../report")
-    assert done.code == 0, done.err
+    result = scope("bench", "report", *map(str, (folder.parent / "logs").glob("*.eval")), "--out", "../report")
+    assert result.code == 0, result.err
     page = (folder.parent / "report" / "report.md").read_text("utf-8").replace("\\", "")
     assert "quick_agent:Agent (in-process)" in page and "quick_agent:Agent (isolated)" in page
 
@@ -112,20 +112,20 @@ def test_a_sandboxed_agent_does_not_see_logs_and_tasks_in_its_folder(scope: Scop
     (folder / "curious_agent.py").write_text(CURIOUS)
     (folder / "tasks.jsonl").write_bytes(tasks_file.read_bytes())
     options = ("--agent", "curious_agent:Agent", "--sandbox", "--no-pictures", "--out", "logs", "--json")
-    done = scope("bench", "run", "--tasks", "tasks.jsonl", *options)
-    assert done.code == 0, done.err
-    evaluation = read_evaluation(Path(done.json["log"]))
+    result = scope("bench", "run", "--tasks", "tasks.jsonl", *options)
+    assert result.code == 0, result.err
+    evaluation = read_evaluation(Path(result.json["log"]))
     assert evaluation.card.isolation == "sandboxed"
     assert not any("expected" in trial.answer or ".eval" in trial.answer for trial in evaluation.trials)
     assert all(trial.outcome == "answered" for trial in evaluation.trials)
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("options", "message"),
     [
-        (["--sandbox"], "need an agent"),
-        (["--agent-memory-mb", "100"], "need an agent"),
-        (["--agent", "a:B", "--agent-command", "sh x"], "two agents"),
+        (["--sandbox"], "require an agent"),
+        (["--agent-memory-mb", "100"], "require an agent"),
+        (["--agent", "a:B", "--agent-command", "sh x"], "cannot be combined"),
         (["--agent-command", "sh x", "--agent-in-process"], "--agent MODULE:CLASS"),
         (["--agent-command", " "], "empty"),
         (["--agent-command", "no-such-program"], "does not exist"),
@@ -133,9 +133,9 @@ def test_a_sandboxed_agent_does_not_see_logs_and_tasks_in_its_folder(scope: Scop
         (["--agent", "json:JSONDecoder", "--agent-in-process"], "is not an agent"),
     ],
 )
-def test_wrong_options(options: list[str], says: str, scope: Scope, tasks_file: Path, folder: Path) -> None:
-    done = scope("bench", "run", "--tasks", str(tasks_file), "--out", "logs", *options)
-    assert done.code == 2 and says in done.err, done.err
+def test_wrong_options(options: list[str], message: str, scope: Scope, tasks_file: Path, folder: Path) -> None:
+    result = scope("bench", "run", "--tasks", str(tasks_file), "--out", "logs", *options)
+    assert result.code == 2 and message in result.err, result.err
     assert not list(folder.glob("logs/*.eval"))
 
 
@@ -146,5 +146,5 @@ def test_the_python_interface(tasks_file: Path, scenes: Path, folder: Path, monk
     results = scope_ptz.evaluate(tasks=tasks, agent="quick_agent:Agent", agent_memory_mb=500, pictures=False, out="logs")
     assert read_evaluation(results.log).card.isolation == "isolated"
     assert [trial.answer for trial in results.trials] == ["x"]
-    with pytest.raises(ConfigError, match="two agents"):
+    with pytest.raises(ConfigError, match="cannot be combined"):
         scope_ptz.evaluate(tasks=tasks, agent="quick_agent:Agent", agent_command="sh", out="logs")

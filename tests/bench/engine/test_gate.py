@@ -1,4 +1,4 @@
-"""The gate: significant losses fail it, chance does not, and evaluations that cannot be compared are refused."""
+"""The gate fails on significant losses, passes on chance differences, and rejects incomparable evaluations."""
 
 from __future__ import annotations
 
@@ -7,81 +7,83 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.engine.regression.gate import gate
+from scope_ptz.bench.engine.regression.gate import compare_evaluations
 from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope
 
 
-def evaluation(like: Evaluation, right: dict[str, int], of: int = 10) -> Evaluation:
-    """Return an evaluation with ``of`` trials in each category, of which ``right`` are correct."""
+def evaluation(template: Evaluation, correct: dict[str, int], total: int = 10) -> Evaluation:
+    """Return an evaluation with ``total`` trials in each category. ``correct`` maps categories to numbers of correct trials."""
     trials: list[Trial] = []
-    for category, number in right.items():
-        for at in range(of):
-            task = like.trials[0].task.model_copy(update={"id": f"scope1-x-{category}-{at:03d}", "category": category})
-            headline = "correct" if at < number else "incorrect"
-            trials.append(like.trials[0].model_copy(update={"task": task, "sample": f"{task.id}#1", "headline": headline}))
-    return Evaluation(card=like.card, trials=tuple(trials), wanted=len(trials))
+    for category, number in correct.items():
+        for index in range(total):
+            task = template.trials[0].task.model_copy(update={"id": f"scope1-x-{category}-{index:03d}", "category": category})
+            headline = "correct" if index < number else "incorrect"
+            trials.append(template.trials[0].model_copy(update={"task": task, "sample": f"{task.id}#1", "headline": headline}))
+    return Evaluation(card=template.card, trials=tuple(trials), wanted=len(trials))
 
 
-def test_a_significant_loss_fails(a_log: Path) -> None:
-    like = read_evaluation(a_log)
-    before = evaluation(like, {"counting": 10, "ocr": 10})
-    lost = gate(evaluation(like, {"counting": 2, "ocr": 10}), before)
-    assert not lost.passed
-    assert [c.group for c in lost.regressions] == ["all", "counting"]
+def test_a_significant_loss_fails(shared_log: Path) -> None:
+    template = read_evaluation(shared_log)
+    before = evaluation(template, {"counting": 10, "ocr": 10})
+    comparison = compare_evaluations(evaluation(template, {"counting": 2, "ocr": 10}), before)
+    assert not comparison.passed
+    assert [c.group for c in comparison.regressions] == ["all", "counting"]
     # 8 losses and no gain: 2 / 2^8, twice that in the category because of two tests.
-    assert lost.overall.p == pytest.approx(2 / 256)
-    assert lost.categories[0].p == pytest.approx(4 / 256)
-    assert lost.overall.worse[0] == "scope1-x-counting-002"
+    assert comparison.overall.p == pytest.approx(2 / 256)
+    assert comparison.categories[0].p == pytest.approx(4 / 256)
+    assert comparison.overall.worse[0] == "scope1-x-counting-002"
 
 
-def test_chance_and_gains_pass(a_log: Path) -> None:
-    like = read_evaluation(a_log)
-    before = evaluation(like, {"counting": 5, "ocr": 5})
-    assert gate(evaluation(like, {"counting": 4, "ocr": 6}), before).passed
-    assert gate(evaluation(like, {"counting": 10, "ocr": 10}), before).passed
-    assert gate(before, before).passed
+def test_chance_and_gains_pass(shared_log: Path) -> None:
+    template = read_evaluation(shared_log)
+    before = evaluation(template, {"counting": 5, "ocr": 5})
+    assert compare_evaluations(evaluation(template, {"counting": 4, "ocr": 6}), before).passed
+    assert compare_evaluations(evaluation(template, {"counting": 10, "ocr": 10}), before).passed
+    assert compare_evaluations(before, before).passed
 
 
-def test_what_cannot_be_compared(a_log: Path) -> None:
-    like = read_evaluation(a_log)
-    other = like.model_copy(update={"card": like.card.model_copy(update={"dataset_digest": "0" * 16})})
+def test_incomparable_evaluations_are_rejected(shared_log: Path) -> None:
+    template = read_evaluation(shared_log)
+    other = template.model_copy(update={"card": template.card.model_copy(update={"dataset_digest": "0" * 16})})
     with pytest.raises(InputError, match="different tasks"):
-        gate(other, like)
+        compare_evaluations(other, template)
     with pytest.raises(InputError, match="Finish the evaluation first"):
-        gate(like.model_copy(update={"wanted": 99}), like)
-    broken = tuple(t.model_copy(update={"headline": "infrastructure"}) for t in like.trials)
+        compare_evaluations(template.model_copy(update={"wanted": 99}), template)
+    broken = tuple(t.model_copy(update={"headline": "infrastructure"}) for t in template.trials)
     with pytest.raises(InputError, match="no task is scored in both"):
-        gate(like.model_copy(update={"trials": broken}), like)
+        compare_evaluations(template.model_copy(update={"trials": broken}), template)
 
 
-def judged_by(like: Evaluation, judge: str) -> Evaluation:
-    said = Judgement(judge=judge, prompt="p", verdict="correct")
-    trials = (t.model_copy(update={"scored_by": "judge", "headline": "correct", "judgements": (said,)}) for t in like.trials)
-    return like.model_copy(update={"trials": tuple(trials)})
+def with_judge(template: Evaluation, judge: str) -> Evaluation:
+    judgement = Judgement(judge=judge, prompt="p", verdict="correct")
+    trials = (
+        t.model_copy(update={"scored_by": "judge", "headline": "correct", "judgements": (judgement,)}) for t in template.trials
+    )
+    return template.model_copy(update={"trials": tuple(trials)})
 
 
-def test_broken_tasks_and_changed_judges_are_reported(a_log: Path) -> None:
-    like = read_evaluation(a_log)
-    first, *rest = like.trials
+def test_broken_tasks_and_changed_judges_are_reported(shared_log: Path) -> None:
+    template = read_evaluation(shared_log)
+    first, *rest = template.trials
     broken = first.model_copy(update={"headline": "infrastructure"})
-    now = like.model_copy(update={"trials": (broken, *rest)})
+    now = template.model_copy(update={"trials": (broken, *rest)})
     assert any(
         line.startswith("1 task is left out, because in one of the logs infrastructure")
-        for line in comparison_lines(gate(now, like), now)
+        for line in comparison_lines(compare_evaluations(now, template), now)
     )
-    assert judge_change_note(like, like) == judge_change_note(judged_by(like, "a"), judged_by(like, "a")) == ""
-    assert judge_change_note(judged_by(like, "a"), like) == ""
-    told = judge_change_note(judged_by(like, "b"), judged_by(like, "a"))
-    assert told.startswith("note: the deciding judge is a (p) in the baseline and b (p) in the log")
+    assert judge_change_note(template, template) == judge_change_note(with_judge(template, "a"), with_judge(template, "a")) == ""
+    assert judge_change_note(with_judge(template, "a"), template) == ""
+    note = judge_change_note(with_judge(template, "b"), with_judge(template, "a"))
+    assert note.startswith("note: the deciding judge is a (p) in the baseline and b (p) in the log")
 
 
-def test_the_command(scope: Scope, evaluated: Path) -> None:
-    done = scope("bench", "gate", str(evaluated), "--baseline", str(evaluated), "--json")
-    assert done.code == 0
-    assert '"passed": true' in done.out
-    missing = scope("bench", "gate", str(evaluated), "--baseline", str(evaluated.with_name("none.eval")))
+def test_the_gate_command(scope: Scope, log_copy: Path) -> None:
+    result = scope("bench", "gate", str(log_copy), "--baseline", str(log_copy), "--json")
+    assert result.code == 0
+    assert '"passed": true' in result.out
+    missing = scope("bench", "gate", str(log_copy), "--baseline", str(log_copy.with_name("none.eval")))
     assert missing.code == 2
     assert "does not exist" in missing.err

@@ -29,18 +29,18 @@ def test_a_missing_file(tmp_path: Path) -> None:
         read_evaluation(tmp_path)
 
 
-def test_a_truncated_log(evaluated: Path, tmp_path: Path) -> None:
-    whole = evaluated.read_bytes()
+def test_a_truncated_log(log_copy: Path, tmp_path: Path) -> None:
+    data = log_copy.read_bytes()
     path = tmp_path / "cut.eval"
-    for share in (0.1, 0.5, 0.99):
-        path.write_bytes(whole[: int(len(whole) * share)])
+    for fraction in (0.1, 0.5, 0.99):
+        path.write_bytes(data[: int(len(data) * fraction)])
         with pytest.raises(TraceError):
             read_evaluation(path)
 
 
-def test_a_log_of_another_evaluation(evaluated: Path, tmp_path: Path) -> None:
+def test_a_log_of_another_evaluation(log_copy: Path, tmp_path: Path) -> None:
     path = tmp_path / "other.eval"
-    with ZipFile(evaluated) as old, ZipFile(path, "w") as new:
+    with ZipFile(log_copy) as old, ZipFile(path, "w") as new:
         for name in old.namelist():
             content = json.loads(old.read(name))
             if name == "header.json":
@@ -50,28 +50,28 @@ def test_a_log_of_another_evaluation(evaluated: Path, tmp_path: Path) -> None:
         read_evaluation(path)
 
 
-def test_a_missing_run(evaluated: Path) -> None:
+def test_a_missing_run(log_copy: Path) -> None:
     for name in ("nothing#1", "nothing", "", "#", "../../x#1"):
         with pytest.raises(TraceError, match="does not contain the run"):
-            open_sample(evaluated, name)
+            open_sample(log_copy, name)
 
 
-def test_scores_are_appended_and_none_is_lost(scope: Scope, evaluated: Path) -> None:
-    before = read_evaluation(evaluated)
-    done = scope("bench", "rescore", str(evaluated), "--checks")
-    assert done.code == 0, done.err
-    with ZipFile(evaluated) as log:
+def test_scores_are_appended_and_none_is_lost(scope: Scope, log_copy: Path) -> None:
+    before = read_evaluation(log_copy)
+    result = scope("bench", "rescore", str(log_copy), "--checks")
+    assert result.code == 0, result.err
+    with ZipFile(log_copy) as log:
         samples = [json.loads(log.read(n)) for n in log.namelist() if n.startswith("samples/")]
     assert all(len(sample["scores"]) == 2 for sample in samples)
-    after = read_evaluation(evaluated)
+    after = read_evaluation(log_copy)
     assert after.trials == before.trials
     assert after.card == before.card
     trial = after.trials[0]
-    (look,) = [c for c in open_sample(evaluated, trial.sample).trace.calls if c.outcome.call.name == "count_objects"]
-    assert open_sample(evaluated, trial.sample).picture((look.outcome.result or {})["frames"][0])
+    (call,) = [c for c in open_sample(log_copy, trial.sample).trace.calls if c.outcome.call.name == "count_objects"]
+    assert open_sample(log_copy, trial.sample).picture((call.outcome.result or {})["frames"][0])
 
 
-def test_rescoring_requires_checks_or_a_judge(scope: Scope, evaluated: Path) -> None:
-    done = scope("bench", "rescore", str(evaluated))
-    assert done.code == 2
-    assert "--judge-url" in done.err
+def test_rescoring_requires_checks_or_a_judge(scope: Scope, log_copy: Path) -> None:
+    result = scope("bench", "rescore", str(log_copy))
+    assert result.code == 2
+    assert "--judge-url" in result.err

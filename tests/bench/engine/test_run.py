@@ -1,4 +1,4 @@
-"""`scope bench run` writes a log with every tool call, perception call and picture, which can be read back as data."""
+"""``scope bench run`` writes a log with every tool call, perception call and picture, which can be read back as data."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ import numpy as np
 import pytest
 from inspect_ai.log import read_eval_log
 
-from scope_ptz.bench.engine.entries import Entry, select
+from scope_ptz.bench.engine.entries import Entry, select_entries
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.task_wording import facts_of
-from tests.bench.engine.making import SCENE, TASKS
+from tests.bench.engine.yard_tasks import SCENE, TASKS
 from tests.cli.conftest import Scope
 
 
-def test_a_log_reads_as_judged_runs(evaluated: Path) -> None:
-    evaluation = read_evaluation(evaluated)
+def test_a_log_is_read_as_scored_runs(log_copy: Path) -> None:
+    evaluation = read_evaluation(log_copy)
     assert evaluation.finished
     assert [trial.task.id for trial in evaluation.trials] == [task.id for task in TASKS]
     assert [trial.headline for trial in evaluation.trials] == ["correct", "incorrect", "correct", "correct"]
-    counted, miscounted, turned, _ = evaluation.trials
-    assert counted.tool_calls == {"count_objects": 1}
-    # The camera's time is no part of the eyes': together they are no longer than the whole call.
-    (look,) = counted.looks
-    assert look.view == "current" and look.capture_s > 0 and look.eyes_s > 0
-    assert 0 < look.eyes_s + look.capture_s <= look.call_s
-    assert counted.timings.perception_s > 0
-    assert (counted.task.viewpoint, counted.task.category) == ("mast", "counting")
-    # The eyes said what really shows, so it was not they that erred.
-    assert miscounted.error_mode not in (None, ErrorMode.VLM_COUNTING)
-    assert turned.timings.total_s >= turned.timings.planner_s > 0
-    assert {check.name for check in turned.checks} >= {"outcome", "pose"}
+    count_trial, wrong_trial, turn_trial, _ = evaluation.trials
+    assert count_trial.tool_calls == {"count_objects": 1}
+    # Perception time excludes capture time, and together they do not exceed the duration of the call.
+    (observation,) = count_trial.looks
+    assert observation.view == "current" and observation.capture_s > 0 and observation.eyes_s > 0
+    assert 0 < observation.eyes_s + observation.capture_s <= observation.call_s
+    assert count_trial.timings.perception_s > 0
+    assert (count_trial.task.viewpoint, count_trial.task.category) == ("mast", "counting")
+    # Perception was right, so the error is not attributed to it.
+    assert wrong_trial.error_mode not in (None, ErrorMode.VLM_COUNTING)
+    assert turn_trial.timings.total_s >= turn_trial.timings.planner_s > 0
+    assert {check.name for check in turn_trial.checks} >= {"outcome", "pose"}
 
 
-def test_the_card_says_how_it_was_run(evaluated: Path) -> None:
-    card = read_evaluation(evaluated).card
+def test_the_card_states_the_settings(log_copy: Path) -> None:
+    card = read_evaluation(log_copy).card
     assert (card.pair, card.ranked) == ("grammar + ground-truth", False)
     assert (card.agent, card.epochs, card.seed, card.max_steps) == ("scope", 1, 1, 60)
     assert card.engine_version.startswith("inspect-ai 0.3.")
@@ -48,25 +48,25 @@ def test_the_card_says_how_it_was_run(evaluated: Path) -> None:
     assert card.contended
 
 
-def test_the_log_shows_tool_calls_perception_calls_and_pictures(evaluated: Path) -> None:
-    log = read_eval_log(str(evaluated), resolve_attachments=True)
+def test_the_log_shows_tool_calls_perception_calls_and_pictures(log_copy: Path) -> None:
+    log = read_eval_log(str(log_copy), resolve_attachments=True)
     assert log.samples is not None
     sample = next(s for s in log.samples if "counting-001" in str(s.id))
     spans = {e.id: e for e in sample.events if e.event == "span_begin"}
     models = [e for e in sample.events if e.event == "model"]
-    looks = [e for e in models if e.role == "eyes"]
+    perception_calls = [e for e in models if e.role == "eyes"]
     assert [e.role for e in models] == ["planner", "eyes", "planner"]
-    # The look is inside the call that wanted it, with the picture that was looked at.
-    assert spans[str(looks[0].span_id)].name == "count_objects"
-    assert any(part.type == "image" for part in looks[0].input[0].content if not isinstance(part, str))
+    # The perception call is inside the tool call that made it, with its picture.
+    assert spans[str(perception_calls[0].span_id)].name == "count_objects"
+    assert any(part.type == "image" for part in perception_calls[0].input[0].content if not isinstance(part, str))
     (call,) = [e for e in sample.events if e.event == "tool"]
     assert call.arguments == {"description": "balls", "view": "current"}
     assert "image" in [part.type for part in call.result if not isinstance(part, str | int | float | bool)]  # type: ignore[union-attr]
     assert {"planner", "eyes"} == set(log.eval.model_roles or {})
 
 
-def test_trace_and_pictures_of_a_run_can_be_extracted(evaluated: Path) -> None:
-    files = open_sample(evaluated, f"scope1-{SCENE}-counting-001#1")
+def test_trace_and_pictures_of_a_run_can_be_extracted(log_copy: Path) -> None:
+    files = open_sample(log_copy, f"scope1-{SCENE}-counting-001#1")
     assert files.trace.ended is not None
     assert files.trace.ended.outcome == "answered"
     (called,) = files.trace.calls
@@ -79,28 +79,28 @@ def test_trace_and_pictures_of_a_run_can_be_extracted(evaluated: Path) -> None:
     assert files.picture("frames/999-view.jpg") is None
 
 
-def test_completed_runs_are_not_repeated(scope: Scope, evaluated: Path, tasks_file: Path) -> None:
-    before = evaluated.read_bytes()
-    done = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(evaluated.parent), "--json")
-    assert done.code == 0
-    assert "already complete" in done.err
-    assert done.json["headlines"] == {"correct": 3, "incorrect": 1, "unscored": 0, "infrastructure": 0}
-    assert done.json["by_category"] == {"counting": 0.5, "single_call": 1.0}
-    assert (done.json["macro"], done.json["micro"]) == (0.75, 0.75)
-    assert evaluated.read_bytes() == before
-    assert list(evaluated.parent.glob("*.eval")) == [evaluated]
+def test_completed_runs_are_not_repeated(scope: Scope, log_copy: Path, tasks_file: Path) -> None:
+    before = log_copy.read_bytes()
+    result = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(log_copy.parent), "--json")
+    assert result.code == 0
+    assert "already complete" in result.err
+    assert result.json["headlines"] == {"correct": 3, "incorrect": 1, "unscored": 0, "infrastructure": 0}
+    assert result.json["by_category"] == {"counting": 0.5, "single_call": 1.0}
+    assert (result.json["macro"], result.json["micro"]) == (0.75, 0.75)
+    assert log_copy.read_bytes() == before
+    assert list(log_copy.parent.glob("*.eval")) == [log_copy]
 
 
 def test_epochs_categories_and_no_pictures(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
-    done = scope(
+    result = scope(
         "bench", "run", "--tasks", str(tasks_file), "--category", "single_call", "--limit", "1", "--epochs", "2", "--no-pictures",
         "--latency", "--out", str(tmp_path), "--json",
     )  # fmt: skip
-    assert done.code == 0, done.err
-    evaluation = read_evaluation(Path(done.json["log"]))
+    assert result.code == 0, result.err
+    evaluation = read_evaluation(Path(result.json["log"]))
     assert [(t.task.category, t.epoch) for t in evaluation.trials] == [("single_call", 1), ("single_call", 2)]
     assert (evaluation.wanted, evaluation.card.contended, evaluation.card.concurrency) == (2, False, 1)
-    assert not open_sample(Path(done.json["log"]), evaluation.trials[0].sample).references
+    assert not open_sample(Path(result.json["log"]), evaluation.trials[0].sample).references
 
 
 def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
@@ -119,17 +119,17 @@ def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
         for category, scene, scope, n in rows
     )
     for limit in (3, 8, 30, 89):
-        some = select(entries, limit=limit)
-        assert len({e.facts.id for e in some}) == limit
-        assert some == select(entries, limit=limit), "the same ones each time"
-        assert [e for e in entries if e in some] == list(some), "in their order"
+        selected = select_entries(entries, limit=limit)
+        assert len({e.facts.id for e in selected}) == limit
+        assert selected == select_entries(entries, limit=limit), "the selection must be deterministic"
+        assert [e for e in entries if e in selected] == list(selected), "the order must be kept"
         for name in ("category", "scene"):
-            counts = Counter(getattr(e.facts, name) for e in some)
+            counts = Counter(getattr(e.facts, name) for e in selected)
             assert len(counts) == 3 and max(counts.values()) - min(counts.values()) <= 2
-        # Three of ninety tasks ask for the whole scene: one is among a few, and not all are.
-        full = sum(e.facts.scope == "full" for e in some)
+        # Three of ninety tasks have the scope "full". Even a small selection includes one, but not all of them.
+        full = sum(e.facts.scope == "full" for e in selected)
         assert 1 <= full <= max(1, round(limit / 30) + 1)
-    assert select(entries, limit=90) == select(entries) == entries
+    assert select_entries(entries, limit=90) == select_entries(entries) == entries
 
 
 def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
@@ -140,40 +140,40 @@ def test_a_pair_may_contain_built_in_models(scope: Scope, tasks_file: Path, tmp_
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("options", "message"),
     [
         (["--category", "nonsense"], "no category"),
         (["--scene", "elsewhere"], "no scene"),
         (["--tasks", "no-such-split"], "no split"),
         (["--tasks", "missing.jsonl"], "cannot be read"),
         (["--pair", "nobody+nothing"], "There is no"),
-        (["--pair", "qwen3-4b+ground-truth"], "'qwen3-4b' runs on a model server"),
+        (["--pair", "qwen3-4b+ground-truth"], "'qwen3-4b' requires a model server"),
         (["--pair", "nobody+ground-truth"], "There is no planner 'nobody'"),
         (["--pair", "ground-truth+grammar"], "There is no planner 'ground-truth'"),
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is not an agent"),
-        (["--price", "cheap"], "--price must be two amounts"),
+        (["--price", "cheap"], "--price must be two prices"),
         (["--resume", "missing.eval"], "does not exist"),
-        (["--perception", "rapidocr", "--no-pictures"], "needs pictures"),
+        (["--perception", "rapidocr", "--no-pictures"], "requires pictures"),
     ],
 )
-def test_wrong_options_end_in_a_message(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], words: str) -> None:
-    given = options if "--tasks" in options else ["--tasks", str(tasks_file), *options]
-    done = scope("bench", "run", "--out", str(tmp_path), *given)
-    assert done.code == 2
-    assert words in done.err
-    assert "Traceback" not in done.err
+def test_wrong_options_are_reported(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], message: str) -> None:
+    arguments = options if "--tasks" in options else ["--tasks", str(tasks_file), *options]
+    result = scope("bench", "run", "--out", str(tmp_path), *arguments)
+    assert result.code == 2
+    assert message in result.err
+    assert "Traceback" not in result.err
     assert not list(tmp_path.glob("*.eval"))
 
 
-def test_resuming_another_evaluation_is_refused(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
-    done = scope("bench", "run", "--tasks", str(tasks_file), "--seed", "2", "--resume", str(evaluated), "--out", str(tmp_path))
-    assert done.code == 2
-    assert "another evaluation" in done.err
+def test_resuming_another_evaluation_is_refused(scope: Scope, log_copy: Path, tasks_file: Path, tmp_path: Path) -> None:
+    result = scope("bench", "run", "--tasks", str(tasks_file), "--seed", "2", "--resume", str(log_copy), "--out", str(tmp_path))
+    assert result.code == 2
+    assert "another evaluation" in result.err
 
 
-def test_a_sample_names_its_task(evaluated: Path) -> None:
-    header = read_eval_log(str(evaluated), header_only=True)
-    told = json.dumps(header.eval.metadata)
-    assert "dataset_digest" in told
+def test_a_sample_names_its_task(log_copy: Path) -> None:
+    header = read_eval_log(str(log_copy), header_only=True)
+    metadata = json.dumps(header.eval.metadata)
+    assert "dataset_digest" in metadata

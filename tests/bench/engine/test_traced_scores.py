@@ -1,4 +1,4 @@
-"""Scores come from traces alone: an edited log gains nothing, and what was edited is named."""
+"""Scores are computed from traces alone: editing a log gains nothing, and edits are reported."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from scope_ptz.bench.engine.stored_run import STORE
 from scope_ptz.bench.reports.log_findings import finding_lines
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.tasks.task_facts import TaskFacts
-from tests.bench.engine.editing import Change, Json, edited, files_of, records_of, set_trace, trace_change, write_log
+from tests.bench.engine.editing import Change, Json, edit_log, files_of, records_of, set_trace, trace_change, write_log
 from tests.cli.conftest import Scope
 from tests.frozen import adapter
 
 PUBLISHED = Path(__file__).parents[2] / "frozen" / "v0_1_0" / "logs" / "truth.eval"
-"""A log of published tasks, with successes and failures, that version 0.1.0 wrote."""
+"""A log of published tasks, with successes and failures, written by version 0.1.0."""
 
 
 @pytest.fixture(scope="module")
 def honest(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
-    """The log with the scores of the current rules, as if it had been written now."""
+    """Return the published log, scored with the current rules."""
     log = tmp_path_factory.mktemp("honest") / PUBLISHED.name
     shutil.copy(PUBLISHED, log)
     assert adapter.rescore_checks(log).code == 0
-    found = read_evaluation(log)
-    assert found.findings == ()
-    assert failures(found)
-    return found
+    evaluation = read_evaluation(log)
+    assert evaluation.findings == ()
+    assert failures(evaluation)
+    return evaluation
 
 
 def failures(evaluation: Evaluation) -> list[str]:
@@ -56,7 +56,7 @@ def claim_value(sample: Json) -> None:
 
 
 def claim_everything(sample: Json) -> None:
-    """A score that is consistent in itself: value, headline, error mode and checks."""
+    """Claim success consistently: in value, headline, error mode and checks."""
     claim_value(sample)
     for score in sample["scores"].values():
         score["metadata"] |= {"headline": "correct", "error_mode": None}
@@ -96,16 +96,16 @@ def claim_answer(sample: Json) -> None:
     "change",
     [claim_value, claim_everything, claim_another_error_mode, claim_speed, claim_fewer_calls, claim_tokens, claim_answer],
 )
-def test_edited_scores_are_named_and_not_used(honest: Evaluation, tmp_path: Path, change: Change) -> None:
+def test_edited_scores_are_reported_and_ignored(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
-    assert found.trials == honest.trials
-    assert {finding.sample for finding in found.findings} == set(attacked)
-    assert {finding.kind for finding in found.findings} == {"score-differs"}
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
+    assert evaluation.trials == honest.trials
+    assert {finding.sample for finding in evaluation.findings} == set(attacked)
+    assert {finding.kind for finding in evaluation.findings} == {"score-differs"}
 
 
 def accept_every_answer(sample: Json) -> None:
-    """The expected value becomes what the agent answered, and nothing else is checked."""
+    """Accept any answer, and check nothing else."""
     sample["metadata"]["task"]["expected"] = {"kind": "action_only"}
     sample["metadata"]["task"]["evidence"] = []
     sample["metadata"]["task"]["behaviour"] = {"outcomes": ["answered", "clarification", "refused", "step_limit"]}
@@ -117,14 +117,14 @@ def other_category(sample: Json) -> None:
 
 
 def no_task(sample: Json) -> None:
-    """Without a task with checks, only a judge could score the run; the verdict of an invented judge is added."""
+    """Remove the task, so that only a judge could score the run, and add the verdict of an invented judge."""
     sample["metadata"]["task"] = None
     verdict = {"judge": "friend", "prompt": "p", "verdict": "correct"}
     sample["scores"]["judge"] = {"value": "C", "metadata": {"judgement": verdict}}
 
 
 def imported_task(sample: Json) -> None:
-    """An imported task with the id of the published one, which only a judge can score."""
+    """Replace the published task by an imported one with the same id, which only a judge can score."""
     facts = {name: sample["metadata"][name] for name in TaskFacts.model_fields}
     no_task(sample)
     sample["metadata"]["imported"] = {"imported": 1, "facts": facts, "line": 1, "raw": {}}
@@ -133,20 +133,22 @@ def imported_task(sample: Json) -> None:
 @pytest.mark.parametrize("change", [accept_every_answer, other_category, no_task, imported_task])
 def test_the_published_task_decides(honest: Evaluation, tmp_path: Path, change: Change) -> None:
     attacked = failures(honest)
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
-    assert [(t.task, t.headline, t.error_mode, t.checks) for t in found.trials] == [
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "attacked.eval", change, attacked))
+    assert [(t.task, t.headline, t.error_mode, t.checks) for t in evaluation.trials] == [
         (t.task, t.headline, t.error_mode, t.checks) for t in honest.trials
     ]
-    assert {finding.sample for finding in found.findings if finding.kind == "task-differs"} == set(attacked)
+    assert {finding.sample for finding in evaluation.findings if finding.kind == "task-differs"} == set(attacked)
 
 
-def test_presets_of_the_log_do_not_decide_where_the_camera_stood(honest: Evaluation, tmp_path: Path) -> None:
-    def everywhere_the_same(sample: Json) -> None:
+def test_presets_in_the_log_do_not_determine_viewpoints(honest: Evaluation, tmp_path: Path) -> None:
+    def set_one_viewpoint(sample: Json) -> None:
         places = sample["store"][STORE]["presets"]
         sample["store"][STORE]["presets"] = dict.fromkeys(places, "elsewhere")
 
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "a.eval", everywhere_the_same, [t.sample for t in honest.trials]))
-    assert found.trials == honest.trials
+    evaluation = read_evaluation(
+        edit_log(Path(honest.log), tmp_path / "a.eval", set_one_viewpoint, [t.sample for t in honest.trials])
+    )
+    assert evaluation.trials == honest.trials
 
 
 def end(records: list[Json]) -> Json:
@@ -204,7 +206,7 @@ def two_ends(records: list[Json]) -> list[Json]:
     return [*records, records[-1]]
 
 
-def no_time(records: list[Json]) -> None:
+def negative_time(records: list[Json]) -> None:
     end(records)["timings"] = {"total_s": -100.0}
 
 
@@ -212,32 +214,32 @@ def no_time(records: list[Json]) -> None:
     "change",
     [
         other_answer, other_outcome, other_final_pose, without_calls, fewer_steps, invented_call, other_arguments, larger_frames,
-        other_instruction, other_viewpoint, no_end, two_ends, no_time,
+        other_instruction, other_viewpoint, no_end, two_ends, negative_time,
     ],
 )  # fmt: skip
-def test_a_trace_that_contradicts_itself_is_named_and_not_correct(honest: Evaluation, tmp_path: Path, change: Any) -> None:
+def test_a_contradictory_trace_is_reported_and_unscored(honest: Evaluation, tmp_path: Path, change: Any) -> None:
     names = [trial.sample for trial in honest.trials if trial.tool_calls]
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", trace_change(change), names))
-    assert {trial.headline for trial in found.trials if trial.sample in names} == {"unscored"}
-    assert {finding.sample for finding in found.findings} == set(names)
-    assert {finding.kind for finding in found.findings} <= {"trace-damaged", "trace-missing"}
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "attacked.eval", trace_change(change), names))
+    assert {trial.headline for trial in evaluation.trials if trial.sample in names} == {"unscored"}
+    assert {finding.sample for finding in evaluation.findings} == set(names)
+    assert {finding.kind for finding in evaluation.findings} <= {"trace-damaged", "trace-missing"}
 
 
 def test_a_missing_or_unreadable_trace_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     names = [trial.sample for trial in honest.trials]
     for number, text in enumerate(("", "nothing", '{"event": "start"}\n', "[]\n" * 5)):
-        path = edited(Path(honest.log), tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
-        found = read_evaluation(path)
-        assert not correct(found)
-        assert len(found.trials) == len(honest.trials)
-        assert {trial.headline for trial in found.trials} == {"unscored"}
-        assert {finding.sample for finding in found.findings} == set(names)
+        path = edit_log(Path(honest.log), tmp_path / f"{number}.eval", partial(set_trace, records=text), names)
+        evaluation = read_evaluation(path)
+        assert not correct(evaluation)
+        assert len(evaluation.trials) == len(honest.trials)
+        assert {trial.headline for trial in evaluation.trials} == {"unscored"}
+        assert {finding.sample for finding in evaluation.findings} == set(names)
 
     def without_store(sample: Json) -> None:
         sample["store"], sample["events"] = {}, []
 
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "store.eval", without_store, names))
-    assert {trial.headline for trial in found.trials} == {"unscored"}
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "store.eval", without_store, names))
+    assert {trial.headline for trial in evaluation.trials} == {"unscored"}
 
 
 def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Evaluation, tmp_path: Path) -> None:
@@ -251,9 +253,9 @@ def test_unusual_line_separators_in_an_answer_do_not_damage_a_trace(honest: Eval
         set_trace(sample, "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records))
 
     names = [trial.sample for trial in honest.trials]
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "unusual.eval", unusual, names))
-    assert {trial.answer for trial in found.trials} == {"One\u2028two\x85three."}
-    assert "unscored" not in {trial.headline for trial in found.trials}
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "unusual.eval", unusual, names))
+    assert {trial.answer for trial in evaluation.trials} == {"One\u2028two\x85three."}
+    assert "unscored" not in {trial.headline for trial in evaluation.trials}
 
 
 def without_samples(log: Path, names: Collection[str]) -> dict[str, Any]:
@@ -262,104 +264,104 @@ def without_samples(log: Path, names: Collection[str]) -> dict[str, Any]:
 
 
 def test_deleted_samples_count_as_not_correct(honest: Evaluation, tmp_path: Path) -> None:
-    gone = set(failures(honest))
-    files = without_samples(Path(honest.log), gone)
-    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
-    assert correct(found) == correct(honest)
-    assert len(found.trials) == len(honest.trials)
-    assert {finding.sample for finding in found.findings if finding.kind == "sample-missing"} == gone
+    deleted = set(failures(honest))
+    files = without_samples(Path(honest.log), deleted)
+    evaluation = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert correct(evaluation) == correct(honest)
+    assert len(evaluation.trials) == len(honest.trials)
+    assert {finding.sample for finding in evaluation.findings if finding.kind == "sample-missing"} == deleted
 
 
 @pytest.mark.parametrize("status", ["success", "cancelled", "error"])
 def test_deleting_samples_from_the_header_too_voids_every_score(honest: Evaluation, tmp_path: Path, status: str) -> None:
-    gone = set(failures(honest))
-    files = without_samples(Path(honest.log), gone)
+    deleted = set(failures(honest))
+    files = without_samples(Path(honest.log), deleted)
     dataset = files["header.json"]["eval"]["dataset"]
-    dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in gone]
+    dataset["sample_ids"] = [name for name in dataset["sample_ids"] if f"{name}#1" not in deleted]
     dataset["samples"] = len(dataset["sample_ids"])
     files["header.json"]["status"] = status
-    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
-    assert not correct(found)
-    assert found.findings[0].kind == "tasks-changed"
+    evaluation = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert not correct(evaluation)
+    assert evaluation.findings[0].kind == "tasks-changed"
 
 
 def test_copies_of_a_success_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
-    """A success replaces failures, under their names; or it is added once more, under its own."""
+    """A success cannot replace a failure under its name, nor be added again."""
     files = files_of(Path(honest.log))
     samples = {f"{c['id']}#{c['epoch']}": (n, c) for n, c in files.items() if n.startswith("samples/")}
     success = samples[sorted(correct(honest))[0]][1]
     failed_name, failed = samples[failures(honest)[0]]
     replaced = {**files, failed_name: {**success, "id": failed["id"]}}
-    found = read_evaluation(write_log(replaced, tmp_path / "replaced.eval"))
-    assert correct(found) < correct(honest) or correct(found) == correct(honest) - {sorted(correct(honest))[0]}
+    evaluation = read_evaluation(write_log(replaced, tmp_path / "replaced.eval"))
+    assert correct(evaluation) < correct(honest) or correct(evaluation) == correct(honest) - {sorted(correct(honest))[0]}
     repeated = {**files, "samples/once-more.json": success}
-    found = read_evaluation(write_log(repeated, tmp_path / "repeated.eval"))
-    assert Counter(t.headline for t in found.trials)["correct"] == len(correct(honest)) - 1
-    assert {finding.kind for finding in found.findings} == {"sample-repeated"}
-    # The trace of the success under the name and with the task of the failure.
+    evaluation = read_evaluation(write_log(repeated, tmp_path / "repeated.eval"))
+    assert Counter(t.headline for t in evaluation.trials)["correct"] == len(correct(honest)) - 1
+    assert {finding.kind for finding in evaluation.findings} == {"sample-repeated"}
+    # The failed sample with the trace of the success.
     stolen = json.loads(json.dumps(failed))
     set_trace(stolen, records_of(success))
-    found = read_evaluation(write_log({**files, failed_name: stolen}, tmp_path / "stolen.eval"))
-    assert correct(found) <= correct(honest)
+    evaluation = read_evaluation(write_log({**files, failed_name: stolen}, tmp_path / "stolen.eval"))
+    assert correct(evaluation) <= correct(honest)
 
 
 def test_further_runs_of_a_task_do_not_count(honest: Evaluation, tmp_path: Path) -> None:
     """A success is run once more than the card states, which would give its task more weight."""
     files = files_of(Path(honest.log))
     name = sorted(correct(honest))[0]
-    again = next(
+    repeated_run = next(
         json.loads(json.dumps(c)) for n, c in files.items() if n.startswith("samples/") and f"{c['id']}#{c['epoch']}" == name
     )
-    again["epoch"] = 2
-    records = records_of(again)
+    repeated_run["epoch"] = 2
+    records = records_of(repeated_run)
     records[0]["started"] = "2026-11-23T00:00:00Z"
-    set_trace(again, records)
-    found = read_evaluation(write_log({**files, "samples/again.json": again}, tmp_path / "attacked.eval"))
-    assert correct(found) == correct(honest)
-    assert [finding.kind for finding in found.findings] == ["sample-repeated"]
-    assert "repeat 2, but the card states 1" in found.findings[0].detail
+    set_trace(repeated_run, records)
+    evaluation = read_evaluation(write_log({**files, "samples/again.json": repeated_run}, tmp_path / "attacked.eval"))
+    assert correct(evaluation) == correct(honest)
+    assert [finding.kind for finding in evaluation.findings] == ["sample-repeated"]
+    assert "repeat 2, but the card states 1" in evaluation.findings[0].detail
 
 
-def test_a_card_with_other_models_is_named(honest: Evaluation, tmp_path: Path) -> None:
+def test_a_card_with_other_models_is_reported(honest: Evaluation, tmp_path: Path) -> None:
     files = files_of(Path(honest.log))
     files["header.json"]["eval"]["metadata"]["card"]["perception"] |= {"name": "moondream3", "deterministic": False}
-    found = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
-    assert [finding.kind for finding in found.findings] == ["card-differs"]
-    assert "moondream3" in finding_lines(found)[0] and "ground-truth" in finding_lines(found)[0]
+    evaluation = read_evaluation(write_log(files, tmp_path / "attacked.eval"))
+    assert [finding.kind for finding in evaluation.findings] == ["card-differs"]
+    assert "moondream3" in finding_lines(evaluation)[0] and "ground-truth" in finding_lines(evaluation)[0]
 
 
-def test_a_task_that_the_split_does_not_have_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
+def test_a_task_outside_the_split_is_not_correct(honest: Evaluation, tmp_path: Path) -> None:
     name = sorted(correct(honest))[0]
 
     def rename(sample: Json) -> None:
         for part in (sample, sample["metadata"], sample["metadata"]["task"]):
             part["id"] = "scope1-invented-counting-001"
 
-    found = read_evaluation(edited(Path(honest.log), tmp_path / "attacked.eval", rename, [name]))
-    assert not correct(found) - correct(honest)
-    assert {"task-unknown", "sample-missing"} <= {finding.kind for finding in found.findings}
+    evaluation = read_evaluation(edit_log(Path(honest.log), tmp_path / "attacked.eval", rename, [name]))
+    assert not correct(evaluation) - correct(honest)
+    assert {"task-unknown", "sample-missing"} <= {finding.kind for finding in evaluation.findings}
 
 
-def test_tasks_that_are_not_published_must_be_those_of_the_card(evaluated: Path, tmp_path: Path) -> None:
-    """The tasks of this log are private, so only the digest on the run card can tell that they were changed."""
-    before = read_evaluation(evaluated)
+def test_unpublished_tasks_must_match_the_card(log_copy: Path, tmp_path: Path) -> None:
+    """The tasks of this log are private, so only the digest on the run card can show that they were changed."""
+    before = read_evaluation(log_copy)
     assert before.findings == () and len(correct(before)) == 3
 
     def accept(sample: Json) -> None:
         sample["metadata"]["task"]["expected"]["value"] = 3
 
-    found = read_evaluation(edited(evaluated, tmp_path / "attacked.eval", accept, failures(before)))
-    assert not correct(found)
-    assert "tasks-changed" in {finding.kind for finding in found.findings}
+    evaluation = read_evaluation(edit_log(log_copy, tmp_path / "attacked.eval", accept, failures(before)))
+    assert not correct(evaluation)
+    assert "tasks-changed" in {finding.kind for finding in evaluation.findings}
 
 
-def test_the_report_and_the_terminal_name_an_edited_log(scope: Scope, evaluated: Path, tmp_path: Path) -> None:
-    names = failures(read_evaluation(evaluated))
-    log = edited(evaluated, tmp_path / "attacked.eval", claim_everything, names)
+def test_an_edited_log_is_named_in_the_report_and_the_terminal(scope: Scope, log_copy: Path, tmp_path: Path) -> None:
+    names = failures(read_evaluation(log_copy))
+    log = edit_log(log_copy, tmp_path / "attacked.eval", claim_everything, names)
     out = tmp_path / "report"
-    done = scope("bench", "report", str(log), "--out", str(out), "--no-pages")
-    assert done.code == 0, done.err
-    for text in (done.out, (out / "report.md").read_text("utf-8"), (out / "index.html").read_text("utf-8")):
+    result = scope("bench", "report", str(log), "--out", str(out), "--no-pages")
+    assert result.code == 0, result.err
+    for text in (result.out, (out / "report.md").read_text("utf-8"), (out / "index.html").read_text("utf-8")):
         assert "attacked.eval" in text and "differ from the checks executed on its traces" in text
         assert names[0] in text.replace("\\", "")
     assert (out / "report.md").read_text("utf-8").index("attacked.eval") < (out / "report.md").read_text("utf-8").index("## ")
@@ -367,19 +369,19 @@ def test_the_report_and_the_terminal_name_an_edited_log(scope: Scope, evaluated:
     assert names[0].partition("#")[0] in rows
     rescored = scope("bench", "rescore", str(log), "--checks")
     assert rescored.code == 0 and names[0] in rescored.err
-    again = read_evaluation(log)
-    assert again.findings == () and failures(again) == names
+    rescored_log = read_evaluation(log)
+    assert rescored_log.findings == () and failures(rescored_log) == names
 
 
 def test_results_in_python_are_recomputed_and_an_edited_log_is_named(
-    evaluated: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+    log_copy: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    names = failures(read_evaluation(evaluated))
-    results = load_results(edited(evaluated, tmp_path / "attacked.eval", claim_everything, names))
+    names = failures(read_evaluation(log_copy))
+    results = load_results(edit_log(log_copy, tmp_path / "attacked.eval", claim_everything, names))
     assert [trial.sample for trial in results.trials if trial.headline == "incorrect"] == names
     assert names[0] in caplog.text
 
 
-def test_an_unedited_log_has_no_findings(scope: Scope, evaluated: Path) -> None:
-    done = scope("bench", "rescore", str(evaluated), "--checks")
-    assert "attacked" not in done.err and "not used" not in done.err
+def test_an_unedited_log_has_no_findings(scope: Scope, log_copy: Path) -> None:
+    result = scope("bench", "rescore", str(log_copy), "--checks")
+    assert "attacked" not in result.err and "not used" not in result.err

@@ -1,4 +1,4 @@
-"""Verification makes the calls of a run again: honest logs come out as recorded, and consistent forgeries are found."""
+"""Verification repeats the calls of a run: honest logs are reproduced, and consistent forgeries are detected."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.sample_files import open_sample
 from scope_ptz.bench.engine.stored_run import STORE
 from scope_ptz.bench.engine.traces.frame_comparison import compare_frames
-from tests.bench.engine.editing import Json, edited, trace_change
-from tests.bench.engine.making import SCENE
+from tests.bench.engine.editing import Json, edit_log, trace_change
+from tests.bench.engine.yard_tasks import SCENE
 from tests.cli.conftest import Scope
 
 COUNT, TURN = f"scope1-{SCENE}-counting-001#1", f"scope1-{SCENE}-single-call-001#1"
@@ -25,12 +25,12 @@ COUNT, TURN = f"scope1-{SCENE}-counting-001#1", f"scope1-{SCENE}-single-call-001
 pytestmark = pytest.mark.full
 
 
-def verified(scope: Scope, log: Path) -> tuple[int, dict[str, Any]]:
-    done = scope("bench", "verify", str(log), "--json")
-    return done.code, json.loads(done.out)[str(log)]
+def verify(scope: Scope, log: Path) -> tuple[int, dict[str, Any]]:
+    run_result = scope("bench", "verify", str(log), "--json")
+    return run_result.code, json.loads(run_result.out)[str(log)]
 
 
-def of_run(result: dict[str, Any], name: str) -> dict[str, Any]:
+def run_named(result: dict[str, Any], name: str) -> dict[str, Any]:
     return next(run for run in result["each"] if run["run"] == name)
 
 
@@ -38,17 +38,17 @@ def call_of(records: list[Json]) -> Json:
     return next(record for record in records if record["event"] == "call")
 
 
-def test_an_honest_log_is_verified_with_its_frames(scope: Scope, evaluated: Path) -> None:
-    code, result = verified(scope, evaluated)
+def test_an_honest_log_is_verified_with_its_frames(scope: Scope, log_copy: Path) -> None:
+    code, result = verify(scope, log_copy)
     assert (code, result["verified"], result["differs"], result["not_verifiable"]) == (0, 4, 0, 0), result
     assert result["frames"] >= 8
     assert all(run["replies"] for run in result["each"])
-    done = scope("bench", "verify", str(evaluated), "--limit", "1")
-    assert done.code == 0 and "1 of 1 runs verified" in done.out
+    run_result = scope("bench", "verify", str(log_copy), "--limit", "1")
+    assert run_result.code == 0 and "1 of 1 runs verified" in run_result.out
 
 
-def moved_elsewhere(records: list[Json]) -> None:
-    """Another pose after the turn, in every field that states it."""
+def other_pose(records: list[Json]) -> None:
+    """Change the pose after the turn in every field that states it."""
     call = call_of(records)
     call["pose"]["pan_deg"] += 10.0
     call["outcome"]["result"]["pose"]["pan_deg"] += 10.0
@@ -56,7 +56,7 @@ def moved_elsewhere(records: list[Json]) -> None:
 
 
 def other_reply(records: list[Json]) -> None:
-    """Perception found one thing less, and the result agrees with that."""
+    """Remove one box from the perception reply, and adjust the result to match."""
     call = call_of(records)
     call["replies"][0]["result"]["boxes"].pop()
     result = call["outcome"]["result"]
@@ -64,12 +64,12 @@ def other_reply(records: list[Json]) -> None:
     result["count"] -= 1
 
 
-def other_number(records: list[Json]) -> None:
+def other_count(records: list[Json]) -> None:
     call_of(records)["outcome"]["result"]["count"] += 1
 
 
-def added_call(records: list[Json]) -> list[Json]:
-    """A count that was never made, with its decision, before the run ends."""
+def invented_call(records: list[Json]) -> list[Json]:
+    """Add a count that was never made, with its decision, before the end of the run."""
     start, *middle, finish, end = records
     decision = json.loads(json.dumps(next(r for r in middle if r["event"] == "decision")))
     call = json.loads(json.dumps(call_of(middle)))
@@ -82,8 +82,8 @@ def added_call(records: list[Json]) -> list[Json]:
     return [start, *middle, decision, call, finish, end]
 
 
-def removed_call(records: list[Json]) -> list[Json]:
-    """The move is removed with its decision, and the run still ends where the move led."""
+def missing_call(records: list[Json]) -> list[Json]:
+    """Remove the move and its decision, and let the run end at its start pose."""
     start, decision, call, finish, end = records
     assert (decision["event"], call["event"]) == ("decision", "call")
     finish["step"], end["steps"] = 1, 1
@@ -98,22 +98,22 @@ def other_scene_time(records: list[Json]) -> None:
 @pytest.mark.parametrize(
     ("change", "name", "text"),
     [
-        (moved_elsewhere, TURN, "pose was recorded"),
+        (other_pose, TURN, "pose was recorded"),
         (other_reply, COUNT, "perception reply"),
-        (other_number, COUNT, "count in the result"),
-        (added_call, COUNT, "result"),
-        (removed_call, TURN, "scene time at the end"),
+        (other_count, COUNT, "count in the result"),
+        (invented_call, COUNT, "result"),
+        (missing_call, TURN, "scene time at the end"),
         (other_scene_time, TURN, "scene time at the end"),
     ],
 )
-def test_a_forged_trace_is_found(
-    scope: Scope, evaluated: Path, tmp_path: Path, change: Callable[[list[Json]], Any], name: str, text: str
+def test_a_forged_trace_is_detected(
+    scope: Scope, log_copy: Path, tmp_path: Path, change: Callable[[list[Json]], Any], name: str, text: str
 ) -> None:
-    log = edited(evaluated, tmp_path / "forged.eval", trace_change(change), [name])
-    code, result = verified(scope, log)
+    log = edit_log(log_copy, tmp_path / "forged.eval", trace_change(change), [name])
+    code, result = verify(scope, log)
     assert code == 1
     assert (result["verified"], result["differs"]) == (3, 1)
-    run = of_run(result, name)
+    run = run_named(result, name)
     assert run["status"] == "differs"
     assert text in " ".join(run["differences"]), run
 
@@ -137,15 +137,15 @@ def other_presets(sample: Json) -> None:
     ("change", "text"),
     [(swap_frames, "does not show the view"), (no_frames, "is missing"), (other_presets, "viewpoints of the presets")],
 )
-def test_forged_frames_and_places_are_found(
-    scope: Scope, evaluated: Path, tmp_path: Path, change: Callable[[Json], None], text: str
+def test_forged_frames_and_viewpoints_are_detected(
+    scope: Scope, log_copy: Path, tmp_path: Path, change: Callable[[Json], None], text: str
 ) -> None:
-    code, result = verified(scope, edited(evaluated, tmp_path / "forged.eval", change, [TURN]))
+    code, result = verify(scope, edit_log(log_copy, tmp_path / "forged.eval", change, [TURN]))
     assert code == 1
-    assert text in " ".join(of_run(result, TURN)["differences"])
+    assert text in " ".join(run_named(result, TURN)["differences"])
 
 
-def test_a_run_of_another_version_is_not_verifiable(scope: Scope, evaluated: Path, tmp_path: Path) -> None:
+def test_a_run_of_another_version_is_not_verifiable(scope: Scope, log_copy: Path, tmp_path: Path) -> None:
     def older(records: list[Json]) -> None:
         records[0]["rendering"] = 1
 
@@ -153,15 +153,13 @@ def test_a_run_of_another_version_is_not_verifiable(scope: Scope, evaluated: Pat
         records[0]["perception_version"] = None
 
     for number, change in enumerate((older, unknown_perception)):
-        log = edited(evaluated, tmp_path / f"{number}.eval", trace_change(change), [COUNT])
-        code, result = verified(scope, log)
+        log = edit_log(log_copy, tmp_path / f"{number}.eval", trace_change(change), [COUNT])
+        code, result = verify(scope, log)
         assert (code, result["verified"], result["not_verifiable"]) == (0, 3, 1)
-        assert "version" in of_run(result, COUNT)["differences"][0]
+        assert "version" in run_named(result, COUNT)["differences"][0]
 
 
-def test_replies_of_a_model_are_not_computed_again_but_results_must_follow_from_them(
-    scope: Scope, evaluated: Path, tmp_path: Path
-) -> None:
+def test_model_replies_are_not_recomputed_but_results_must_follow_from_them(scope: Scope, log_copy: Path, tmp_path: Path) -> None:
     def by_a_model(records: list[Json]) -> None:
         records[0] |= {"perception": "some-model", "perception_version": None}
         other_reply(records)
@@ -170,18 +168,18 @@ def test_replies_of_a_model_are_not_computed_again_but_results_must_follow_from_
 
     def claims_more(records: list[Json]) -> None:
         by_a_model(records)
-        other_number(records)
+        other_count(records)
 
-    code, result = verified(scope, edited(evaluated, tmp_path / "model.eval", trace_change(by_a_model), [COUNT]))
-    run = of_run(result, COUNT)
+    code, result = verify(scope, edit_log(log_copy, tmp_path / "model.eval", trace_change(by_a_model), [COUNT]))
+    run = run_named(result, COUNT)
     assert (code, run["status"], run["replies"]) == (0, "verified", False), run
-    code, result = verified(scope, edited(evaluated, tmp_path / "forged.eval", trace_change(claims_more), [COUNT]))
-    assert (code, of_run(result, COUNT)["status"]) == (1, "differs")
+    code, result = verify(scope, edit_log(log_copy, tmp_path / "forged.eval", trace_change(claims_more), [COUNT]))
+    assert (code, run_named(result, COUNT)["status"]) == (1, "differs")
 
 
-def test_the_tolerance_of_frames(evaluated: Path) -> None:
-    """Another compression of the same pixels is accepted; a thing that was painted over, or another view, is not."""
-    sample = open_sample(evaluated, COUNT)
+def test_the_tolerance_of_frames(log_copy: Path) -> None:
+    """Recompressed pixels are accepted. A frame with an altered area or from another view is not."""
+    sample = open_sample(log_copy, COUNT)
     jpeg = sample.picture(sample.trace.started.frame or "")
     assert jpeg is not None
     image = np.asarray(cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR))
@@ -202,5 +200,5 @@ def test_the_tolerance_of_frames(evaluated: Path) -> None:
     assert compare_frames(b"nothing", jpeg) is None
 
 
-def test_reading_a_log_does_not_depend_on_what_is_verified(evaluated: Path) -> None:
-    assert read_evaluation(evaluated).findings == ()
+def test_an_honest_log_has_no_findings(log_copy: Path) -> None:
+    assert read_evaluation(log_copy).findings == ()

@@ -10,11 +10,11 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.bench.judging.agreement import measure_agreement, raters_of
-from scope_ptz.bench.judging.agreement_text import agreement_lines, figures
+from scope_ptz.bench.judging.agreement import collect_raters, measure_agreement
+from scope_ptz.bench.judging.agreement_text import agreement_lines, agreement_text
 from scope_ptz.bench.judging.json_lines import append_line
 from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
-from scope_ptz.bench.judging.kappa import cohen
+from scope_ptz.bench.judging.kappa import cohen_agreement
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
 from scope_ptz.bench.tasks.task_wording import facts_of
@@ -27,14 +27,14 @@ from scope_ptz.taskgen.gold.judge_results import (
     gold_case,
     gold_raters,
     judge_gold,
+    judge_result,
+    judge_results,
     passing_case,
     read_verdicts,
-    result,
-    results,
 )
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
-from tests.bench.judging.runs import PLACES
-from tests.bench.making import EYES, PRESETS, samples
+from tests.bench.judging.runs import PRESET_VIEWPOINTS
+from tests.bench.sample_runs import FRAME, PRESETS, samples
 
 CARD = RunCard(
     run_id="run", started="2026-01-01T00:00:00Z", package_version="0", engine_version="0", dataset="scope1", dataset_digest="0",
@@ -49,14 +49,14 @@ def judgement(verdict: str, judge: str = "one", prompt: str = "judge-1:0", mode:
     return Judgement.model_validate({"judge": judge, "prompt": prompt, "verdict": verdict, "error_mode": mode, "reason": "x"})
 
 
-def trial(number: int, headline: str, *judgements: Judgement, labels: tuple[Label, ...] = (), **more: Any) -> Trial:
+def trial(number: int, headline: str, *judgements: Judgement, labels: tuple[Label, ...] = (), **extra: Any) -> Trial:
     task, _ = samples()[number % len(samples())]
     facts = facts_of(task, "mast").model_copy(update={"id": f"scope1-test-{number:03d}"})
     mode = ErrorMode.REASONING if headline == "incorrect" else None
     return Trial.model_validate(
         {
             "task": facts, "sample": f"{facts.id}#1", "headline": headline, "reason": "", "error_mode": mode, "outcome": "answered",
-            "answer": "", "judgements": judgements, "labels": labels, **more,
+            "answer": "", "judgements": judgements, "labels": labels, **extra,
         }
     )  # fmt: skip
 
@@ -68,7 +68,7 @@ def evaluation(*trials: Trial) -> Evaluation:
 def test_all_raters_are_found_and_compared() -> None:
     ann = (Label(by="ann", verdict="incorrect", error_mode=ErrorMode.SCOPE),)
     report = measure_agreement(
-        raters_of(
+        collect_raters(
             [
                 evaluation(
                     trial(1, "correct", judgement("correct"), judgement("incorrect"), judgement("correct", "two")),
@@ -92,18 +92,18 @@ def test_all_raters_are_found_and_compared() -> None:
     checks_one = pairs["the checks", "one (judge-1:0)"].verdicts
     assert checks_one.runs == 3
     assert checks_one.raw == pytest.approx(2 / 3)
-    assert ("the checks", "one (judge-1:0) #2") not in pairs, "repeats stand for themselves only"
+    assert ("the checks", "one (judge-1:0) #2") not in pairs, "repeats must be compared only with each other"
     repeats = pairs["one (judge-1:0)", "one (judge-1:0) #2"].verdicts
     assert (repeats.runs, repeats.raw) == (2, 0.5)
     groups = {group.title: group for group in report.groups}
-    assert groups["repeats of one (judge-1:0)"].left_out == 2
+    assert groups["repeats of one (judge-1:0)"].partly_rated == 2
     assert groups["judges"].verdicts.runs == 2
     assert pairs["the checks", "ann"].modes.confusion == (("reasoning", "scope", 1),)
 
 
 def test_one_model_under_two_prompts_is_two_judges() -> None:
     report = measure_agreement(
-        raters_of([evaluation(trial(1, "correct", judgement("correct"), judgement("correct", prompt="judge-2:0")))])
+        collect_raters([evaluation(trial(1, "correct", judgement("correct"), judgement("correct", prompt="judge-2:0")))])
     )
     assert [pair.first for pair in report.pairs] == ["the checks", "the checks", "one (judge-1:0)"]
 
@@ -111,21 +111,21 @@ def test_one_model_under_two_prompts_is_two_judges() -> None:
 def test_runs_of_different_logs_are_different_runs() -> None:
     one = evaluation(trial(1, "correct", judgement("correct")))
     two = evaluation(trial(1, "incorrect", judgement("correct"))).model_copy(update={"log": "b.eval"})
-    (pair,) = measure_agreement(raters_of([one, two])).pairs
+    (pair,) = measure_agreement(collect_raters([one, two])).pairs
     assert pair.verdicts.runs == 2
 
 
 def test_the_report_as_text_and_as_json() -> None:
     rows = [trial(n, "correct" if n % 2 else "incorrect", judgement("correct" if n % 3 else "incorrect")) for n in range(12)]
-    report = measure_agreement(raters_of([evaluation(*rows)]))
+    report = measure_agreement(collect_raters([evaluation(*rows)]))
     text = "\n".join(agreement_lines(report))
     assert "the checks  against  one (judge-1:0)" in text
     assert "12 runs, agree on 50.0%" in text
     assert "both correct 4, both incorrect 2, only the first correct 2, only the second 4" in text
     content = json.loads(json.dumps(report.as_dict()))
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
-    assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
-    assert figures(cohen([], [], [], 1)) == "no run was rated by both"
+    assert agreement_text(cohen_agreement(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
+    assert agreement_text(cohen_agreement([], [], [], 1)) == "no run was rated by both"
     assert "contain no ratings" in next(iter(agreement_lines(measure_agreement([]))))
 
 
@@ -135,14 +135,14 @@ def test_the_report_as_text_and_as_json() -> None:
 def gold_runs() -> list[GoldRun]:
     import random
 
-    setting = FaultSetting(PRESETS, EYES)
-    made = (mutate(task, episode, mode, setting, random.Random(7)) for task, episode in samples() for mode in MODES)
-    return [gold for gold in made if gold is not None]
+    setting = FaultSetting(PRESETS, FRAME)
+    candidates = (mutate(task, episode, mode, setting, random.Random(7)) for task, episode in samples() for mode in MODES)
+    return [gold for gold in candidates if gold is not None]
 
 
 def all_cases() -> list[GoldCase]:
-    cases = [gold_case(gold, PLACES) for gold in alternating_modes(gold_runs())]
-    return [*cases, *(passing_case(task, episode, PLACES) for task, episode in samples())]
+    cases = [gold_case(gold, PRESET_VIEWPOINTS) for gold in alternating_modes(gold_runs())]
+    return [*cases, *(passing_case(task, episode, PRESET_VIEWPOINTS) for task, episode in samples())]
 
 
 class Oracle:
@@ -152,10 +152,10 @@ class Oracle:
         from scope_ptz.bench.judging.judge import judge_messages
 
         self.known = {judge_messages(case.facts, case.case)[1]["content"]: case for case in cases}
-        self.accepts, self.fails, self.asked = accepts, fails, 0
+        self.accepts, self.fails, self.request_count = accepts, fails, 0
 
     async def __call__(self, judge_messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
-        self.asked += 1
+        self.request_count += 1
         case = self.known[judge_messages[1]["content"]]
         if self.fails and case.fault == self.fails:
             raise NoReplyError("gone")
@@ -186,27 +186,27 @@ def test_gold_runs_differ_in_the_text_for_the_judge() -> None:
 
 def test_a_perfect_judge_of_gold_runs() -> None:
     cases = all_cases()
-    made = result("oracle", verdicts_of(cases, Oracle(cases)))
-    assert (made.false_accept_rate, made.false_reject_rate) == (0.0, 0.0)
-    assert made.verdicts.kappa == pytest.approx(1.0)
-    assert made.modes.raw == 1.0
-    assert made.as_dict()["matrix"]["passes"] == {"correct": len(samples())}
+    summary = judge_result("oracle", verdicts_of(cases, Oracle(cases)))
+    assert (summary.false_accept_rate, summary.false_reject_rate) == (0.0, 0.0)
+    assert summary.verdicts.kappa == pytest.approx(1.0)
+    assert summary.modes.raw == 1.0
+    assert summary.as_dict()["matrix"]["passes"] == {"correct": len(samples())}
 
 
 def test_a_judge_that_misses_a_fault_and_a_judge_that_fails() -> None:
     cases = all_cases()
-    scopes = sum(case.fault is ErrorMode.SCOPE for case in cases)
-    looks = sum(case.fault is ErrorMode.VLM_QUERY for case in cases)
-    made = result("oracle", verdicts_of(cases, Oracle(cases, accepts="scope", fails="vlm_query")))
-    faulty = sum(case.fault is not None for case in cases) - looks
-    assert made.false_accept_rate == pytest.approx(scopes / faulty)
-    assert made.as_dict()["apart"] == {"unparseable": 0, "failed": looks}
-    assert made.cells["scope", "correct"] == scopes
-    text = "\n".join(result_lines(made))
-    assert f"false accepts: {scopes / faulty:.1%}" in text
+    scope_faults = sum(case.fault is ErrorMode.SCOPE for case in cases)
+    query_faults = sum(case.fault is ErrorMode.VLM_QUERY for case in cases)
+    summary = judge_result("oracle", verdicts_of(cases, Oracle(cases, accepts="scope", fails="vlm_query")))
+    faulty = sum(case.fault is not None for case in cases) - query_faults
+    assert summary.false_accept_rate == pytest.approx(scope_faults / faulty)
+    assert summary.as_dict()["apart"] == {"unparseable": 0, "failed": query_faults}
+    assert summary.cells["scope", "correct"] == scope_faults
+    text = "\n".join(result_lines(summary))
+    assert f"false accepts: {scope_faults / faulty:.1%}" in text
     assert "false rejects: 0.0%" in text
-    assert made.verdicts.kappa is not None
-    assert 0 < made.verdicts.kappa < 1
+    assert summary.verdicts.kappa is not None
+    assert 0 < summary.verdicts.kappa < 1
 
 
 def test_verdicts_on_disk_and_their_repeats(tmp_path: Path) -> None:
@@ -214,8 +214,8 @@ def test_verdicts_on_disk_and_their_repeats(tmp_path: Path) -> None:
     for repeat in range(2):
         for verdict in verdicts_of(cases, Oracle(cases, accepts="scope" if repeat else ""), repeat):
             append_line(path, verdict.model_dump_json())
-    (made,) = results(read_verdicts(path))
-    assert sum(made.cells.values()) == 48
+    (summary,) = judge_results(read_verdicts(path))
+    assert sum(summary.cells.values()) == 48
     raters = gold_raters(read_verdicts(path))
     assert [rater.name.split(" (")[0] for rater in raters] == ["the known faults", "oracle", "oracle"]
     report = measure_agreement(raters)

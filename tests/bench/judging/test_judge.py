@@ -17,14 +17,14 @@ from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
-from tests.bench.judging.runs import CORRECT, MISCOUNTED, facts_and_case, long_case, written
+from tests.bench.judging.runs import CORRECT, MISCOUNTED, facts_and_case, json_text, long_case
 from tests.support import misbehaving as m
 
-IMPATIENT = Timeouts(connect_s=5.0, first_byte_s=0.4, total_s=1.0)
+SHORT_TIMEOUTS = Timeouts(connect_s=5.0, first_byte_s=0.4, total_s=1.0)
 KEY = "sk-judge-0123456789"
 
 
-def judged(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **options: Any) -> Judgement:
+def judgement_from(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **options: Any) -> Judgement:
     """Return the judgement of the server at a URL on a run that passes."""
     endpoint = Endpoint(url=url, model="gpt-oss-120b", key=SecretStr(KEY), timeouts=timeouts or Timeouts(), retries=retries)
 
@@ -38,17 +38,17 @@ def judged(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **op
     return anyio.run(ask)
 
 
-def says(content: Any) -> m.Behaviour:
-    return m.good(m.Say(content if isinstance(content, str) else written(content)))
+def reply_with(content: Any) -> m.Behaviour:
+    return m.good(m.Say(content if isinstance(content, str) else json_text(content)))
 
 
 def test_a_verdict_in_the_requested_format() -> None:
-    with m.Misbehaving([says(MISCOUNTED)]) as server:
-        made = judged(server.url)
-    assert (made.verdict, made.error_mode, made.attempts) == ("incorrect", ErrorMode.VLM_COUNTING, 1)
-    assert (made.judge, made.prompt) == ("gpt-oss-120b", prompt_version())
-    assert (made.input_tokens, made.output_tokens) == (11, 7)
-    assert made.latency_s > 0
+    with m.Misbehaving([reply_with(MISCOUNTED)]) as server:
+        judgement = judgement_from(server.url)
+    assert (judgement.verdict, judgement.error_mode, judgement.attempts) == ("incorrect", ErrorMode.VLM_COUNTING, 1)
+    assert (judgement.judge, judgement.prompt) == ("gpt-oss-120b", prompt_version())
+    assert (judgement.input_tokens, judgement.output_tokens) == (11, 7)
+    assert judgement.latency_s > 0
     (request,) = server.requests
     assert request.data["temperature"] == 0
     assert request.data["seed"] == 1
@@ -60,10 +60,10 @@ def test_a_verdict_in_the_requested_format() -> None:
 
 
 def test_an_invalid_reply_is_returned_with_the_error_and_the_next_one_counts() -> None:
-    with m.Misbehaving([says({**CORRECT, "error_mode": "scope"}), says("Correct!"), says(CORRECT)]) as server:
-        made = judged(server.url)
-    assert (made.verdict, made.error_mode, made.attempts) == ("correct", None, 3)
-    assert made.input_tokens == 33
+    with m.Misbehaving([reply_with({**CORRECT, "error_mode": "scope"}), reply_with("Correct!"), reply_with(CORRECT)]) as server:
+        judgement = judgement_from(server.url)
+    assert (judgement.verdict, judgement.error_mode, judgement.attempts) == ("correct", None, 3)
+    assert judgement.input_tokens == 33
     second = server.requests[1].data["messages"]
     assert [message["role"] for message in second] == ["system", "user", "assistant", "user"]
     assert "a correct run has no error mode" in second[3]["content"]
@@ -71,25 +71,25 @@ def test_an_invalid_reply_is_returned_with_the_error_and_the_next_one_counts() -
 
 
 GARBAGE: list[tuple[str, Callable[[], m.Behaviour]]] = [
-    ("words", lambda: says("The agent did well.")),
-    ("half a verdict", lambda: says(written(CORRECT)[:40])),
+    ("words", lambda: reply_with("The agent did well.")),
+    ("truncated verdict", lambda: reply_with(json_text(CORRECT)[:40])),
     ("nothing", m.empty_choices),
     ("an empty message", lambda: m.say("")),
-    ("thoughts alone", lambda: m.good(m.Say("", reasoning=written(CORRECT)))),
-    ("verdict while thinking", lambda: says(f"<think>{written(CORRECT)}</think>I am not sure.")),
-    ("a reply without end", lambda: m.good(m.Say(written(CORRECT), finish_reason="length"))),
-    ("a correct run with an error mode", lambda: says({**CORRECT, "error_mode": "scope"})),
-    ("an incorrect run without one", lambda: says({**MISCOUNTED, "error_mode": "none"})),
+    ("only reasoning", lambda: m.good(m.Say("", reasoning=json_text(CORRECT)))),
+    ("verdict while thinking", lambda: reply_with(f"<think>{json_text(CORRECT)}</think>I am not sure.")),
+    ("truncated reply", lambda: m.good(m.Say(json_text(CORRECT), finish_reason="length"))),
+    ("a correct run with an error mode", lambda: reply_with({**CORRECT, "error_mode": "scope"})),
+    ("an incorrect run without an error mode", lambda: reply_with({**MISCOUNTED, "error_mode": "none"})),
 ]
 
 
 @pytest.mark.parametrize("name", [name for name, _ in GARBAGE])
 def test_replies_that_stay_invalid_are_unparseable(name: str) -> None:
     with m.Misbehaving(then=dict(GARBAGE)[name]()) as server:
-        made = judged(server.url)
-    assert (made.verdict, made.error_mode) == ("unparseable", None)
-    assert made.attempts == 3
-    assert made.reason
+        judgement = judgement_from(server.url)
+    assert (judgement.verdict, judgement.error_mode) == ("unparseable", None)
+    assert judgement.attempts == 3
+    assert judgement.reason
 
 
 BROKEN: list[tuple[str, Callable[[], m.Behaviour]]] = [
@@ -103,62 +103,62 @@ BROKEN: list[tuple[str, Callable[[], m.Behaviour]]] = [
     ("silent", m.slow_first_byte),
     ("trickle", m.trickle),
     ("a web page", m.wrong_type),
-    ("no JSON", m.malformed),
+    ("invalid JSON", m.malformed),
     ("another protocol", m.not_http),
     ("elsewhere", lambda: m.redirect("http://127.0.0.1:9/v1")),
 ]
 
 
 @pytest.mark.parametrize("name", [name for name, _ in BROKEN])
-def test_a_server_that_never_answers_is_failed(name: str) -> None:
+def test_a_failing_server_gives_a_failed_judgement(name: str) -> None:
     with m.Misbehaving(then=dict(BROKEN)[name]()) as server:
-        made = judged(server.url, timeouts=IMPATIENT)
-    assert (made.verdict, made.error_mode) == ("failed", None)
-    assert "The model server at" in made.reason
-    assert KEY not in made.model_dump_json()
+        judgement = judgement_from(server.url, timeouts=SHORT_TIMEOUTS)
+    assert (judgement.verdict, judgement.error_mode) == ("failed", None)
+    assert "The model server at" in judgement.reason
+    assert KEY not in judgement.model_dump_json()
 
 
 def test_an_unreachable_server() -> None:
     with m.nobody_listens() as url:
-        assert judged(url).verdict == "failed"
+        assert judgement_from(url).verdict == "failed"
 
 
 def test_a_temporary_failure_is_retried() -> None:
-    script = [m.status(429, headers={"Retry-After": "0"}), m.reset(), says(MISCOUNTED)]
+    script = [m.status(429, headers={"Retry-After": "0"}), m.reset(), reply_with(MISCOUNTED)]
     with m.Misbehaving(script) as server:
-        assert judged(server.url, retries=3).error_mode is ErrorMode.VLM_COUNTING
+        assert judgement_from(server.url, retries=3).error_mode is ErrorMode.VLM_COUNTING
 
 
 def no_schema(x: m.Exchange) -> Any:
     """A server that supports JSON mode but not schemas."""
     form = x.request.data.get("response_format", {}).get("type")
-    return m.status(400, "response_format json_schema is not supported")(x) if form == "json_schema" else says(CORRECT)(x)
+    return m.status(400, "response_format json_schema is not supported")(x) if form == "json_schema" else reply_with(CORRECT)(x)
 
 
-def free_only(x: m.Exchange) -> Any:
+def no_response_format(x: m.Exchange) -> Any:
     """A server that refuses the field ``response_format`` without naming it."""
-    return m.status(422, {"detail": "extra"})(x) if "response_format" in x.request.data else says(CORRECT)(x)
+    return m.status(422, {"detail": "extra"})(x) if "response_format" in x.request.data else reply_with(CORRECT)(x)
 
 
 def no_seed(x: m.Exchange) -> Any:
-    return m.status(400, "Unrecognized request argument: seed")(x) if "seed" in x.request.data else says(CORRECT)(x)
+    return m.status(400, "Unrecognized request argument: seed")(x) if "seed" in x.request.data else reply_with(CORRECT)(x)
 
 
 def no_system(x: m.Exchange) -> Any:
     roles = [message["role"] for message in x.request.data["messages"]]
-    return m.status(400, "System role not supported")(x) if "system" in roles else says(CORRECT)(x)
+    return m.status(400, "System role not supported")(x) if "system" in roles else reply_with(CORRECT)(x)
 
 
-def silent_when_bound(x: m.Exchange) -> Any:
-    return m.say("")(x) if "response_format" in x.request.data else says(CORRECT)(x)
+def silent_with_format(x: m.Exchange) -> Any:
+    return m.say("")(x) if "response_format" in x.request.data else reply_with(CORRECT)(x)
 
 
 @pytest.mark.parametrize(
-    ("behave", "requests"), [(no_schema, 2), (free_only, 3), (no_seed, 2), (no_system, 2), (silent_when_bound, 3)]
+    ("behave", "requests"), [(no_schema, 2), (no_response_format, 3), (no_seed, 2), (no_system, 2), (silent_with_format, 3)]
 )
 def test_servers_that_support_fewer_fields(behave: m.Behaviour, requests: int) -> None:
     with m.Misbehaving(then=behave) as server:
-        assert judged(server.url).verdict == "correct"
+        assert judgement_from(server.url).verdict == "correct"
     assert len(server.requests) == requests
 
 
@@ -166,10 +166,10 @@ def test_refused_fields_are_not_sent_again() -> None:
     async def twice(url: str) -> None:
         port = JudgeServer(Endpoint(url=url, model="x", retries=0))
         for repeat in range(2):
-            made = await Judge("x", port.for_repeat(repeat)).judge_case(*facts_and_case(), repeat=repeat)
-            assert (made.verdict, made.repeat) == ("correct", repeat)
-            made = await Judge("x", port).judge_case(*facts_and_case())
-            assert made.verdict == "correct"
+            judgement = await Judge("x", port.for_repeat(repeat)).judge_case(*facts_and_case(), repeat=repeat)
+            assert (judgement.verdict, judgement.repeat) == ("correct", repeat)
+            judgement = await Judge("x", port).judge_case(*facts_and_case())
+            assert judgement.verdict == "correct"
         await port.close()
 
     with m.Misbehaving(then=no_schema) as server:
@@ -182,7 +182,7 @@ def test_refused_fields_are_not_sent_again() -> None:
 def test_a_small_context_gets_a_shortened_run() -> None:
     def small_window(x: m.Exchange) -> Any:
         long = len(x.request.data["messages"][1]["content"]) > MIN_CHARS * 2
-        return m.status(400, "maximum context length is 4096 tokens")(x) if long else says(CORRECT)(x)
+        return m.status(400, "maximum context length is 4096 tokens")(x) if long else reply_with(CORRECT)(x)
 
     facts, _ = facts_and_case()
 
@@ -194,32 +194,32 @@ def test_a_small_context_gets_a_shortened_run() -> None:
             await port.close()
 
     with m.Misbehaving(then=small_window) as server:
-        made = anyio.run(ask, server.url)
-    assert made.verdict == "correct"
+        judgement = anyio.run(ask, server.url)
+    assert judgement.verdict == "correct"
     sizes = [len(request.data["messages"][1]["content"]) for request in server.requests]
     assert sizes == sorted(sizes, reverse=True)
-    assert made.attempts == len(sizes) > 1
+    assert judgement.attempts == len(sizes) > 1
 
 
 def test_a_context_that_is_too_small_is_a_failure() -> None:
     with m.Misbehaving(then=m.status(400, "maximum context length is 16 tokens")) as server:
-        made = judged(server.url)
-    assert made.verdict == "failed"
-    assert "context" in made.reason
+        judgement = judgement_from(server.url)
+    assert judgement.verdict == "failed"
+    assert "context" in judgement.reason
 
 
 def test_a_custom_judge_client() -> None:
-    """The evaluation engine passes judges a client of its own."""
+    """The evaluation engine passes its own client to judges."""
 
     async def port(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         assert schema["type"] == "object"
         return Completion(text=json.dumps(CORRECT), input_tokens=3)
 
-    async def none(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
+    async def failing_port(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         raise NoReplyError("gone")
 
     async def both() -> tuple[Judgement, Judgement]:
-        return await Judge("a", port).judge_case(*facts_and_case()), await Judge("b", none).judge_case(*facts_and_case())
+        return await Judge("a", port).judge_case(*facts_and_case()), await Judge("b", failing_port).judge_case(*facts_and_case())
 
     one, two = anyio.run(both)
     assert (one.verdict, one.input_tokens) == ("correct", 3)

@@ -1,4 +1,4 @@
-"""``scope bench judge-gold`` against servers: resumed, repeated, counted; and how commands get a judge."""
+"""``scope bench judge-gold``: resuming, repeats and counts, and how commands resolve a judge."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.factory.validation_perception import ground_truth_tools
-from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import write_gold
 from scope_ptz.taskgen.gold.judge_results import read_verdicts
 from scope_ptz.taskgen.gold.mutations import FaultSetting, mutate
-from tests.bench.judging.runs import CORRECT, written
+from tests.bench.judging.runs import CORRECT, json_text
 from tests.bench.judging.test_labels import turn_task
 from tests.support import misbehaving as m
 
@@ -36,63 +36,65 @@ KEY = "sk-judge-0123456789"
 
 @pytest.fixture(scope="module")
 def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two tasks of the shipped scene and their gold runs, which turn the wrong way or do not turn."""
+    """Return a folder with two tasks of a bundled scene and their gold runs, which turn the wrong way or do not turn."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
-    setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
+    runner = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
+    setting = FaultSetting({preset.name: preset_position(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 
     async def run(task: Task) -> Episode:
-        return await stage.run(task, task.reference, "Done.")
+        return await runner.run(task, task.reference, "Done.")
 
-    made = [
+    gold_runs = [
         mutate(task, anyio.run(run, task), mode, setting, random.Random(1))
         for task in tasks
         for mode in (ErrorMode.TOOL_ARGS, ErrorMode.LACK_OF_TOOL_CALL)
     ]
     dump_tasks(tasks, folder / "tasks.jsonl")
-    write_gold([one for one in made if one is not None], folder / "gold.jsonl.gz")
+    write_gold([one for one in gold_runs if one is not None], folder / "gold.jsonl.gz")
     return folder
 
 
 def good_judge(x: m.Exchange) -> Any:
-    """Recognise correct runs, and the error modes of incorrect ones, by the calls in the request."""
-    told = x.request.data["messages"][1]["content"]
-    if "Tool calls: none." in told:
-        return m.say(written({"reason": "No call.", "verdict": "incorrect", "error_mode": "lack_of_tool_call"}))(x)
-    if '"pan_deg": -' in told:
-        return m.say(written({"reason": "Wrong way.", "verdict": "incorrect", "error_mode": "tool_args"}))(x)
-    return m.say(written(CORRECT))(x)
+    """Reply as a judge that determines the verdict and the error mode from the calls in the request."""
+    prompt = x.request.data["messages"][1]["content"]
+    if "Tool calls: none." in prompt:
+        return m.say(json_text({"reason": "No call.", "verdict": "incorrect", "error_mode": "lack_of_tool_call"}))(x)
+    if '"pan_deg": -' in prompt:
+        return m.say(json_text({"reason": "Wrong way.", "verdict": "incorrect", "error_mode": "tool_args"}))(x)
+    return m.say(json_text(CORRECT))(x)
 
 
 def judge_gold(gold: Path, out: Path, url: str, *options: str) -> Result:
-    where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
-    return CliRunner().invoke(app, ["bench", "judge-gold", *where, "--judge-url", url, "--judge-model", "gpt-oss-120b", *options])
+    options_for_files = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+    return CliRunner().invoke(
+        app, ["bench", "judge-gold", *options_for_files, "--judge-url", url, "--judge-model", "gpt-oss-120b", *options]
+    )
 
 
 def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
     with m.Misbehaving(then=good_judge) as server:
-        done = judge_gold(gold, out, server.url)
-        assert done.exit_code == 0, done.output
-        assert "gpt-oss-120b (judge-1:" in done.output
-        assert "6 gold runs" in done.output
-        assert "false accepts: 0.0%" in done.output
-        assert "false rejects: 0.0%" in done.output
+        result = judge_gold(gold, out, server.url)
+        assert result.exit_code == 0, result.output
+        assert "gpt-oss-120b (judge-1:" in result.output
+        assert "6 gold runs" in result.output
+        assert "false accepts: 0.0%" in result.output
+        assert "false rejects: 0.0%" in result.output
         assert len(server.requests) == 6
-        again = judge_gold(gold, out, server.url, "--repeats", "2", "--json")
-        assert len(server.requests) == 12, "what was judged is not asked again"
-    (content,) = json.loads(again.stdout)
+        second = judge_gold(gold, out, server.url, "--repeats", "2", "--json")
+        assert len(server.requests) == 12, "existing verdicts must not be requested again"
+    (content,) = json.loads(second.stdout)
     assert (content["runs"], content["judgements"]) == (6, 12)
     with m.Misbehaving(then=good_judge) as server:
-        told = judge_gold(gold, out, server.url, "--repeats", "2").output
-    assert "6 gold runs, 12 judgements; rows: inserted fault" in told
-    assert all(f" {head}" in told for head in ("lack", "routing", "halluc.", "unparseable"))
+        output = judge_gold(gold, out, server.url, "--repeats", "2").output
+    assert "6 gold runs, 12 judgements; rows: inserted fault" in output
+    assert all(f" {head}" in output for head in ("lack", "routing", "halluc.", "unparseable"))
     assert content["modes"]["raw"] == 1.0
-    compared = CliRunner().invoke(app, ["bench", "agree", str(out)])
-    assert "the known faults  against  gpt-oss-120b" in compared.output
-    assert "repeats of gpt-oss-120b" in compared.output
+    comparison = CliRunner().invoke(app, ["bench", "agree", str(out)])
+    assert "the known faults  against  gpt-oss-120b" in comparison.output
+    assert "repeats of gpt-oss-120b" in comparison.output
 
 
 def test_failed_judgements_are_repeated_and_count_once(gold: Path, tmp_path: Path) -> None:
@@ -108,8 +110,8 @@ def test_failed_judgements_are_repeated_and_count_once(gold: Path, tmp_path: Pat
     assert content["apart"] == {"unparseable": 0, "failed": 6}
     assert content["false_accept_rate"] is None
     with m.Misbehaving(then=good_judge) as server:
-        mended = judge_gold(gold, out, server.url, "--json")
-    (content,) = json.loads(mended.stdout)
+        retried = judge_gold(gold, out, server.url, "--json")
+    (content,) = json.loads(retried.stdout)
     assert content["apart"] == {"unparseable": 0, "failed": 0}
     assert content["runs"] == 6
     assert len(read_verdicts(out)) == 18
@@ -117,9 +119,9 @@ def test_failed_judgements_are_repeated_and_count_once(gold: Path, tmp_path: Pat
 
 def test_an_unavailable_judge_is_an_error_before_anything_is_written(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
-    where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
-    done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--judge-url", "http://127.0.0.1:1/v1"])
-    assert done.exit_code == 1 and "nothing was judged" in done.stderr and not out.exists()
+    options_for_files = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+    result = CliRunner().invoke(app, ["bench", "judge-gold", *options_for_files, "--judge-url", "http://127.0.0.1:1/v1"])
+    assert result.exit_code == 1 and "nothing was judged" in result.stderr and not out.exists()
 
 
 def test_a_limit_is_spread_over_error_modes(gold: Path, tmp_path: Path) -> None:
@@ -177,11 +179,11 @@ def test_the_judge_is_read_from_the_environment_and_its_key_is_sent_to_no_other_
         monkeypatch.setenv("SCOPE_JUDGE_KEY", KEY)
         monkeypatch.setenv("SCOPE_PLANNER_KEY", "sk-planner-0123456789")
         out = tmp_path / "v.jsonl"
-        where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
-        done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--limit", "1", "--passing", "0"])
-        assert done.exit_code == 1 and "refused the key" in done.stderr, done.output
+        options_for_files = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+        result = CliRunner().invoke(app, ["bench", "judge-gold", *options_for_files, "--limit", "1", "--passing", "0"])
+        assert result.exit_code == 1 and "rejected the API key" in result.stderr, result.output
         assert {request.headers["authorization"] for request in server.requests} == {f"Bearer {KEY}"}
-    assert KEY not in done.output
+    assert KEY not in result.output
     assert KEY not in out.read_text()
 
 
@@ -190,5 +192,5 @@ def test_a_missing_judge_and_wrong_options_are_reported() -> None:
         anyio.run(open_judge, None, None, None, 30.0)
     with pytest.raises(ConfigError, match="reasoning_effort"):
         anyio.run(open_judge, "http://127.0.0.1:9/v1", "x", None, 30.0, ["reasoning_effort=huge"])
-    with pytest.raises(ConfigError, match="not the address"):
+    with pytest.raises(ConfigError, match="not a valid model server URL"):
         anyio.run(open_judge, "file:///etc/passwd", "x", None, 30.0)

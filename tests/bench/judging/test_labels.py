@@ -1,4 +1,4 @@
-"""Human labels: storage, blindness to verdicts, and a complete labelling session on a real log."""
+"""Human labels: storage, hidden verdicts, and a complete labelling session on a real log."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_the_newest_label_of_each_person_counts(tmp_path: Path) -> None:
     add_label(path, Label(by="bob", verdict="correct"), "t#1")
     add_label(path, Label(by="ann", verdict="unclear"), "t#1")
     assert [(row.by, row.verdict) for row in read_labels(path)] == [("ann", "unclear"), ("bob", "correct")]
-    assert len(path.read_text().splitlines()) == 3, "nothing is rewritten"
+    assert len(path.read_text().splitlines()) == 3, "labels must be appended"
 
 
 def test_an_incomplete_line_is_removed_by_the_next_label(tmp_path: Path) -> None:
@@ -67,7 +67,7 @@ def test_labels_find_their_runs(tmp_path: Path) -> None:
 
 
 def turn_task(number: int, degrees: float) -> Task:
-    """A task of the shipped scene that the grammar planner solves."""
+    """Return a task of a bundled scene that the grammar planner solves."""
     return Task(
         id=f"scope1-highway-works-single-call-{number:03d}", dataset="scope1", scene="highway-works", preset="overview",
         instruction=f"Pan right {degrees:g} degrees.", category="single_call", scope="current", difficulty="easy",
@@ -81,50 +81,50 @@ def turn_task(number: int, degrees: float) -> Task:
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A real log of two runs."""
+    """Return a real log of two runs."""
     folder = tmp_path_factory.mktemp("log")
     dump_tasks([turn_task(1, 20), turn_task(2, 30)], folder / "tasks.jsonl")
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the engine leaves streams to the garbage collector
         patch.setattr("sys.argv", ["scope", "bench", "run", "--tasks", str(folder / "tasks.jsonl"), "--out", str(folder / "logs")])
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as excinfo:
             main()
         gc.collect()
-    assert not ended.value.code
+    assert not excinfo.value.code
     (path,) = (folder / "logs").glob("**/*.eval")
     return path
 
 
 @pytest.fixture
-def fresh(log: Path) -> Iterator[Path]:
+def unlabelled_log(log: Path) -> Iterator[Path]:
     yield log
     labels_file(log).unlink(missing_ok=True)
 
 
-def label(log: Path, said: str, *options: str) -> Result:
+def label(log: Path, typed_text: str, *options: str) -> Result:
     """Run a labelling session. All sessions share one folder of pictures."""
     pictures = () if "--pictures" in options else ("--pictures", str(log.parent / "pictures"))
-    return CliRunner().invoke(app, ["bench", "label", str(log), *pictures, *options], input=said)
+    return CliRunner().invoke(app, ["bench", "label", str(log), *pictures, *options], input=typed_text)
 
 
-def test_a_session_is_blind_keeps_all_labels_and_can_be_resumed(fresh: Path) -> None:
-    first = label(fresh, "?\nc9\nhello\nc fine\n", "--by", "ann")
+def test_a_session_is_blind_keeps_all_labels_and_can_be_resumed(unlabelled_log: Path) -> None:
+    first = label(unlabelled_log, "?\nc9\nhello\nc fine\n", "--by", "ann")
     assert first.exit_code == 0, first.output
     assert "| Pan right" in first.output
-    assert "every check passed" not in first.output, "what the checks said is not shown"
+    assert "every check passed" not in first.output, "the results of the checks must be hidden"
     assert "1 of 2 runs labelled by ann" in first.output
     pictures = [Path(line.removeprefix("picture: ")) for line in first.output.splitlines() if line.startswith("picture: ")]
     assert [path.name for path in pictures[:2]] == ["filmstrip.png", "001-view.jpg"]
     assert all(path.stat().st_size > 1000 for path in pictures)
-    second = label(fresh, "i\ni8 it was late\n", "--by", "ann")
+    second = label(unlabelled_log, "i\ni8 it was late\n", "--by", "ann")
     assert "Give an error mode, for example i6:" in second.output
     assert "2 of 2 runs labelled by ann" in second.output
-    rows = read_labels(labels_file(fresh))
+    rows = read_labels(labels_file(unlabelled_log))
     assert {(row.verdict, row.error_mode, row.note) for row in rows} == {
         ("correct", None, "fine"),
         ("incorrect", ErrorMode.REASONING, "it was late"),
     }
-    assert label(fresh, "", "--by", "ann").output.startswith("2 of 2")
+    assert label(unlabelled_log, "", "--by", "ann").output.startswith("2 of 2")
 
 
 def test_a_log_cannot_write_outside_its_folder(tmp_path: Path) -> None:
@@ -142,42 +142,42 @@ def test_a_log_cannot_write_outside_its_folder(tmp_path: Path) -> None:
     assert folder_name(tmp_path / "b.eval", "t#1") != folder_name(tmp_path / "a.eval", "t#1")
 
 
-def test_back_skip_and_quit(fresh: Path) -> None:
-    done = label(fresh, "b\nu\nb\nc\ns\nq\n", "--by", "bob")
-    assert "This is the first run." in done.output
-    assert [(row.verdict, row.by) for row in read_labels(labels_file(fresh))] == [("correct", "bob")]
-    assert len(labels_file(fresh).read_text().splitlines()) == 2
+def test_back_skip_and_quit(unlabelled_log: Path) -> None:
+    result = label(unlabelled_log, "b\nu\nb\nc\ns\nq\n", "--by", "bob")
+    assert "This is the first run." in result.output
+    assert [(row.verdict, row.by) for row in read_labels(labels_file(unlabelled_log))] == [("correct", "bob")]
+    assert len(labels_file(unlabelled_log).read_text().splitlines()) == 2
 
 
-def test_labellers_do_not_see_each_others_progress(fresh: Path) -> None:
-    label(fresh, "c\nc\n", "--by", "ann")
-    assert "0 of 2 runs labelled by bob" in label(fresh, "q\n", "--by", "bob").output
-    assert "0 of 1 runs labelled by bob" in label(fresh, "q\n", "--by", "bob", "--sample", "1").output
+def test_labellers_do_not_see_each_others_progress(unlabelled_log: Path) -> None:
+    label(unlabelled_log, "c\nc\n", "--by", "ann")
+    assert "0 of 2 runs labelled by bob" in label(unlabelled_log, "q\n", "--by", "bob").output
+    assert "0 of 1 runs labelled by bob" in label(unlabelled_log, "q\n", "--by", "bob", "--sample", "1").output
 
 
-def test_labels_are_compared_with_the_checks(fresh: Path) -> None:
-    none = label(fresh, "", "--compare")
-    assert none.exit_code == 2
-    assert "has no labels yet" in none.output
-    label(fresh, "c\ni3\n", "--by", "ann")
-    done = label(fresh, "", "--compare")
-    assert "the checks  against  ann" in done.output
-    assert "2 runs, agree on 50.0%" in done.output
-    content = json.loads(CliRunner().invoke(app, ["bench", "agree", str(fresh), "--json"]).output)
+def test_labels_are_compared_with_the_checks(unlabelled_log: Path) -> None:
+    empty = label(unlabelled_log, "", "--compare")
+    assert empty.exit_code == 2
+    assert "has no labels yet" in empty.output
+    label(unlabelled_log, "c\ni3\n", "--by", "ann")
+    result = label(unlabelled_log, "", "--compare")
+    assert "the checks  against  ann" in result.output
+    assert "2 runs, agree on 50.0%" in result.output
+    content = json.loads(CliRunner().invoke(app, ["bench", "agree", str(unlabelled_log), "--json"]).output)
     assert content["pairs"][0]["verdicts"]["raw"] == 0.5
 
 
 @pytest.mark.parametrize(
-    ("options", "told"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "has no labels yet")]
+    ("options", "message"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "has no labels yet")]
 )
-def test_wrong_options_are_reported(fresh: Path, options: tuple[str, ...], told: str) -> None:
-    done = label(fresh, "", *options)
-    assert done.exit_code == 2
-    assert told in done.output
+def test_wrong_options_are_reported(unlabelled_log: Path, options: tuple[str, ...], message: str) -> None:
+    result = label(unlabelled_log, "", *options)
+    assert result.exit_code == 2
+    assert message in result.output
 
 
 def test_a_missing_log(tmp_path: Path) -> None:
     for command in (["label", "--by", "x"], ["agree"]):
-        done = CliRunner().invoke(app, ["bench", *command, str(tmp_path / "none.eval")])
-        assert done.exit_code == 2
-        assert "does not exist" in done.output
+        result = CliRunner().invoke(app, ["bench", *command, str(tmp_path / "none.eval")])
+        assert result.exit_code == 2
+        assert "does not exist" in result.output

@@ -10,19 +10,19 @@ from hypothesis import strategies as st
 
 from scope_ptz.bench.judging.judge_replies import MAX_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
+from tests.bench.judging.runs import CORRECT, MISCOUNTED, json_text
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        written(MISCOUNTED),
-        f"```json\n{written(MISCOUNTED)}\n```",
-        f"The count differs. {written(MISCOUNTED)} That is all.",
-        written({**MISCOUNTED, "confidence": 0.9}),
-        written({**MISCOUNTED, "verdict": " Incorrect", "error_mode": "VLM_COUNTING"}),
-        f"{written(MISCOUNTED)}\n{written(MISCOUNTED)}",
-        f'I would not say {{this}} or {{"a": 1}}. {written(MISCOUNTED)}',
+        json_text(MISCOUNTED),
+        f"```json\n{json_text(MISCOUNTED)}\n```",
+        f"The count differs. {json_text(MISCOUNTED)} That is all.",
+        json_text({**MISCOUNTED, "confidence": 0.9}),
+        json_text({**MISCOUNTED, "verdict": " Incorrect", "error_mode": "VLM_COUNTING"}),
+        f"{json_text(MISCOUNTED)}\n{json_text(MISCOUNTED)}",
+        f'I would not say {{this}} or {{"a": 1}}. {json_text(MISCOUNTED)}',
     ],
 )
 def test_verdicts_with_surrounding_text(text: str) -> None:
@@ -39,33 +39,33 @@ def test_verdicts_with_surrounding_text(text: str) -> None:
         ("The run is correct.", "no JSON object with a verdict"),
         ('{"verdict": "correct", "error_mode": "none", "reason": "cut o', "no JSON object"),
         ("[]", "no JSON object"),
-        (written([CORRECT, {**CORRECT, "verdict": "wrong"}]), "verdict"),
-        (written({**CORRECT, "error_mode": "scope"}), "a correct run has no error mode"),
-        (written({**MISCOUNTED, "error_mode": "none"}), "exactly one error mode"),
-        (written({**MISCOUNTED, "error_mode": None}), "exactly one error mode"),
-        (written({**MISCOUNTED, "error_mode": ["scope", "tool_args"]}), "error_mode"),
-        (written({**MISCOUNTED, "error_mode": "bad luck"}), "error_mode"),
-        (written({"verdict": "correct", "reason": "fine"}), "error_mode"),
-        (written({**CORRECT, "verdict": True}), "verdict"),
-        (written({**CORRECT, "verdict": "partially correct"}), "verdict"),
-        (written({**CORRECT, "reason": " "}), "reason"),
-        (written({"verdict": "correct", "error_mode": "none"}), "reason"),
-        (f"{written(CORRECT)} or rather {written(MISCOUNTED)}", "several different verdicts"),
+        (json_text([CORRECT, {**CORRECT, "verdict": "wrong"}]), "verdict"),
+        (json_text({**CORRECT, "error_mode": "scope"}), "a correct run has no error mode"),
+        (json_text({**MISCOUNTED, "error_mode": "none"}), "exactly one error mode"),
+        (json_text({**MISCOUNTED, "error_mode": None}), "exactly one error mode"),
+        (json_text({**MISCOUNTED, "error_mode": ["scope", "tool_args"]}), "error_mode"),
+        (json_text({**MISCOUNTED, "error_mode": "bad luck"}), "error_mode"),
+        (json_text({"verdict": "correct", "reason": "fine"}), "error_mode"),
+        (json_text({**CORRECT, "verdict": True}), "verdict"),
+        (json_text({**CORRECT, "verdict": "partially correct"}), "verdict"),
+        (json_text({**CORRECT, "reason": " "}), "reason"),
+        (json_text({"verdict": "correct", "error_mode": "none"}), "reason"),
+        (f"{json_text(CORRECT)} or rather {json_text(MISCOUNTED)}", "several different verdicts"),
         ('{"verdict": "incorrect", "verdict": "correct", "error_mode": "none", "reason": "x"}', "no JSON object"),
         ("{" * 5000, "no JSON object"),
         ('{"verdict":' * 3000, "no JSON object"),
     ],
 )
 def test_invalid_verdicts(text: str, problem: str) -> None:
-    read = parse_judge_reply(text)
-    assert isinstance(read, str)
-    assert problem in read
+    parsed = parse_judge_reply(text)
+    assert isinstance(parsed, str)
+    assert problem in parsed
 
 
 def test_a_long_reason_is_truncated() -> None:
-    read = parse_judge_reply(written({**CORRECT, "reason": "very " * 1000}))
-    assert isinstance(read, JudgeReply)
-    assert len(read.reason) == MAX_REASON_CHARS
+    parsed = parse_judge_reply(json_text({**CORRECT, "reason": "very " * 1000}))
+    assert isinstance(parsed, JudgeReply)
+    assert len(parsed.reason) == MAX_REASON_CHARS
 
 
 @given(st.text())
@@ -75,9 +75,9 @@ def test_text_alone_never_gives_a_verdict(text: str) -> None:
 
 @given(st.sampled_from([*ErrorMode, None]), st.sampled_from(["correct", "incorrect"]), st.text(min_size=1))
 def test_any_reply_within_the_schema_is_parsed_or_refused_for_one_reason(mode: ErrorMode | None, verdict: str, reason: str) -> None:
-    read = parse_judge_reply(json.dumps({"reason": reason, "verdict": verdict, "error_mode": mode.value if mode else "none"}))
+    parsed = parse_judge_reply(json.dumps({"reason": reason, "verdict": verdict, "error_mode": mode.value if mode else "none"}))
     consistent = (mode is None) == (verdict == "correct")
-    assert isinstance(read, JudgeReply) == (consistent and bool(" ".join(reason.split())))
+    assert isinstance(parsed, JudgeReply) == (consistent and bool(" ".join(reason.split())))
 
 
 def test_the_schema_lists_all_modes_and_forbids_additional_fields() -> None:

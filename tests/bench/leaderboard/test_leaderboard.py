@@ -1,4 +1,4 @@
-"""The leaderboard page: ranks, labels, tables that are not mixed, and text of submissions that is escaped."""
+"""The leaderboard page: ranks, labels, separate tables, and escaped text of submissions."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.leaderboard.entries import LeaderboardEntry, Refused, TaskSet
-from scope_ptz.bench.leaderboard.page import BASELINE, leaderboard_html, leaderboard_tables, ranks, write_leaderboard
-from scope_ptz.bench.reports.tables import unmarked
+from scope_ptz.bench.leaderboard.entries import LeaderboardEntry, RefusedSubmission, TaskSet
+from scope_ptz.bench.leaderboard.page import BASELINE, leaderboard_html, leaderboard_tables, rank_entries, write_leaderboard
+from scope_ptz.bench.reports.tables import cell_value
 from scope_ptz.bench.signatures.provenance import Evaluated, Provenance
 from scope_ptz.bench.submissions.submission import submission_lines
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import OutputError
-from tests.bench.reports.making import evaluation, facts
+from tests.bench.reports.sample_evaluations import evaluation, facts
 
 FACTS = facts(4)
 ATTRIBUTES = {
@@ -35,18 +35,18 @@ def entry(
     *,
     evaluated: Evaluated = "self-reported",
     tasks: tuple[TaskFacts, ...] = FACTS,
-    **further: Any,
+    **extra: Any,
 ) -> LeaderboardEntry:
-    """An entry with made-up trials."""
-    made = evaluation(planner, perception, tasks, skill, spoiled=further.pop("spoiled", 0.0), **further)
-    header, lines = submission_lines(made)
+    """Return an entry with invented trials."""
+    run = evaluation(planner, perception, tasks, skill, broken_share=extra.pop("broken_share", 0.0), **extra)
+    header, lines = submission_lines(run)
     task_set = TaskSet("private.jsonl", (), {fact.id: fact for fact in tasks})
     return LeaderboardEntry(f"{planner}.jsonl", header, tuple(lines), Provenance(evaluated), task_set)
 
 
 def column(table: Any, name: str) -> list[Any]:
     index = [column.name for column in table.columns].index(name)
-    return [unmarked(row[index]) for row in table.rows]
+    return [cell_value(row[index]) for row in table.rows]
 
 
 def test_entries_are_ranked_by_accuracy_and_the_baseline_is_not() -> None:
@@ -63,7 +63,7 @@ def test_entries_are_ranked_by_accuracy_and_the_baseline_is_not() -> None:
 def test_equal_accuracies_share_a_rank(rows: list[tuple[float, bool]]) -> None:
     by_skill = {skill: entry("team", skill=-9.0 if skill == 0 else 9.0 if skill == 1 else 0.5) for skill in (0.0, 0.5, 1.0)}
     baseline = {skill: entry("grammar", skill=-9.0 if skill == 0 else 9.0 if skill == 1 else 0.5) for skill in (0.0, 0.5, 1.0)}
-    placed = ranks([(baseline if is_baseline else by_skill)[skill] for skill, is_baseline in rows])
+    placed = rank_entries([(baseline if is_baseline else by_skill)[skill] for skill, is_baseline in rows])
     values = [each.accuracy.value for rank, each in placed if rank is not None and each.accuracy is not None]
     found = [rank for rank, _ in placed if rank is not None]
     assert found == [1 + sum(other > value for other in values) for value in values]
@@ -82,7 +82,7 @@ def test_different_tasks_datasets_repeats_and_perception_are_not_mixed() -> None
 
 
 def test_labels_and_broken_runs() -> None:
-    entries = [entry("hosted-team", evaluated="hosted", skill=0.9), entry("own", spoiled=0.2)]
+    entries = [entry("hosted-team", evaluated="hosted", skill=0.9), entry("own", broken_share=0.2)]
     (table,) = leaderboard_tables(entries)
     labels = dict(zip(column(table, "name"), column(table, "label"), strict=True))
     assert labels == {"hosted-team": "hosted", "own": "self-reported"}
@@ -91,7 +91,7 @@ def test_labels_and_broken_runs() -> None:
 
 def test_text_of_submissions_is_escaped() -> None:
     entries = [entry(HOSTILE, variant=HOSTILE, dataset=HOSTILE)]
-    page = leaderboard_html(leaderboard_tables(entries), [Refused(HOSTILE, HOSTILE * 100)], "title")
+    page = leaderboard_html(leaderboard_tables(entries), [RefusedSubmission(HOSTILE, HOSTILE * 100)], "title")
     assert "<script>alert" not in page
     assert {attribute for tag in _tags(page) for attribute in tag} <= ATTRIBUTES
     assert "49" not in re.findall(r"\{\{.*?\}\}", page)

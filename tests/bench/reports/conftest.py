@@ -1,4 +1,4 @@
-"""One made-up sweep and its report, shared by the tests of a run."""
+"""An invented sweep and its report, shared by the tests of a session."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.registry import load_registry
-from tests.bench.reports.making import sweep
+from tests.bench.reports.sample_evaluations import sweep
 
 
 @pytest.fixture(scope="session")

@@ -15,14 +15,14 @@ from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.registry import load_registry
-from tests.bench.reports.making import card, trial
+from tests.bench.reports.sample_evaluations import card, trial
 
 TASKS = load_split("lite")
 BY_ID = {task.id: task for task in TASKS}
 
 
 def run(is_correct: Callable[[Task], bool], *, epochs: int = 1) -> Evaluation:
-    """A run of the lite split by a pair of models."""
+    """Return an evaluation of a pair of models on the lite split."""
     trials = tuple(
         trial(facts_of(task, f"place {number % 5}"), "correct" if is_correct(task) else "incorrect", epoch=epoch)
         for number, task in enumerate(TASKS)
@@ -46,7 +46,7 @@ def test_a_perfect_run_stays_perfect() -> None:
     assert [value(cells[key]) for key in ("macro", "consistent", "corrected")] == pytest.approx([1.0, 1.0, 1.0])
 
 
-def test_an_agent_that_always_denies_wins_nothing_above_chance() -> None:
+def test_an_agent_that_always_denies_is_not_above_chance() -> None:
     """It is right about every absence, so its accuracy is far above its chance-corrected accuracy."""
     cells = row(run(lambda task: isinstance(task.expected, NoneThere)))
     assert value(cells["macro"]) > 0.1
@@ -54,7 +54,7 @@ def test_an_agent_that_always_denies_wins_nothing_above_chance() -> None:
     assert value(cells["corrected"]) < 0.0
 
 
-def test_pairs_count_whole_in_each_repeat() -> None:
+def test_both_tasks_of_a_pair_must_be_correct_in_each_repeat() -> None:
     evaluation = run(lambda _: True, epochs=2)
     broken = next(t for t in evaluation.trials if t.task.pair in BY_ID and t.epoch == 2)
     trials = [t.model_copy(update={"headline": "incorrect"}) if t is broken else t for t in evaluation.trials]
@@ -62,9 +62,9 @@ def test_pairs_count_whole_in_each_repeat() -> None:
     assert {(t.task.id, t.epoch) for t in wrong} == {(broken.task.id, 2), (broken.task.pair, 2)}
 
 
-def test_the_summary_and_the_table_state_what_constant_answers_win() -> None:
+def test_the_summary_and_the_table_state_the_accuracy_of_constant_answers() -> None:
     report = build_report([run(lambda _: True)], load_registry(), tasks=BY_ID)
-    assert any("best constant answer wins 0.0% without a tool call" in line for line in report.summary)
+    assert any("best constant answer scores 0.0% without a tool call" in line for line in report.summary)
     assert any("Chance-corrected macro accuracy" in line for line in report.summary)
     (table,) = [table for table in report.tables if table.key == "constant_answers"]
     shares = {str(cells[3]): cells for cells in table.rows}
@@ -72,7 +72,7 @@ def test_the_summary_and_the_table_state_what_constant_answers_win() -> None:
     assert shares["move, look once"][4] == "None."
 
 
-def test_unknown_tasks_are_left_out() -> None:
+def test_a_report_on_unknown_tasks_has_no_chance_section() -> None:
     report = build_report([run(lambda _: True)], load_registry())
     assert "chance" not in [section.key for section in report.sections]
     assert not any("constant" in line for line in report.summary)

@@ -1,4 +1,4 @@
-"""Evaluations that ended in an error, are unfinished, or lost trials to infrastructure are stated at the top, with bounds."""
+"""A report states failed and unfinished evaluations and lost trials at the top, with bounds."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import pytest
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.reports.terminal import terminal_lines
-from scope_ptz.bench.reports.writer import html, markdown
+from scope_ptz.bench.reports.writer import render_html, render_markdown
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.registry import load_registry
-from tests.bench.reports.making import card, facts, trial
+from tests.bench.reports.sample_evaluations import card, facts, trial
 
 TASKS = facts(20)  # 160 tasks, 20 of each category
 LOG = Path(__file__).parents[2] / "frozen" / "v0_1_0" / "logs" / "truth.eval"
 
 
 def run(lost: int, incorrect: int = 40, cut: int = 0, failure: str = "") -> Evaluation:
-    """A run whose first trials of each category were lost, the next were incorrect, and the last of all were not run."""
+    """Return an evaluation: the first trials of each category are lost, the next incorrect, and the last ``cut`` missing."""
     headlines = ["infrastructure"] * lost + ["incorrect"] * incorrect + ["correct"] * (160 - lost - incorrect)
     order = sorted(range(160), key=lambda n: (n % 20, n // 20))
     by_task = {TASKS[n].id: headline for n, headline in zip(order, headlines, strict=True)}
@@ -35,7 +35,7 @@ def build(evaluation: Evaluation) -> EvaluationReport:
 
 def test_few_lost_trials_are_no_problem() -> None:
     assert build(run(3)).problems == ()
-    assert "Incomplete evaluations" not in html(build(run(3)))
+    assert "Incomplete evaluations" not in render_html(build(run(3)))
 
 
 def test_many_lost_trials_are_stated_with_bounds() -> None:
@@ -55,22 +55,22 @@ def test_an_error_and_missing_trials_are_stated_with_bounds() -> None:
     correct = sum(t.headline == "correct" for t in run(0, cut=16).trials)
     assert f"Micro accuracy is {100 * correct / 144:.1f}% without the lost and missing trials" in line
     assert f"{100 * correct / 160:.1f}% if all of them were incorrect, and {100 * (correct + 16) / 160:.1f}%" in line
-    (whole,) = build(run(0, failure="late")).problems
-    assert whole == "qwen3-4b + moondream2: the log ended in an error (late). No trial is lost."
+    (line,) = build(run(0, failure="late")).problems
+    assert line == "qwen3-4b + moondream2: the log ended in an error (late). No trials were lost."
 
 
 def test_problems_come_before_everything_else() -> None:
-    made = build(run(8))
-    (line,) = made.problems
-    page, text = html(made), markdown(made)
+    report = build(run(8))
+    (line,) = report.problems
+    page, text = render_html(report), render_markdown(report)
     assert page.index("Incomplete evaluations") < page.index('id="choice"')
     assert text.index("lost to infrastructure") < text.index("Which pair to choose")
-    assert next(iter(terminal_lines(made))) == line
+    assert next(iter(terminal_lines(report))) == line
 
 
 def test_a_run_in_which_everything_was_lost() -> None:
     (line,) = build(run(160, incorrect=0)).problems
-    assert line.endswith("No trial can be scored, so that the accuracy is unknown (0.0% to 100.0%).")
+    assert line.endswith("No trial can be scored, so the accuracy is unknown (0.0% to 100.0%).")
 
 
 @pytest.mark.parametrize(("status", "error", "failure"), [
@@ -88,6 +88,6 @@ def test_the_error_of_a_log_is_read(status: str, error: dict[str, str] | None, f
                 header.pop("error", None)
                 content = json.dumps(header | ({"error": error} if error else {})).encode()
             new.writestr(info.filename, content)
-    read = read_evaluation(log)
-    assert read.failure == failure and ("failure" in read.model_dump()) is bool(failure)
-    assert bool([line for line in build(read).problems if failure and failure in line]) is bool(failure)
+    evaluation = read_evaluation(log)
+    assert evaluation.failure == failure and ("failure" in evaluation.model_dump()) is bool(failure)
+    assert bool([line for line in build(evaluation).problems if failure and failure in line]) is bool(failure)

@@ -1,4 +1,4 @@
-"""Statistics against other implementations, enumeration and examples worked out by hand."""
+"""Statistics compared with other implementations, enumeration and hand computations."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_ptz.bench.statistics.clustered import (
     difference,
     independent_variance,
     macro_weights,
-    pooled,
+    pool_strata,
     proportion,
     strata_without_spread,
     t_quantile,
@@ -26,16 +26,16 @@ from scope_ptz.bench.statistics.clustered import (
     wilson,
 )
 from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
-from scope_ptz.bench.statistics.pareto import undominated
+from scope_ptz.bench.statistics.pareto import pareto_front
 from scope_ptz.bench.statistics.repeats import mean_pass_all, pass_all
 
 SMALL = Scores(np.array([1.0, 0, 1, 1, 0, 1]), ("a", "a", "a", "a", "b", "b"), ("x", "x", "y", "y", "x", "y"))
 
 
-def some_scores(seed: int, number: int = 120, clusters: int = 9) -> Scores:
-    chance = np.random.default_rng(seed)
-    values = (chance.random(number) < 0.6).astype(float)
-    return Scores(values, tuple(chance.integers(0, 5, number).tolist()), tuple(chance.integers(0, clusters, number).tolist()))
+def random_scores(seed: int, number: int = 120, clusters: int = 9) -> Scores:
+    rng = np.random.default_rng(seed)
+    values = (rng.random(number) < 0.6).astype(float)
+    return Scores(values, tuple(rng.integers(0, 5, number).tolist()), tuple(rng.integers(0, clusters, number).tolist()))
 
 
 def test_a_worked_example() -> None:
@@ -43,65 +43,65 @@ def test_a_worked_example() -> None:
     weights = macro_weights(SMALL)
     assert weighted_mean(SMALL, weights) == pytest.approx(0.625)
     assert cluster_variance(SMALL, weights) == pytest.approx(2 / 1 * 2 * (3 / 16) ** 2)
-    assert weighted_mean(pooled(SMALL), {"all": 1.0}) == pytest.approx(4 / 6)
+    assert weighted_mean(pool_strata(SMALL), {"all": 1.0}) == pytest.approx(4 / 6)
     assert weighted_mean(SMALL, {"a": 1.0, "b": -1.0}) == pytest.approx(0.25)
 
 
 def test_the_interval_without_clusters_matches_a_hand_computation() -> None:
-    # Residuals times 1/(2 n_k), each an outcome of its own. a: 1/4, -3/4, 1/4, 1/4 over 8; b: -1/2, 1/2 over 4.
+    # Residuals times 1/(2 n_k), with every outcome independent. a: 1/4, -3/4, 1/4, 1/4 over 8; b: -1/2, 1/2 over 4.
     squares = (3 * (1 / 32) ** 2 + (3 / 32) ** 2) + 2 * (1 / 8) ** 2
     assert squares == pytest.approx(11 / 256)
     assert independent_variance(SMALL, macro_weights(SMALL)) == pytest.approx(6 / 5 * 11 / 256)
     # One stratum: s^2/n with s^2 = sum (x - mean)^2 / (n - 1), for 4 of 6: (4 (1/3)^2 + 2 (2/3)^2) / 5 / 6.
-    assert independent_variance(pooled(SMALL), {"all": 1.0}) == pytest.approx((4 / 9 + 8 / 9) / 5 / 6)
+    assert independent_variance(pool_strata(SMALL), {"all": 1.0}) == pytest.approx((4 / 9 + 8 / 9) / 5 / 6)
     assert independent_variance(Scores(np.array([1.0]), ("a",), ("x",)), {"a": 1.0}) is None
 
 
 def test_clusters_that_agree_by_chance_do_not_lower_the_standard_error() -> None:
-    # Both clusters have half right, so that they tell nothing of a variance: 0 between them, the floor of four outcomes stays.
+    # Both clusters have half correct: the variance between them is 0, so the floor from four independent outcomes applies.
     scores = Scores(np.array([1.0, 0, 1, 0]), ("a",) * 4, ("x", "x", "y", "y"))
     assert cluster_variance(scores, {"a": 1.0}) == 0
-    found = proportion(scores)
-    assert found is not None and found.se == pytest.approx(sqrt(4 * 0.25 / 3 / 4))
+    estimate = proportion(scores)
+    assert estimate is not None and estimate.se == pytest.approx(sqrt(4 * 0.25 / 3 / 4))
 
 
-def test_strata_of_one_cluster_are_named_and_give_no_interval_of_their_own() -> None:
-    # c is one outcome, b two of one viewpoint: neither tells how it varies between viewpoints.
+def test_strata_of_one_cluster_are_named_and_have_no_interval() -> None:
+    # c has one outcome, and b has two from one viewpoint: neither shows any variation between viewpoints.
     values, strata = np.array([1.0, 0, 1, 1, 0, 1, 1]), ("a", "a", "a", "a", "b", "b", "c")
     scores = Scores(values, strata, ("x", "x", "y", "y", "x", "x", "y"))
     assert strata_without_spread(scores, macro_weights(scores)) == ("b", "c")
     assert strata_without_spread(scores, {"a": 1.0}) == ()
     for estimate in (proportion(scores, macro_weights(scores)), difference(scores, macro_weights(scores))):
-        assert estimate is not None and estimate.without == ("b", "c") and estimate.low is not None
+        assert estimate is not None and estimate.single_cluster_strata == ("b", "c") and estimate.low is not None
     alone = Scores(values[:2], ("b", "c"), ("x", "y"))
     for estimate in (proportion(alone, macro_weights(alone)), difference(alone, macro_weights(alone))):
         assert estimate is not None and (estimate.value, estimate.low, estimate.high, estimate.se) == (0.5, None, None, None)
         assert two_sided_p(estimate) is None
     whole = proportion(SMALL, macro_weights(SMALL))
-    assert whole is not None and whole.without == ()
+    assert whole is not None and whole.single_cluster_strata == ()
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_micro_variance_is_that_of_a_clustered_regression(seed: int) -> None:
     from statsmodels.regression.linear_model import OLS  # type: ignore[import-untyped]
 
-    scores = some_scores(seed)
+    scores = random_scores(seed)
     fitted = OLS(scores.values, np.ones(len(scores.values))).fit(
         cov_type="cluster", cov_kwds={"groups": np.array(scores.clusters)}, use_t=True
     )
-    assert cluster_variance(pooled(scores), {"all": 1.0}) == pytest.approx(float(fitted.bse[0]) ** 2)
-    found = difference(scores)
-    assert found is not None
-    if found.se == pytest.approx(float(fitted.bse[0])):
-        assert (found.low, found.high) == pytest.approx(tuple(fitted.conf_int()[0]))
-        assert two_sided_p(found) == pytest.approx(float(fitted.pvalues[0]))
+    assert cluster_variance(pool_strata(scores), {"all": 1.0}) == pytest.approx(float(fitted.bse[0]) ** 2)
+    estimate = difference(scores)
+    assert estimate is not None
+    if estimate.se == pytest.approx(float(fitted.bse[0])):
+        assert (estimate.low, estimate.high) == pytest.approx(tuple(fitted.conf_int()[0]))
+        assert two_sided_p(estimate) == pytest.approx(float(fitted.pvalues[0]))
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_macro_variance_is_that_of_a_clustered_regression_on_strata(seed: int) -> None:
     from statsmodels.regression.linear_model import OLS
 
-    scores = some_scores(seed)
+    scores = random_scores(seed)
     strata = sorted(set(scores.strata))  # type: ignore[type-var]
     dummies = np.array([[float(own == stratum) for stratum in strata] for own in scores.strata])
     covariance = (
@@ -115,16 +115,16 @@ def test_the_macro_variance_is_that_of_a_clustered_regression_on_strata(seed: in
 
 
 def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
-    chance = np.random.default_rng(3)
+    rng = np.random.default_rng(3)
     covered = naive = 0
     for _ in range(150):
-        level = np.clip(chance.normal(0.65, 0.15, 12), 0.05, 0.95)
+        level = np.clip(rng.normal(0.65, 0.15, 12), 0.05, 0.95)
         clusters = np.repeat(np.arange(12), 40)
-        values = (chance.random(480) < level[clusters]).astype(float)
-        found = proportion(Scores(values, ("all",) * 480, tuple(clusters.tolist())))
-        assert found is not None and found.low is not None and found.high is not None
-        covered += found.low <= 0.65 <= found.high
-        low, high = wilson(found.value, 480, 1.96)
+        values = (rng.random(480) < level[clusters]).astype(float)
+        estimate = proportion(Scores(values, ("all",) * 480, tuple(clusters.tolist())))
+        assert estimate is not None and estimate.low is not None and estimate.high is not None
+        covered += estimate.low <= 0.65 <= estimate.high
+        low, high = wilson(estimate.value, 480, 1.96)
         naive += low <= 0.65 <= high
     assert 0.90 <= covered / 150 <= 0.99
     assert naive / 150 < 0.80
@@ -135,18 +135,18 @@ def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
 def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[tuple[bool, str, int]]) -> None:
     scores = Scores(np.array([float(right) for right, _, _ in rows]), tuple(s for _, s, _ in rows), tuple(c for _, _, c in rows))
     for weights in (None, macro_weights(scores)):
-        found = proportion(scores, weights)
-        assert found is not None
+        estimate = proportion(scores, weights)
+        assert estimate is not None
         groups = ["all"] * len(rows) if weights is None else [s for _, s, _ in rows]
         viewpoints = [len({c for own, (_, _, c) in zip(groups, rows, strict=True) if own == group}) for group in set(groups)]
         if max(viewpoints) < 2:
-            assert found.low is None and found.high is None and found.se is None
+            assert estimate.low is None and estimate.high is None and estimate.se is None
         else:
-            assert found.low is not None and found.high is not None and found.se is not None
-            assert -1e-12 <= found.low <= found.value + 1e-12 and found.value <= found.high + 1e-12 <= 1 + 2e-12
-            assert found.high - found.low > 0
-            floor = independent_variance(pooled(scores) if weights is None else scores, weights or {"all": 1.0})
-            assert floor is not None and found.se**2 >= floor - 1e-12
+            assert estimate.low is not None and estimate.high is not None and estimate.se is not None
+            assert -1e-12 <= estimate.low <= estimate.value + 1e-12 and estimate.value <= estimate.high + 1e-12 <= 1 + 2e-12
+            assert estimate.high - estimate.low > 0
+            floor = independent_variance(pool_strata(scores) if weights is None else scores, weights or {"all": 1.0})
+            assert floor is not None and estimate.se**2 >= floor - 1e-12
 
 
 def test_without_data_there_is_no_estimate() -> None:
@@ -195,9 +195,9 @@ def test_differences_stay_in_range_and_have_an_interval() -> None:
     wide = difference(Scores(np.array([1.0, -1.0, 1.0]), ("a",) * 3, ("x", "y", "y")))
     assert wide is not None
     assert (wide.low, wide.high) == (-1.0, 1.0)
-    alike = difference(Scores(np.array([0.0, 0.0]), ("a",) * 2, ("x", "y")))
-    assert alike is not None
-    assert (alike.value, alike.low, alike.high) == (0.0, None, None)
+    constant = difference(Scores(np.array([0.0, 0.0]), ("a",) * 2, ("x", "y")))
+    assert constant is not None
+    assert (constant.value, constant.low, constant.high) == (0.0, None, None)
 
 
 def test_the_bootstrap_of_two_clusters_is_known() -> None:
@@ -209,10 +209,10 @@ def test_the_bootstrap_of_two_clusters_is_known() -> None:
 
 
 def test_bootstrap_and_linearised_interval_agree_with_many_clusters() -> None:
-    scores = some_scores(8, 2000, 100)
-    found, drawn = difference(scores, macro_weights(scores)), cluster_bootstrap(scores)
-    assert found is not None and drawn is not None
-    assert drawn == pytest.approx((found.low, found.high), abs=0.006)
+    scores = random_scores(8, 2000, 100)
+    estimate, bootstrap = difference(scores, macro_weights(scores)), cluster_bootstrap(scores)
+    assert estimate is not None and bootstrap is not None
+    assert bootstrap == pytest.approx((estimate.low, estimate.high), abs=0.006)
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=7), st.integers(1, 7))
@@ -220,8 +220,8 @@ def test_bootstrap_and_linearised_interval_agree_with_many_clusters() -> None:
 def test_pass_all_is_the_share_of_selections_in_which_all_trials_pass(runs: list[bool], k: int) -> None:
     chosen = list(combinations(runs, k))
     expected = sum(all(choice) for choice in chosen) / len(chosen) if chosen else None
-    found = pass_all(len(runs), sum(runs), k)
-    assert found is None if expected is None else found is not None and isclose(found, expected)
+    share = pass_all(len(runs), sum(runs), k)
+    assert share is None if expected is None else share is not None and isclose(share, expected)
 
 
 def test_pass_all_over_tasks() -> None:
@@ -235,15 +235,15 @@ def test_pass_all_over_tasks() -> None:
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3)), max_size=9))
 @settings(max_examples=40, deadline=None)
 def test_the_pareto_front(points: list[tuple[int, int, int]]) -> None:
-    on = undominated([tuple(map(float, point)) for point in points])
+    front = pareto_front([tuple(map(float, point)) for point in points])
     for (index, point), _ in product(enumerate(points), (0,)):
-        beaten = any(other != point and all(a <= b for a, b in zip(other, point, strict=True)) for other in points)
-        assert on[index] is not beaten
+        dominated = any(other != point and all(a <= b for a, b in zip(other, point, strict=True)) for other in points)
+        assert front[index] is not dominated
 
 
 def test_the_smallest_detectable_difference_has_a_power_of_80_percent() -> None:
     clusters = 20
     true = detectable_difference(sqrt(1 / clusters), clusters)
     means = np.random.default_rng(5).normal(true, 1.0, (4000, clusters))
-    found = np.abs(means.mean(axis=1)) / (means.std(axis=1, ddof=1) / sqrt(clusters)) > t_quantile(clusters)
-    assert found.mean() == pytest.approx(0.8, abs=0.03)
+    detected = np.abs(means.mean(axis=1)) / (means.std(axis=1, ddof=1) / sqrt(clusters)) > t_quantile(clusters)
+    assert detected.mean() == pytest.approx(0.8, abs=0.03)

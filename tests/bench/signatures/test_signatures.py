@@ -1,4 +1,4 @@
-"""Keys, detached signatures, and who evaluated a submission."""
+"""Keys, detached signatures, and the provenance of submissions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from scope_ptz.bench.signatures.keys import (
     load_public_key,
     public_path,
     raw_bytes,
-    trusted_keys,
+    read_trusted_keys,
 )
 from scope_ptz.bench.signatures.provenance import provenance_of
 from scope_ptz.errors import ConfigError, InputError, OutputError
@@ -35,7 +35,7 @@ def key(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def signed(key: Path, tmp_path: Path) -> Path:
+def signed_file(key: Path, tmp_path: Path) -> Path:
     file = tmp_path / "team.jsonl"
     file.write_bytes(HOSTED)
     sign(file, load_private_key(key))
@@ -49,16 +49,16 @@ def edit_signature(file: Path, change: Callable[[dict[str, Any]], object]) -> No
     path.write_text(json.dumps(content), "utf-8")
 
 
-def test_a_signed_file_is_hosted_under_a_trusted_key(signed: Path, key: Path) -> None:
+def test_a_signed_file_is_hosted_under_a_trusted_key(signed_file: Path, key: Path) -> None:
     for trusted in ([public_path(key)], [key.parent]):
-        found = provenance_of(signed, trusted_keys(trusted))
-        assert (found.evaluated, found.faults) == ("hosted", ())
-        assert found.signer == fingerprint(raw_bytes(load_public_key(public_path(key))))
+        provenance = provenance_of(signed_file, read_trusted_keys(trusted))
+        assert (provenance.evaluated, provenance.faults) == ("hosted", ())
+        assert provenance.signer == fingerprint(raw_bytes(load_public_key(public_path(key))))
 
 
-def test_openssl_verifies_a_signature(signed: Path, key: Path, tmp_path: Path) -> None:
+def test_openssl_verifies_a_signature(signed_file: Path, key: Path, tmp_path: Path) -> None:
     raw = tmp_path / "raw.sig"
-    raw.write_bytes(base64.b64decode(json.loads(signature_path(signed).read_text("utf-8"))["signature"]))
+    raw.write_bytes(base64.b64decode(json.loads(signature_path(signed_file).read_text("utf-8"))["signature"]))
     command: list[str | Path] = [
         "openssl",
         "pkeyutl",
@@ -68,41 +68,41 @@ def test_openssl_verifies_a_signature(signed: Path, key: Path, tmp_path: Path) -
         public_path(key),
         "-rawin",
         "-in",
-        signed,
+        signed_file,
         "-sigfile",
         raw,
     ]
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
-@pytest.mark.parametrize("at", [0, 10, len(HOSTED) - 1])
-def test_an_edited_file_is_named(signed: Path, key: Path, at: int) -> None:
+@pytest.mark.parametrize("index", [0, 10, len(HOSTED) - 1])
+def test_an_edited_file_is_reported(signed_file: Path, key: Path, index: int) -> None:
     content = bytearray(HOSTED)
-    content[at] ^= 1
-    signed.write_bytes(content)
-    found = provenance_of(signed, trusted_keys([public_path(key)]))
-    assert found.evaluated == "self-reported"
-    assert "edited after it was signed" in found.faults[0]
+    content[index] ^= 1
+    signed_file.write_bytes(content)
+    provenance = provenance_of(signed_file, read_trusted_keys([public_path(key)]))
+    assert provenance.evaluated == "self-reported"
+    assert "edited after it was signed" in provenance.faults[0]
 
 
-@pytest.mark.parametrize("more", [b"\n", b"{}", b" "])
-def test_appended_bytes_are_named(signed: Path, key: Path, more: bytes) -> None:
-    signed.write_bytes(HOSTED + more)
-    assert provenance_of(signed, trusted_keys([public_path(key)])).faults
+@pytest.mark.parametrize("extra", [b"\n", b"{}", b" "])
+def test_appended_bytes_are_reported(signed_file: Path, key: Path, extra: bytes) -> None:
+    signed_file.write_bytes(HOSTED + extra)
+    assert provenance_of(signed_file, read_trusted_keys([public_path(key)])).faults
 
 
-def test_an_unknown_key_is_named(signed: Path, tmp_path: Path) -> None:
+def test_an_unknown_key_is_reported(signed_file: Path, tmp_path: Path) -> None:
     generate_key(tmp_path / "other" / "other.key")
-    for trusted in ({}, trusted_keys([tmp_path / "other"])):
-        found = provenance_of(signed, trusted)
-        assert found.evaluated == "self-reported"
-        assert "unknown key SHA256:" in found.faults[0]
+    for trusted in ({}, read_trusted_keys([tmp_path / "other"])):
+        provenance = provenance_of(signed_file, trusted)
+        assert provenance.evaluated == "self-reported"
+        assert "unknown key SHA256:" in provenance.faults[0]
 
 
-def test_a_claim_without_a_signature_is_named(signed: Path, key: Path) -> None:
-    signature_path(signed).unlink()
-    found = provenance_of(signed, trusted_keys([public_path(key)]))
-    assert "there is no signature team.jsonl.sig" in found.faults[0]
+def test_a_claim_without_a_signature_is_reported(signed_file: Path, key: Path) -> None:
+    signature_path(signed_file).unlink()
+    provenance = provenance_of(signed_file, read_trusted_keys([public_path(key)]))
+    assert "there is no signature team.jsonl.sig" in provenance.faults[0]
 
 
 @pytest.mark.parametrize("header", [b'{"kind":"header"}\n', b'{"evaluated":"self-reported"}\n', b"[]\n", b"not JSON", b"", b"\xff"])
@@ -113,12 +113,12 @@ def test_files_without_a_claim_are_self_reported(tmp_path: Path, header: bytes) 
     assert (provenance_of(file, {}).evaluated, provenance_of(file, {}).faults) == ("self-reported", ())
 
 
-def test_a_signature_of_a_self_reported_file_does_not_make_it_hosted(signed: Path, key: Path) -> None:
-    signed.write_bytes(HOSTED.replace(b"hosted", b"self-reported"))
-    sign(signed, load_private_key(key))
-    found = provenance_of(signed, trusted_keys([public_path(key)]))
-    assert (found.evaluated, found.faults) == ("self-reported", ())
-    assert "the header states that it is self-reported" in found.notes[0]
+def test_a_signature_of_a_self_reported_file_does_not_make_it_hosted(signed_file: Path, key: Path) -> None:
+    signed_file.write_bytes(HOSTED.replace(b"hosted", b"self-reported"))
+    sign(signed_file, load_private_key(key))
+    provenance = provenance_of(signed_file, read_trusted_keys([public_path(key)]))
+    assert (provenance.evaluated, provenance.faults) == ("self-reported", ())
+    assert "the header states that it is self-reported" in provenance.notes[0]
 
 
 @pytest.mark.parametrize(
@@ -136,35 +136,35 @@ def test_a_signature_of_a_self_reported_file_does_not_make_it_hosted(signed: Pat
         lambda c: c.pop("signed"),
     ],
 )
-def test_a_broken_signature_is_named(signed: Path, key: Path, change: Callable[[dict[str, Any]], object]) -> None:
-    edit_signature(signed, change)
-    found = provenance_of(signed, trusted_keys([public_path(key)]))
-    assert found.evaluated == "self-reported"
-    assert found.faults and "team.jsonl.sig" in found.faults[0]
+def test_a_broken_signature_is_reported(signed_file: Path, key: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    edit_signature(signed_file, change)
+    provenance = provenance_of(signed_file, read_trusted_keys([public_path(key)]))
+    assert provenance.evaluated == "self-reported"
+    assert provenance.faults and "team.jsonl.sig" in provenance.faults[0]
 
 
 @pytest.mark.parametrize("content", [b"", b"[]", b"\xff\xfe", b"{" * 5000, b" " * 20_000])
-def test_a_damaged_signature_file_is_named(signed: Path, key: Path, content: bytes) -> None:
-    signature_path(signed).write_bytes(content)
-    assert provenance_of(signed, trusted_keys([public_path(key)])).faults
+def test_a_damaged_signature_file_is_reported(signed_file: Path, key: Path, content: bytes) -> None:
+    signature_path(signed_file).write_bytes(content)
+    assert provenance_of(signed_file, read_trusted_keys([public_path(key)])).faults
 
 
-def test_a_signature_of_another_file_is_named(signed: Path, key: Path, tmp_path: Path) -> None:
+def test_a_signature_of_another_file_is_reported(signed_file: Path, key: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.jsonl"
     other.write_bytes(HOSTED + HOSTED)
-    signature_path(other).write_bytes(signature_path(signed).read_bytes())
-    assert provenance_of(other, trusted_keys([public_path(key)])).faults
+    signature_path(other).write_bytes(signature_path(signed_file).read_bytes())
+    assert provenance_of(other, read_trusted_keys([public_path(key)])).faults
 
 
-def test_an_attackers_key_in_the_signature_is_not_trusted(signed: Path, key: Path, tmp_path: Path) -> None:
-    """A valid signature with its own key says nothing, whatever fingerprint it states."""
+def test_an_attackers_key_in_the_signature_is_not_trusted(signed_file: Path, key: Path, tmp_path: Path) -> None:
+    """A signature that is valid under its own key proves nothing, whatever fingerprint it states."""
     generate_key(tmp_path / "evil" / "evil.key")
-    sign(signed, load_private_key(tmp_path / "evil" / "evil.key"))
-    trusted = trusted_keys([public_path(key)])
-    assert "unknown key" in provenance_of(signed, trusted).faults[0]
-    own = fingerprint(raw_bytes(load_public_key(public_path(key))))
-    edit_signature(signed, lambda c: c.update(fingerprint=own))
-    assert "not valid" in provenance_of(signed, trusted).faults[0]
+    sign(signed_file, load_private_key(tmp_path / "evil" / "evil.key"))
+    trusted = read_trusted_keys([public_path(key)])
+    assert "unknown key" in provenance_of(signed_file, trusted).faults[0]
+    trusted_fingerprint = fingerprint(raw_bytes(load_public_key(public_path(key))))
+    edit_signature(signed_file, lambda c: c.update(fingerprint=trusted_fingerprint))
+    assert "not valid" in provenance_of(signed_file, trusted).faults[0]
 
 
 def test_a_private_key_is_private(key: Path) -> None:
@@ -185,9 +185,9 @@ def test_messages_never_quote_a_key(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     path.chmod(0o600)
     for load in (load_private_key, load_public_key):
-        with pytest.raises(ConfigError) as caught:
+        with pytest.raises(ConfigError) as excinfo:
             load(path)
-        assert "c2VjcmV0" not in str(caught.value)
+        assert "c2VjcmV0" not in str(excinfo.value)
 
 
 def test_keys_of_other_algorithms_are_refused(tmp_path: Path) -> None:
@@ -202,11 +202,11 @@ def test_keys_of_other_algorithms_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="no Ed25519 private key"):
         load_private_key(path)
     with pytest.raises(ConfigError, match="no Ed25519 public key"):
-        trusted_keys([public_path(path)])
+        read_trusted_keys([public_path(path)])
 
 
 def test_a_folder_without_keys_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="contains no public key"):
-        trusted_keys([tmp_path])
+        read_trusted_keys([tmp_path])
     with pytest.raises(ConfigError, match="cannot be read"):
-        trusted_keys([tmp_path / "missing.pub"])
+        read_trusted_keys([tmp_path / "missing.pub"])

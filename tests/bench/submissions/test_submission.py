@@ -26,8 +26,8 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
-from tests.bench.making import samples
-from tests.bench.reports.making import card, trial
+from tests.bench.reports.sample_evaluations import card, trial
+from tests.bench.sample_runs import samples
 
 PUBLISHED = Path(scope_ptz.__file__).parent / "data" / "submission.schema.json"
 TASKS = tuple(task for task, _ in samples())
@@ -35,11 +35,11 @@ Rows = list[dict[str, Any]]
 LONG = {"planner_s": 9, "perception_s": 0, "camera_s": 0, "render_s": 0, "total_s": 1}
 
 
-def made(epochs: int = 2) -> Evaluation:
-    """Runs that pass the checks, except for one."""
+def passing_evaluation(epochs: int = 2) -> Evaluation:
+    """Return an evaluation in which every run but one passes the checks."""
     trials: list[Trial] = []
     for task, episode in samples():
-        known = TaskFacts(
+        facts = TaskFacts(
             id=task.id, dataset=task.dataset, stratum=task.stratum, scene=task.scene, viewpoint="v", preset=task.preset,
             instruction=task.instruction, category=task.category, scope=task.scope, difficulty=task.difficulty, expected="x",
         )  # fmt: skip
@@ -49,7 +49,7 @@ def made(epochs: int = 2) -> Evaluation:
         calls = dict(Counter(call.name for call in episode.calls))
         further: dict[str, Any] = {"outcome": episode.outcome, "tool_calls": calls, "steps": 1 + len(episode.calls)}
         for epoch in range(1, epochs + 1):
-            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.answer, **further))
+            trials.append(trial(facts, epoch=epoch, checks=checks, answer=episode.answer, **further))
     trials.sort(key=lambda t: (t.task.id, t.epoch))
     first = trials[0]
     failed = tuple(c.model_copy(update={"passed": False}) if c.name == "coverage" else c for c in first.checks)
@@ -64,7 +64,7 @@ def made(epochs: int = 2) -> Evaluation:
 @pytest.fixture
 def rows(tmp_path: Path) -> Rows:
     path = tmp_path / "made.jsonl"
-    write_submission(submission_lines(made()), path)
+    write_submission(submission_lines(passing_evaluation()), path)
     return [json.loads(line) for line in path.read_text("utf-8").splitlines()]
 
 
@@ -83,7 +83,7 @@ def test_a_generated_submission_is_valid(rows: Rows, tmp_path: Path) -> None:
     assert not any(word in text for word in ("secret-host", "10.0.0.7", "somebody", "abc")) and "tasks.jsonl" in text
 
 
-def test_the_published_schema_is_that_of_the_code() -> None:
+def test_the_published_schema_matches_the_code() -> None:
     assert json.loads(PUBLISHED.read_text("utf-8")) == submission_schema()
 
 
@@ -95,12 +95,12 @@ def drop(number: int) -> Callable[[Rows], None]:
     return lambda rows: rows.__delitem__(number)
 
 
-def put_card(**values: Any) -> Callable[[Rows], None]:
+def change_card(**values: Any) -> Callable[[Rows], None]:
     return lambda rows: rows[0]["card"].update(values)
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"),
+    ("edit", "message"),
     [
         (drop(3), "is missing (repeats"),
         (drop(3), "line 1: the totals state"),
@@ -132,39 +132,39 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (change(0, tasks_digest="0" * 64), "the digest of the tasks differs"),
         (change(0, tasks=1), "the header states 1 tasks"),
         (change(0, wanted=1), "the header states 1 trials"),
-        (put_card(dataset="scope9"), "the header states the dataset scope9"),
-        (put_card(package_version="99.0.0"), "newer than the installed version"),
-        (put_card(package_version="new"), "is not a version number"),
-        (put_card(epochs=3), "is missing (repeats 3)"),
-        (put_card(sampling={"api_key": "x"}), "card.sampling.api_key looks like a secret"),
+        (change_card(dataset="scope9"), "the header states the dataset scope9"),
+        (change_card(package_version="99.0.0"), "newer than the installed version"),
+        (change_card(package_version="new"), "is not a version number"),
+        (change_card(epochs=3), "is missing (repeats 3)"),
+        (change_card(sampling={"api_key": "x"}), "card.sampling.api_key looks like a secret"),
         (drop(0), "exactly one header"),
         (lambda rows: rows.insert(2, rows[0]), "this file has 2 headers"),
     ],
 )  # fmt: skip
-def test_every_error_is_reported(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
-    spoil(rows)
-    assert told in faults_of(rows, tmp_path)
+def test_every_error_is_reported(edit: Callable[[Rows], None], message: str, rows: Rows, tmp_path: Path) -> None:
+    edit(rows)
+    assert message in faults_of(rows, tmp_path)
 
 
-def broken(**values: Any) -> Callable[[Rows], None]:
+def mark_as_broken(**values: Any) -> Callable[[Rows], None]:
     return change(1, headline="infrastructure", error_mode=None, **values)
 
 
-def counted(**values: Any) -> Callable[[Rows], None]:
+def change_counting_run(**values: Any) -> Callable[[Rows], None]:
     """Change the first run of a task that requires a move, a call and a count."""
     return lambda rows: next(row for row in rows[1:] if row["task"].endswith("counting-001")).update(values)
 
 
-def unlooked(rows: Rows) -> None:
+def remove_perception_call(rows: Rows) -> None:
     rows[2].update(tool_calls={"go_to_preset": 1})
 
 
-def unmoved(rows: Rows) -> None:
+def remove_move(rows: Rows) -> None:
     row = next(row for row in rows[1:] if "pose" in row["checks"] and "calls" not in row["checks"])
     row.update(tool_calls={"take_image": 1})
 
 
-def unpictured(rows: Rows) -> None:
+def remove_picture(rows: Rows) -> None:
     row = next(row for row in rows[1:] if "pictures" in row["checks"])
     row["tool_calls"].pop("take_image")
 
@@ -178,51 +178,52 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"),
+    ("edit", "message"),
     [
         (fewer_checks, "checks of the task are missing: coverage"),
         (lambda rows: rows[2]["checks"].update(luck=True), "the task does not have these checks: luck"),
         (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered contradicts the check"),
-        (broken(), "but the trial ended answered"),
-        (counted(checks={"outcome": True, "answer": True}), "checks of the task are missing: calls, coverage, pose"),
-        (broken(outcome="step_limit"), "but the trial ended step_limit"),
-        (broken(perception_failures=1), "but the trial ended answered"),
+        (mark_as_broken(), "but the trial ended answered"),
+        (change_counting_run(checks={"outcome": True, "answer": True}), "checks of the task are missing: calls, coverage, pose"),
+        (mark_as_broken(outcome="step_limit"), "but the trial ended step_limit"),
+        (mark_as_broken(perception_failures=1), "but the trial ended answered"),
         (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "although the task has checks"),
         (change(2, tool_calls={}, steps=0), "ended answered without a step"),
         (change(2, tool_calls={}, steps=0), "the check 'coverage' passed without a perception call"),
-        (unlooked, "the check 'coverage' passed without a perception call"),
-        (counted(tool_calls={"count_objects": 1}), "the check 'calls' passed, but only 0 of 1 required calls of go_to_preset"),
-        (counted(steps=0), "2 calls, but no step"),
-        (counted(bad_calls=2, perception_failures=1), "3 failed calls, but only 2 calls"),
-        (unmoved, "passed, but no call moved the camera"),
-        (unpictured, "the check 'pictures' passed, but take_image was called 0 of"),
+        (remove_perception_call, "the check 'coverage' passed without a perception call"),
+        (change_counting_run(tool_calls={"count_objects": 1}),
+         "the check 'calls' passed, but only 0 of 1 required calls of go_to_preset"),
+        (change_counting_run(steps=0), "2 calls, but no step"),
+        (change_counting_run(bad_calls=2, perception_failures=1), "3 failed calls, but only 2 calls"),
+        (remove_move, "passed, but no call moved the camera"),
+        (remove_picture, "the check 'pictures' passed, but take_image was called 0 of"),
         (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
         (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
 def test_values_that_contradict_the_file_or_the_tasks_are_refused(
-    spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path
+    edit: Callable[[Rows], None], message: str, rows: Rows, tmp_path: Path
 ) -> None:
-    spoil(rows)
-    assert told in faults_of(rows, tmp_path)
+    edit(rows)
+    assert message in faults_of(rows, tmp_path)
 
 
 def test_unusual_but_real_runs_are_accepted(rows: Rows, tmp_path: Path) -> None:
-    """Runs that did not start or failed, runs without observations, and planners with vision."""
-    never = change(1, headline="infrastructure", error_mode=None, outcome=None, checks={}, steps=0, tool_calls={}, answer="")
+    """These are runs that did not start or failed, runs without observations, and runs of planners with vision."""
+    not_started = change(1, headline="infrastructure", error_mode=None, outcome=None, checks={}, steps=0, tool_calls={}, answer="")
     failed = dict.fromkeys(rows[1]["checks"], False)
-    cut = broken(outcome="planner_error", answer="", checks=failed)
-    blind = broken(answer="I cannot tell.", perception_failures=1, checks={**failed, "outcome": True})
-    for spoil in (never, cut, blind):
+    cut = mark_as_broken(outcome="planner_error", answer="", checks=failed)
+    blind = mark_as_broken(answer="I cannot tell.", perception_failures=1, checks={**failed, "outcome": True})
+    for edit in (not_started, cut, blind):
         changed = json.loads(json.dumps(rows))
-        spoil(changed)
+        edit(changed)
         found = faults_of(changed, tmp_path).splitlines()
         assert all(line.startswith("line 1: the totals state") for line in found), found
-    for known in ({"sees": "true"}, {}):
+    for planner_settings in ({"sees": "true"}, {}):
         changed = json.loads(json.dumps(rows))
-        unlooked(changed)
-        changed[0]["card"]["sampling"] = {"planner": known}
-        changed[0]["card"]["perception"]["name"] = "moondream2" if known else changed[0]["card"]["planner"]["name"]
+        remove_perception_call(changed)
+        changed[0]["card"]["sampling"] = {"planner": planner_settings}
+        changed[0]["card"]["perception"]["name"] = "moondream2" if planner_settings else changed[0]["card"]["planner"]["name"]
         assert faults_of(changed, tmp_path) == ""
 
 
@@ -246,25 +247,25 @@ def test_invalid_json_lines_are_reported_and_unreadable_files_refused(tmp_path: 
         check_submission(tmp_path / "none.jsonl", TASKS)
 
 
-def test_an_invented_tool_is_counted_and_a_key_in_an_answer_removed(tmp_path: Path) -> None:
-    whole = made(1)
-    changed = whole.trials[1].model_copy(
-        update={"tool_calls": {"take_image": 1, "<script>": 2}, "answer": f"{whole.trials[1].answer} hf_abcdefghijklmnopqrstu"}
+def test_an_invented_tool_is_counted_and_a_key_in_an_answer_is_removed(tmp_path: Path) -> None:
+    evaluation = passing_evaluation(1)
+    changed = evaluation.trials[1].model_copy(
+        update={"tool_calls": {"take_image": 1, "<script>": 2}, "answer": f"{evaluation.trials[1].answer} hf_abcdefghijklmnopqrstu"}
     )
-    found = whole.model_copy(update={"trials": (whole.trials[0], changed, *whole.trials[2:])})
+    found = evaluation.model_copy(update={"trials": (evaluation.trials[0], changed, *evaluation.trials[2:])})
     _, lines = submission_lines(found)
     line = next(row for row in lines if "unknown" in row.tool_calls)
     assert line.tool_calls == {"take_image": 1, "unknown": 2} and "[removed]" in line.answer and "hf_" not in line.answer
 
 
-def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
+def test_only_addresses_and_keys_are_removed_from_settings() -> None:
     planner = {
         "url": "http://10.0.0.7/v1", "temperature": 0.7, "prompt": "You steer a camera.", "api_key": "abc",
         "options": {"thinking": True, "proxy": "http://proxy.lan", "stop": ["a", "b://c"]}, "tools": [{"name": "go_home"}],
     }  # fmt: skip
-    whole = made(1)
+    evaluation = passing_evaluation(1)
     sampling = {"planner": planner, "price": {"input": 1.0}}
-    found = whole.model_copy(update={"card": whole.card.model_copy(update={"sampling": sampling})})
+    found = evaluation.model_copy(update={"card": evaluation.card.model_copy(update={"sampling": sampling})})
     assert submission_lines(found)[0].card.sampling == {
         "planner": {
             "temperature": 0.7, "prompt": "You steer a camera.", "options": {"thinking": True, "stop": ["a"]},
@@ -275,15 +276,15 @@ def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
 
 
 def test_an_unfinished_run_cannot_be_submitted() -> None:
-    whole = made()
+    evaluation = passing_evaluation()
     with pytest.raises(InputError, match=r"only 3 of \d+ trials"):
-        submission_lines(whole.model_copy(update={"trials": whole.trials[:3]}))
+        submission_lines(evaluation.model_copy(update={"trials": evaluation.trials[:3]}))
 
 
 def test_runs_without_models_are_labelled_as_unranked(tmp_path: Path) -> None:
-    whole = made(1)
+    evaluation = passing_evaluation(1)
     path = tmp_path / "reference.jsonl"
-    unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
+    unranked = evaluation.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
     write_submission(submission_lines(unranked), path)
     found = check_submission(path, TASKS)
     assert not found.faults and "not ranked" in found.summary and found.as_dict()["valid"] is True
@@ -320,7 +321,7 @@ def test_the_commands(rows: Rows, tmp_path: Path) -> None:
 
 
 def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
-    whole, tasks, out = made(2), tmp_path / "tasks.jsonl", tmp_path / "out.jsonl"
+    evaluation, tasks, out = passing_evaluation(2), tmp_path / "tasks.jsonl", tmp_path / "out.jsonl"
     dump_tasks(TASKS, tasks)
 
     def make(evaluation: Evaluation, *options: str) -> Result:
@@ -329,34 +330,34 @@ def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
         out.unlink(missing_ok=True)
         return CliRunner().invoke(app, ["bench", "submission", "make", str(log), "--out", str(out), *options])
 
-    named = ("--tasks", str(tasks))
-    done = make(whole, *named)
-    assert done.exit_code == 0 and not check_submission(out, TASKS).faults
-    unknown = make(whole)
+    tasks_option = ("--tasks", str(tasks))
+    run_result = make(evaluation, *tasks_option)
+    assert run_result.exit_code == 0 and not check_submission(out, TASKS).faults
+    unknown = make(evaluation)
     assert (unknown.exit_code, out.exists()) == (2, False) and "Give its tasks with --tasks" in unknown.stderr
-    # Of a run with --limit the log is finished and the split is not covered.
-    first = whole.trials[0].task.id
-    some = tuple(t for t in whole.trials if t.task.id != first)
-    limited = whole.model_copy(update={"trials": some, "wanted": len(some)})
-    refused = make(limited, *named)
+    # The log of a run with --limit is finished but does not cover the split.
+    first = evaluation.trials[0].task.id
+    remaining = tuple(t for t in evaluation.trials if t.task.id != first)
+    limited = evaluation.model_copy(update={"trials": remaining, "wanted": len(remaining)})
+    refused = make(limited, *tasks_option)
     assert (refused.exit_code, out.exists()) == (2, False)
     assert f"{first} is missing (repeats 1, 2)" in refused.stderr and "--partial" in refused.stderr
-    partial = make(limited, *named, "--partial")
+    partial = make(limited, *tasks_option, "--partial")
     assert partial.exit_code == 0 and "is incomplete and not a valid submission" in partial.stderr
     assert any(f"{first} is missing" in fault for fault in check_submission(out, TASKS).faults)
     core = limited.model_copy(update={"card": limited.card.model_copy(update={"split": "core"})})
     refused = make(core)
     assert refused.exit_code == 2 and "does not cover core" in refused.stderr and "more faults" in refused.stderr
-    # Other words of the same tasks are other tasks.
-    reworded = whole.trials[0].model_copy(
-        update={"task": whole.trials[0].task.model_copy(update={"instruction": "Something else."})}
+    # A task with another instruction is another task.
+    other_instruction = evaluation.trials[0].model_copy(
+        update={"task": evaluation.trials[0].task.model_copy(update={"instruction": "Something else."})}
     )
-    trials = (reworded, reworded.model_copy(update={"epoch": 2}), *whole.trials[2:])
-    other = make(whole.model_copy(update={"trials": trials}), *named)
+    trials = (other_instruction, other_instruction.model_copy(update={"epoch": 2}), *evaluation.trials[2:])
+    other = make(evaluation.model_copy(update={"trials": trials}), *tasks_option)
     assert other.exit_code == 2 and "the digest of the tasks differs" in other.stderr
 
 
-def test_validating_does_not_need_the_extra() -> None:
+def test_validation_does_not_import_optional_dependencies() -> None:
     code = "import sys, scope_ptz.bench.submissions.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "scope_ptz" in loaded and not {"inspect_ai", "jinja2", "matplotlib", "pandas", "scipy", "statsmodels"} & set(loaded)

@@ -11,10 +11,10 @@ from scope_ptz.camera.axis.camera import AxisCamera
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp, DeviceTimeouts
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from tests.camera.axis.fake_vapix import PASSWORD, USER
 
-QUICK = Settling(poll_s=0.005, start_s=0.15, timeout_s=3.0, picture_interval_s=0.0, picture_timeout_s=0.6)
+QUICK = SettlingCriteria(poll_s=0.005, start_s=0.15, timeout_s=3.0, picture_interval_s=0.0, picture_timeout_s=0.6)
 
 
 def device_http(port: int, *, password: str = PASSWORD, reply_s: float = 5.0) -> DeviceHttp:

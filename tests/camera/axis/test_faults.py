@@ -43,7 +43,7 @@ async def _until(condition: Callable[[], object], timeout_s: float = 5.0) -> Non
 
 async def test_wrong_password_is_named_and_not_shown(fake: FakeVapix, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.DEBUG)
-    with pytest.raises(CameraSignInError, match="refuses the user name or the password") as caught:
+    with pytest.raises(CameraSignInError, match="rejected the user name or the password") as caught:
         async with opened(fake.loopback.port, password="not-the-password"):
             pass
     shown = f"{caught.value!r} {caught.value.__cause__!r} {caplog.text}"
@@ -175,7 +175,7 @@ async def test_limit_that_appears_later_is_reported_as_clamping(fake: FakeVapix)
 async def test_picture_that_keeps_moving(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
         fake.shake = True
-        with pytest.raises(PictureNotStillError, match="keeps moving"):
+        with pytest.raises(PictureNotStillError, match="is still moving"):
             await camera.move(THERE)
 
 
@@ -207,7 +207,7 @@ async def test_preset_names_that_the_device_refuses(fake: FakeVapix) -> None:
 async def test_an_account_that_may_not_save_presets(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
         fake.status = 403
-        with pytest.raises(CameraSignInError, match="may not do this"):
+        with pytest.raises(CameraSignInError, match="does not permit this"):
             await camera.save_preset("gate two")
         fake.status = 0
 
@@ -291,7 +291,7 @@ async def test_focus_and_iris(fake: FakeVapix) -> None:
         fake.moves.clear()
         assert (await camera.set_focus("once")).autofocus is False
         assert [text for _, text in fake.moves] == ["autofocus=on", "autofocus=off"]
-        with pytest.raises(CameraError, match="offers auto, manual"):
+        with pytest.raises(CameraError, match="Supported actions: auto, manual"):
             await camera.set_iris("open")
         with pytest.raises(InputError, match="at most 1"):
             await camera.set_focus("far", step=100)

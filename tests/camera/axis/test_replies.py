@@ -111,5 +111,5 @@ def test_queue() -> None:
 
 def test_errors_of_parameters() -> None:
     with pytest.raises(VapixError, match="getting param"):
-        replies.text_of(b"# Error: Error -1 getting param in group 'root.Nothing'")
+        replies.decode_text(b"# Error: Error -1 getting param in group 'root.Nothing'")
     replies.check_done(b"")

@@ -85,7 +85,7 @@ async def test_a_wrong_password_is_reported_at_once(analytic_scene: Scene) -> No
     async with serve_virtual_cameras([device], VirtualCameraOptions(scenes=(analytic_scene.name,))) as (served,):
         url = f"rtsp://127.0.0.1:{served.unit.rtsp_port}/axis-media/media.amp"
         stream = rtsp.RtspStream(url, Credentials(USER, "wrong"), width=320, height=180, give_up_s=600)
-        with anyio.fail_after(30), pytest.raises(CameraSignInError, match="refuses the user name or the password"):
+        with anyio.fail_after(30), pytest.raises(CameraSignInError, match="rejected the user name or the password"):
             await stream.next()
         await stream.close()
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.camera.axis.scales import SpeedScale, ZoomScale, optics_of, zoom_scale
+from scope_ptz.camera.axis.scales import SpeedScale, ZoomScale, build_optics, build_zoom_scale
 from scope_ptz.geometry import AXIS_M5075_G
 
 DOCUMENTED = ZoomScale(((1, 1), (3868, 2), (7736, 3), (9999, 3.584961)))
@@ -38,13 +38,13 @@ def test_documented_speeds() -> None:
 
 
 def test_the_optics_of_the_m5075_follow_from_its_two_fields_of_view() -> None:
-    scale = zoom_scale(((1, 1), (9999, 5)), 1, 9999, 71.0, 14.0)
-    optics = optics_of(scale, ((0.0, 71.0), (1.0, 14.0)))
+    scale = build_zoom_scale(((1, 1), (9999, 5)), 1, 9999, 71.0, 14.0)
+    optics = build_optics(scale, ((0.0, 71.0), (1.0, 14.0)))
     for zoom, hfov_deg in AXIS_M5075_G.table:
         assert optics.hfov_deg(zoom) == pytest.approx(hfov_deg, abs=0.1)
 
 
 def test_digital_zoom_is_left_out() -> None:
-    scale = zoom_scale(((1, 1), (9999, 30), (19999, 360)), 1, 19999, 60.0, 2.0)
+    scale = build_zoom_scale(((1, 1), (9999, 30), (19999, 360)), 1, 19999, 60.0, 2.0)
     assert scale.max_zoom == 30
-    assert zoom_scale((), 1, 19999, 60.0, 2.0).table[-1][0] == 9999
+    assert build_zoom_scale((), 1, 19999, 60.0, 2.0).table[-1][0] == 9999

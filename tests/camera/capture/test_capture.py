@@ -18,7 +18,7 @@ from scope_ptz.blender.parity import ssim
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.camera.capture import frame_taking
 from scope_ptz.camera.capture.composition import UNSEEN
-from scope_ptz.camera.capture.frame_taking import CaptureOptions, settings_of, take_frames
+from scope_ptz.camera.capture.frame_taking import CaptureOptions, capture_settings, take_frames
 from scope_ptz.camera.capture.plan import Ranges
 from scope_ptz.camera.capture.session import CaptureSession
 from scope_ptz.camera.guard.guarded_camera import GuardedCamera
@@ -39,7 +39,7 @@ WINDOW = Region(name="window", pan_deg=(5.0, 15.0), tilt_deg=(-6.0, 4.0))
 
 def session_of(camera: Camera, folder: Path, **options: object) -> CaptureSession:
     chosen = CaptureOptions(**{"close_ups": 2, **options})  # type: ignore[arg-type]
-    return CaptureSession(folder / ".twin.capture", settings_of(camera, chosen), STARTED)
+    return CaptureSession(folder / ".twin.capture", capture_settings(camera, chosen), STARTED)
 
 
 async def taken(camera: Camera, folder: Path, **options: object) -> CaptureSession:
@@ -179,7 +179,7 @@ async def test_a_failed_capture_resumes_and_puts_the_camera_back(tmp_path: Path,
     with (tmp_path / ".twin.capture" / "frames.jsonl").open("a") as lines:
         lines.write('{"key": "cut o')  # killed while writing
     session = await taken(camera, tmp_path)
-    assert session.complete
+    assert session.is_complete
     keys = [shot.key for shot in session.shots]
     assert len(keys) == len(set(keys)) == len(camera.truths)  # no frame was taken twice
     assert len({shot.file for shot in session.shots}) == len(keys)
@@ -202,7 +202,7 @@ async def test_a_picture_that_fails_once_is_tried_again(tmp_path: Path, monkeypa
 
     camera = ShakyCamera()
     session = await taken(camera, tmp_path, close_ups=0)
-    assert session.complete
+    assert session.is_complete
     assert len(session.shots) == len(camera.truths) < camera.attempts
 
 
@@ -264,7 +264,7 @@ def change_field(camera: BlobCamera) -> CaptureOptions:
 async def test_wrong_options_are_refused(options: Callable[[BlobCamera], CaptureOptions], message: str) -> None:
     camera = BlobCamera()
     with pytest.raises(InputError, match=message):
-        settings_of(camera, options(camera))
+        capture_settings(camera, options(camera))
 
 
 async def test_a_twin_is_a_camera_without_ground_truth(tmp_path: Path) -> None:
@@ -281,4 +281,4 @@ async def test_a_twin_is_a_camera_without_ground_truth(tmp_path: Path) -> None:
         with pytest.raises(PerceptionError, match="captured from a camera and has no ground truth"):
             await asked
     with pytest.raises(InputError, match="has no variations"):
-        twin.varied(3)
+        twin.create_variation(3)

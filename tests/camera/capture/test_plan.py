@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.camera.base import CameraInfo
-from scope_ptz.camera.capture.plan import Ranges, plan_poses, without_repeats
+from scope_ptz.camera.capture.plan import Ranges, exclude_known_poses, plan_poses
 from scope_ptz.errors import InputError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 
@@ -76,4 +76,4 @@ def test_overlaps_and_numbers_of_frames_are_limited() -> None:
 def test_poses_that_are_known_are_not_taken_again() -> None:
     known = [Pose(10.0, 0.0, 4.0), Pose(179.9, 0.0, 4.0)]
     poses = [Pose(10.1, 0.1, 4.0), Pose(-180.0, 0.0, 4.0), Pose(10.0, 0.0, 1.0), Pose(30.0, 0.0, 4.0)]
-    assert without_repeats(poses, known, 17.6) == poses[2:]
+    assert exclude_known_poses(poses, known, 17.6) == poses[2:]

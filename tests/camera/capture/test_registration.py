@@ -15,7 +15,7 @@ from scope_ptz.camera.capture.adjustment import adjust, rotation_matrix, turn_de
 from scope_ptz.camera.capture.matching import PairMatches, find_features, match_frames, overlapping_pairs
 from scope_ptz.camera.capture.placed_frames import PlacedFrame
 from scope_ptz.camera.capture.registration import measured_optics
-from scope_ptz.camera.capture.tone import cells_of, gains
+from scope_ptz.camera.capture.tone import cell_means, gains
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, angle_between_deg, direction
 from scope_ptz.geometry.sphere import camera_axes
 from tests.camera.capture.worlds import HEIGHT, WIDTH, ray, seen
@@ -129,7 +129,7 @@ def test_frames_get_the_same_tone() -> None:
     placed = [PlacedFrame(camera_axes(pan, 0.0), 300.0, WIDTH, HEIGHT) for pan in (0.0, 15.0, 30.0)]
     factors = np.array([[1.0, 1.0, 1.0], [0.8, 0.85, 0.9], [1.15, 1.1, 1.0]])
     images = [np.clip(seen(place.upright) * factor, 0, 255).astype(np.uint8) for place, factor in zip(placed, factors, strict=True)]
-    found = gains(placed, [cells_of(image, None) for image in images], [(0, 1), (1, 2), (0, 2)])
+    found = gains(placed, [cell_means(image, None) for image in images], [(0, 1), (1, 2), (0, 2)])
     relative = found * factors
     assert np.allclose(relative, relative[0], rtol=0.04)
 

@@ -19,7 +19,7 @@ from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp, DeviceTimeouts
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.onvif.camera import OnvifCamera
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.accounts import Account, Role
@@ -42,7 +42,7 @@ ACCOUNTS = (
 """The drivers use the operator, unless a test says otherwise: rights beyond that are never needed to survive a fault."""
 
 WIDTH, HEIGHT = 320, 180
-QUICK = Settling(poll_s=0.01, start_s=0.15, timeout_s=3.0, picture_interval_s=0.02, picture_timeout_s=1.0)
+QUICK = SettlingCriteria(poll_s=0.01, start_s=0.15, timeout_s=3.0, picture_interval_s=0.02, picture_timeout_s=1.0)
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def set_timeouts(camera: NetworkCamera, reply_s: float = 5.0) -> None:
 
 def is_stationary(device: VirtualDevice) -> bool:
     """Return whether no motor of a virtual camera turns, whatever it reports."""
-    return device.velocity == Velocity() and device.commanded_velocity == Velocity() and not device.moving()
+    return device.velocity == Velocity() and device.commanded_velocity == Velocity() and not device.is_moving()
 
 
 def when_moved(device: VirtualDevice, action: Callable[[], object], *, after_s: float = 0.05) -> None:

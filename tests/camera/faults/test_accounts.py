@@ -60,7 +60,7 @@ async def test_administrator_can_change_presets(driver: Driver, device: VirtualD
 async def test_viewer_cannot_open_an_axis_camera(device: VirtualDevice) -> None:
     """VAPIX tells position and limits only to accounts that may control PTZ."""
     async with served(device) as camera_server:
-        with pytest.raises(CameraSignInError, match="right to control PTZ"):
+        with pytest.raises(CameraSignInError, match="operator account with PTZ control"):
             async with AXIS.opened(camera_server.port, user=VIEWER, password=VIEWER_PASSWORD):
                 pass
 

@@ -46,13 +46,15 @@ async def test_right_certificate(driver: Driver, device: VirtualDevice, certific
             await camera.drive(5.0, timeout_s=5.0)  # the dead man's switch has a connection of its own
             camera._watch.stop_now()
             await to_thread.run_sync(camera._watch.join)
-            assert not camera._watch.armed
+            assert not camera._watch.is_armed
 
 
 async def test_wrong_certificate(driver: Driver, device: VirtualDevice, certificate: Certificate) -> None:
     other = create_certificate("intruder", ("127.0.0.1",))
     async with served(device, certificate=certificate) as camera_server:
-        with pytest.raises(CertificateError, match=r"is not the configured one\. Nothing was sent") as caught:
+        with pytest.raises(
+            CertificateError, match=r"does not match the configured fingerprint\. No credentials were sent"
+        ) as caught:
             await _trust(camera_server.port, other.fingerprint)
         assert certificate.fingerprint in str(caught.value)
         # A certificate that nobody vouches for is refused if no fingerprint is configured.
@@ -94,7 +96,7 @@ async def test_fingerprint_in_the_camera_file(
         async with await open_camera("yard-gate") as opened:
             assert (await opened.camera.pose()).pan_deg == pytest.approx(device.home.pan_deg, abs=0.1)
         _write(tmp_path, camera | {"fingerprint": "00" * 32})
-        with pytest.raises(CertificateError, match="is not the configured one"):
+        with pytest.raises(CertificateError, match="does not match the configured fingerprint"):
             await open_camera("yard-gate")
         _write(tmp_path, {"camera": spec})
         with pytest.raises(CameraUnreachableError, match="certificate is not trusted"):

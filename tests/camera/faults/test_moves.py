@@ -31,7 +31,7 @@ async def test_unreachable_during_a_move(driver: Driver, analytic_scene: Scene, 
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         when_moved(device, partial(set_faults, device, down=True))
         run = await ask(camera, "pan right 90 degrees, then take a picture", tmp_path)
-        await expect_camera_error(run, CameraUnreachableError, "check")
+        await expect_camera_error(run, CameraUnreachableError, "Check the network")
         assert [call.fault for call in run.trace.calls] == ["camera"]
         await until(lambda: is_stationary(device))
         set_faults(device)
@@ -43,7 +43,7 @@ async def test_unreachable_during_a_sweep(driver: Driver, device: VirtualDevice,
         # The second move of the sweep.
         when_moved(device, lambda: when_moved(device, partial(set_faults, device, down=True), after_s=0.0), after_s=0.0)
         run = await ask(camera, "sweep the scene and count all cones", tmp_path)
-        failed = await expect_camera_error(run, CameraUnreachableError, "check")
+        failed = await expect_camera_error(run, CameraUnreachableError, "Check the network")
         # A count that is not known is not zero.
         assert failed.outcome.call.name == "count_objects"
         assert failed.outcome.result is None
@@ -62,7 +62,7 @@ async def test_slow(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> No
 
         when_moved(device, slow_down)
         run = await ask(camera, "pan right 90 degrees", tmp_path)
-        await expect_camera_error(run, CameraTimeoutError, "did not answer in time")
+        await expect_camera_error(run, CameraTimeoutError, "did not respond in time")
         set_timeouts(camera)
         await until(lambda: is_stationary(device))
         # Merely slow is no fault.
@@ -76,7 +76,7 @@ async def test_password_changed_meanwhile(driver: Driver, analytic_scene: Scene,
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         when_moved(device, partial(set_faults, device, unauthorized=True))
         run = await ask(camera, "pan right 90 degrees", tmp_path)
-        await expect_camera_error(run, CameraSignInError, "refuses the")
+        await expect_camera_error(run, CameraSignInError, "rejected the")
         await until(lambda: is_stationary(device))
         set_faults(device)
 
@@ -93,7 +93,7 @@ async def test_rebooted_during_a_move(driver: Driver, analytic_scene: Scene, tmp
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         when_moved(device, reboot)
         run = await ask(camera, "pan right 90 degrees", tmp_path)
-        await expect_camera_error(run, PositionNotReachedError, "the position never arrived")
+        await expect_camera_error(run, PositionNotReachedError, "but stopped at")
         assert is_stationary(device)
         await expect_answer(await ask(camera, "pan right 10 degrees", tmp_path))
 
@@ -122,7 +122,7 @@ async def test_move_that_does_not_end(driver: Driver, analytic_scene: Scene, tmp
     device = make_device(analytic_scene, time_scale=0.5)
     async with served(device) as camera_server, driver.opened(camera_server.port, settling={"timeout_s": 0.3}) as camera:
         run = await ask(camera, "pan right 90 degrees", tmp_path)
-        await expect_camera_error(run, PositionNotReachedError, "still moves after 0.3 s")
+        await expect_camera_error(run, PositionNotReachedError, "is still moving after 0.3 s")
         assert is_stationary(device)
 
 
@@ -131,7 +131,7 @@ async def test_somebody_else_moves_the_camera(driver: Driver, analytic_scene: Sc
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         when_moved(device, lambda: device.move(Pose(-20.0, 0.0, 1.0)))
         run = await ask(camera, "pan right 90 degrees", tmp_path)
-        await expect_camera_error(run, PositionNotReachedError, "somebody else moved the camera")
+        await expect_camera_error(run, PositionNotReachedError, "someone else may have moved the camera")
         assert is_stationary(device)
 
 

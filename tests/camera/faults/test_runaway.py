@@ -74,8 +74,8 @@ async def test_link_lost_during_a_drive(driver: Driver, device: VirtualDevice, f
         await until(lambda: is_stationary(device))
 
 
-async def test_link_lost_for_good_outlives_the_camera_object(driver: Driver, device: VirtualDevice) -> None:
-    """Closing gives up after some seconds; a process of its own goes on until the link is back."""
+async def test_watchdog_keeps_sending_stop_after_the_camera_is_closed(driver: Driver, device: VirtualDevice) -> None:
+    """Closing the camera gives up after a few seconds; the watchdog process keeps trying until the link is back."""
     async with served(device) as camera_server:
         with BadNetwork(camera_server.port) as network:
             async with driver.opened(network.port, reply_s=1.0) as camera:
@@ -203,7 +203,7 @@ async def test_command_that_moves_is_ended(driver: Driver, device: VirtualDevice
                 stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=_environment(tmp_path),
                 preexec_fn=_heed_hang_up,
             )  # fmt: skip
-            await until(lambda: device.moving() or process.returncode is not None, 60.0)
+            await until(lambda: device.is_moving() or process.returncode is not None, 60.0)
             process.send_signal(number)
             _, errors = await process.communicate()
         assert process.returncode == 130, errors

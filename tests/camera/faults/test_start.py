@@ -65,13 +65,13 @@ def expect_one_line(done: CommandResult, words: str) -> None:
 def test_unreachable_at_start(driver: Driver, ask: Ask) -> None:
     with nobody_listens() as url:
         done = ask(driver, int(url.rsplit(":", 1)[1].split("/")[0]))
-    expect_one_line(done, "Check the address, the cable and that the camera is on.")
+    expect_one_line(done, "Check the address and the cable, and check that the camera is on.")
 
 
 def test_wrong_password(driver: Driver, device: VirtualDevice, ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_CAMERA_PASSWORD", WRONG)
     with served_elsewhere(device) as port:
-        expect_one_line(ask(driver, port), "refuses the")
+        expect_one_line(ask(driver, port), "rejected the")
     assert device.destination == device.home
 
 

@@ -169,7 +169,7 @@ async def test_moves_keep_their_distance_in_time() -> None:
 
 
 async def test_soft_limits_that_leave_nothing_are_refused() -> None:
-    with pytest.raises(ConfigError, match="leave no tilt"):
+    with pytest.raises(ConfigError, match="leave no tilt range"):
         GuardedCamera(SphereCamera(), CameraRules(soft_limits=SoftLimits(min_tilt_deg=80.0)))
 
 

@@ -16,7 +16,7 @@ from scope_ptz.camera.measurement.profile import (
 )
 from scope_ptz.errors import OutputError, PackError
 from scope_ptz.factory.cameras import parse_camera
-from scope_ptz.factory.cameras.onvif import mapping_of
+from scope_ptz.factory.cameras.onvif import onvif_mapping
 
 RECORD = CalibrationRecord(
     measured_at="2026-01-01T00:00:00+00:00", pan_scale=-0.5, tilt_scale=1.0, tilt_offset_deg=5.0, pan_range_deg=(-180.0, 180.0),
@@ -57,16 +57,16 @@ def test_folder_that_cannot_be_written(tmp_path: Path) -> None:
 
 def test_measured_replaces_assumed_and_options_replace_measured() -> None:
     profile = CameraProfile(camera="x", calibration=RECORD)
-    measured = mapping_of(parse_camera("onvif://op@10.0.0.7"), None, profile.calibration)
+    measured = onvif_mapping(parse_camera("onvif://op@10.0.0.7"), None, profile.calibration)
     assert measured.pan_deg == (90.0, -90.0)
     assert measured.tilt_deg == (-85.0, 95.0)
     assert measured.fields == ((0.0, 71.0), (1.0, 14.0))
-    configured = mapping_of(parse_camera("onvif://op@10.0.0.7?pan_min=-170&pan_max=170"), (70.0, 7.0), profile.calibration)
+    configured = onvif_mapping(parse_camera("onvif://op@10.0.0.7?pan_min=-170&pan_max=170"), (70.0, 7.0), profile.calibration)
     assert configured.pan_deg == (-170.0, 170.0)
     assert configured.fields == ((0.0, 70.0), (1.0, 7.0))
 
 
 def test_what_the_device_states_is_not_replaced() -> None:
     stated = RECORD.model_copy(update={"replaces": ()})
-    mapping = mapping_of(parse_camera("onvif://op@10.0.0.7"), None, stated)
+    mapping = onvif_mapping(parse_camera("onvif://op@10.0.0.7"), None, stated)
     assert (mapping.pan_deg, mapping.tilt_deg, mapping.fields) == (None, None, None)

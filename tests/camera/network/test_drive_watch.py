@@ -27,10 +27,10 @@ def test_it_stops_after_the_timeout() -> None:
     camera = _Camera()
     watch = DriveWatch("test", camera.stop)
     watch.arm(0.05)
-    assert watch.armed
+    assert watch.is_armed
     assert camera.stopped.wait(5)
     watch.join()
-    assert not watch.armed
+    assert not watch.is_armed
     assert camera.attempts == 1
 
 
@@ -56,7 +56,7 @@ def test_it_gives_up_in_the_end() -> None:
     watch = DriveWatch("test", camera.stop, retry_s=0.01, give_up_s=1.0)
     watch.arm(0.01)
     watch.join()
-    assert not watch.armed
+    assert not watch.is_armed
     assert camera.attempts > 1
 
 

@@ -91,8 +91,8 @@ def test_the_way_round_is_no_turn() -> None:
 def test_a_frozen_picture_is_waited_for_and_then_an_error() -> None:
     check = FrozenCheck()
     for pose in (HERE, HERE, THERE):
-        assert not check.lags(b"a", pose, 0.0)
-    assert check.lags(b"a", THERE, float("inf"))
+        assert not check.is_lagging(b"a", pose, 0.0)
+    assert check.is_lagging(b"a", THERE, float("inf"))
     with pytest.raises(PictureError, match="frozen") as caught:
-        check.lags(b"a", THERE, 0.0)
+        check.is_lagging(b"a", THERE, 0.0)
     assert caught.value.fault == "frozen"

@@ -150,7 +150,7 @@ def test_redirect_is_refused() -> None:
         ('Digest realm="cam", nonce="n", algorithm=SHA-512-256', ACCOUNT, "does not offer digest"),
         ("Bearer", ACCOUNT, "does not offer digest"),
         (DIGEST, None, "requires an account"),
-        (DIGEST, ACCOUNT, "refuses the user name or the password"),
+        (DIGEST, ACCOUNT, "rejected the user name or the password"),
     ],
 )
 def test_refused_accounts(challenge: str, account: Credentials | None, message: str) -> None:

@@ -1,4 +1,4 @@
-"""Settling: the position stands, and the picture confirms it, with people in it or not."""
+"""SettlingCriteria: the position stands, and the picture confirms it, with people in it or not."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from numpy.typing import NDArray
 
 from scope_ptz.camera.network.errors import PictureNotStillError, PositionNotReachedError
-from scope_ptz.camera.network.settling import Settling, moving_fraction, wait_for_still_picture, wait_until_stationary
+from scope_ptz.camera.network.settling import SettlingCriteria, moving_fraction, wait_for_still_picture, wait_until_stationary
 from scope_ptz.geometry import Pose
 
 pytestmark = pytest.mark.anyio
 
-QUICK = Settling(poll_s=0.001, start_s=0.03, timeout_s=0.3, picture_interval_s=0.0, picture_timeout_s=0.1)
+QUICK = SettlingCriteria(poll_s=0.001, start_s=0.03, timeout_s=0.3, picture_interval_s=0.0, picture_timeout_s=0.1)
 
 
 def _scene(shift_px: float = 0.0, *, zoom: float = 1.0, noise: float = 0.0, seed: int = 0, brighter: int = 0) -> NDArray[np.uint8]:
@@ -97,7 +97,7 @@ async def test_a_camera_that_never_stands_is_an_error() -> None:
             pan += 1.0
             yield Pose(pan, 0, 1)
 
-    with pytest.raises(PositionNotReachedError, match="still moves"):
+    with pytest.raises(PositionNotReachedError, match="is still moving"):
         await wait_until_stationary(_poses(endless()), QUICK, Pose(-10, 0, 1))
 
 
@@ -107,7 +107,7 @@ async def test_a_picture_that_moves_for_a_while_is_waited_for() -> None:
     async def take() -> NDArray[np.uint8]:
         return taken.pop(0)
 
-    await wait_for_still_picture(take, Settling(picture_interval_s=0.0, picture_timeout_s=30.0))
+    await wait_for_still_picture(take, SettlingCriteria(picture_interval_s=0.0, picture_timeout_s=30.0))
     assert taken == []
 
 

@@ -72,7 +72,7 @@ def test_it_is_not_started_for_a_camera_that_is_never_driven(tmp_path: Path) -> 
 
 
 def test_it_tries_again_and_gives_up_in_the_end(tmp_path: Path) -> None:
-    device = DeviceHttp(DeviceAddress("camera", 80), Credentials("operator", SECRET)).described()
+    device = DeviceHttp(DeviceAddress("camera", 80), Credentials("operator", SECRET)).description()
     details = {"note": str(tmp_path / "note"), "attempts": str(tmp_path / "attempts"), "failures": 2}
     order = {"device": device, "function": [__name__, "write_note"], "details": details}
     assert not carry_out(order, give_up_s=0.0)

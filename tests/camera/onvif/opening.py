@@ -9,14 +9,14 @@ from typing import Any
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp, DeviceTimeouts
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.onvif.camera import OnvifCamera
 from scope_ptz.virtual_camera.accounts import Account, Role
 
 USER, PASSWORD = "operator", "hunter-2-secret"
 ACCOUNTS = [Account(USER, PASSWORD, Role.ADMINISTRATOR)]
 
-QUICK = Settling(poll_s=0.01, start_s=0.15, timeout_s=3.0, picture_interval_s=0.02, picture_timeout_s=1.0)
+QUICK = SettlingCriteria(poll_s=0.01, start_s=0.15, timeout_s=3.0, picture_interval_s=0.02, picture_timeout_s=1.0)
 
 
 @asynccontextmanager

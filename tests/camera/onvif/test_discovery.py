@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.camera.onvif.discovery import FoundDevice, discover, parse_match
+from scope_ptz.camera.onvif.discovery import DiscoveredDevice, discover, parse_match
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
@@ -15,7 +15,7 @@ MATCH = """<e:Envelope xmlns:e="http://www.w3.org/2003/05/soap-envelope" xmlns:d
 </e:Body></e:Envelope>"""
 
 
-def _match(places: str, scopes: str = "") -> list[FoundDevice]:
+def _match(places: str, scopes: str = "") -> list[DiscoveredDevice]:
     return parse_match(MATCH.format(places=places, scopes=scopes).encode(), "10.0.0.7")
 
 
@@ -24,7 +24,7 @@ async def test_virtual_camera_is_found(analytic_scene: Scene) -> None:
     camera = DiscoverableCamera(VirtualDevice(analytic_scene, name="yard gate"), 8123)
     async with serve_discovery([camera], port=0) as port:
         found = await discover(["127.0.0.1"], wait_s=0.4, port=port)
-    assert found == [FoundDevice("127.0.0.1:8123", "yard gate", "M5075-G")]
+    assert found == [DiscoveredDevice("127.0.0.1:8123", "yard gate", "M5075-G")]
     assert found[0].spec == "onvif://USER@127.0.0.1:8123"
 
 

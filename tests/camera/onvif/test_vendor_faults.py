@@ -52,7 +52,7 @@ async def test_move_status_is_not_needed(device: VirtualDevice, status: str) -> 
     device.faults = device.faults.model_copy(update={"move_status": status})
     async with driver(device) as camera:
         assert (await camera.move(THERE)).pose.pan_deg == pytest.approx(40.0, abs=0.1)
-        assert not device.moving()
+        assert not device.is_moving()
 
 
 async def test_move_status_that_never_updates(device: VirtualDevice) -> None:

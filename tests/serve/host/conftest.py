@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bench.engine.conftest import ENGINES_OWN
+from tests.bench.engine.conftest import ENGINE_WARNINGS
 
 HERE = Path(__file__).parent
 
@@ -16,13 +16,13 @@ HERE = Path(__file__).parent
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if HERE in item.path.parents:
-            for warning in ENGINES_OWN:
+            for warning in ENGINE_WARNINGS:
                 item.add_marker(pytest.mark.filterwarnings(warning))
 
 
 @pytest.fixture(autouse=True, scope="module")
-def nothing_left_behind() -> Iterator[None]:
-    """Collect what the engine left while its warnings are ignored."""
+def collect_garbage() -> Iterator[None]:
+    """Collect the garbage of the engine while its warnings are ignored."""
     yield
     gc.collect()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from scope_ptz.bench.agents.faults import agent_failed
+from scope_ptz.bench.agents.faults import agent_failure
 from scope_ptz.bench.agents.messages import (
     CallResult,
     Calls,
@@ -22,7 +22,7 @@ from scope_ptz.bench.agents.messages import (
 from scope_ptz.errors import PlannerError
 from scope_ptz.serve.bench_host.channel import HostedChannel
 from scope_ptz.serve.bench_host.links import RunWorker, WorkerSide
-from scope_ptz.serve.bench_host.wire import Begin, Finished, Offered, Ready, WorkerSettings
+from scope_ptz.serve.bench_host.wire import Begin, Finished, Ready, RunOffered, WorkerSettings
 from scope_ptz.tools.registry import schemas
 
 LIMITS = CameraLimits(
@@ -49,7 +49,7 @@ class ScriptedWorker:
         for number in range(self.runs):
             run = f"{settings.participant}-{number}"
             channel = HostedChannel(run, link.send)
-            await link.send(Offered(run=run))
+            await link.send(RunOffered(run=run))
             listening = asyncio.ensure_future(_listen(link, channel))
             attempt = asyncio.ensure_future(self._attempt(channel, number))
             await asyncio.wait({listening, attempt}, return_when=asyncio.FIRST_COMPLETED)
@@ -73,7 +73,7 @@ class ScriptedWorker:
                     async with asyncio.timeout(self.step_s if log else None):  # time counts from the first message
                         message = await channel.receive()
                 except TimeoutError:
-                    raise agent_failed("agent-timeout", "The agent took too long.") from None
+                    raise agent_failure("agent-timeout", "The agent took too long.") from None
                 log.append(message.type)
                 if self.crash_in(f"{channel.run}/{len(log)}"):
                     return False
@@ -101,4 +101,4 @@ class ScriptedWorker:
 async def _listen(link: WorkerSide, channel: HostedChannel) -> None:
     while (command := await link.receive()) is not None:
         if command.run == channel.run and not isinstance(command, Begin):
-            channel.arrived(command)
+            channel.accept(command)

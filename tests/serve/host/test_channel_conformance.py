@@ -9,8 +9,8 @@ import pytest
 
 from scope_ptz.bench.agents.messages import MAX_MESSAGE_BYTES
 from scope_ptz.serve.bench_host.channel import HostedChannel
-from scope_ptz.serve.bench_host.wire import Deliver, Event, Gone, Over, Sent
-from tests.bench.agents.conformance import ChannelConformance, Connected
+from scope_ptz.serve.bench_host.wire import AgentGone, Deliver, Event, MessageToAgent, RunEnded
+from tests.bench.agents.conformance import ChannelConformance, Connection
 
 pytestmark = pytest.mark.anyio
 RUN = "run"
@@ -24,21 +24,21 @@ class _Host:
         self.channel = HostedChannel(RUN, self.events.put)
 
     async def send(self, message: bytes) -> None:
-        self.channel.arrived(Deliver(run=RUN, line=message[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")))
+        self.channel.accept(Deliver(run=RUN, line=message[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")))
 
     async def receive(self) -> dict[str, Any]:
         event = await self.events.get()
-        if isinstance(event, Over):
+        if isinstance(event, RunEnded):
             return {"type": "end", "reason": event.reason}
-        assert isinstance(event, Sent)
+        assert isinstance(event, MessageToAgent)
         return event.message.model_dump(mode="json")
 
     async def leave(self) -> None:
-        self.channel.arrived(Gone(run=RUN, reason="The agent has gone."))
+        self.channel.accept(AgentGone(run=RUN, reason="The agent has gone."))
 
 
 class TestHostedChannel(ChannelConformance):
     @pytest.fixture
-    def connected(self) -> Connected:
+    def connection(self) -> Connection:
         host = _Host()
-        return Connected(host.channel, host)
+        return Connection(host.channel, host)

@@ -12,14 +12,14 @@ import pytest
 from mcp_types import ImageContent
 
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.signatures.keys import public_path, trusted_keys
+from scope_ptz.bench.signatures.keys import public_path, read_trusted_keys
 from scope_ptz.bench.signatures.provenance import provenance_of
 from scope_ptz.bench.tasks.expected import Number
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import CANARY, Task
 from scope_ptz.serve.bench_host.wire import EvaluationSettings
 from scope_ptz.serve.bench_host.worker import run_worker
-from tests.bench.engine.making import SCENE, TASKS
+from tests.bench.engine.yard_tasks import SCENE, TASKS
 from tests.serve.host.hosting import HELLO, Agent, Hosted, call, hosting, reply
 from tests.serve.mcp.agents import text_of
 
@@ -90,7 +90,7 @@ def check_log(host: Hosted, right: int) -> None:
     assert evaluation.card.isolation == "hosted"
     assert evaluation.card.agent == "anna"
     submission = folder / "submission.jsonl"
-    provenance = provenance_of(submission, trusted_keys([public_path(host.host.key)]))
+    provenance = provenance_of(submission, read_trusted_keys([public_path(host.host.key)]))
     assert (provenance.evaluated, provenance.faults) == ("hosted", ())
     assert json.loads(submission.read_text("utf-8").splitlines()[0])["kind"] == "header"
 
@@ -147,7 +147,7 @@ async def test_an_agent_that_gives_up_fails_and_counts(tmp_path: Path, settings:
 
 
 @pytest.mark.full
-async def test_a_restarted_host_carries_the_attempt_on(tmp_path: Path, settings: EvaluationSettings) -> None:
+async def test_a_restarted_host_resumes_the_attempt(tmp_path: Path, settings: EvaluationSettings) -> None:
     async with hosting(tmp_path / "host", run_worker, settings) as hosted, hosted.agent() as agent:
         done = [await solve(agent)]
         second = (await agent.say(HELLO))["instruction"]
@@ -175,9 +175,9 @@ async def test_the_order_differs_between_participants_and_not_between_restarts(
     from scope_ptz.bench.engine.entries import Entry
     from scope_ptz.serve.bench_host.host import Host
     from scope_ptz.serve.bench_host.worker import Worker
-    from tests.bench.engine.making import many
+    from tests.bench.engine.yard_tasks import turning_tasks
 
-    facts = [Entry.model_construct(facts=task) for task in many(30)]
+    facts = [Entry.model_construct(facts=task) for task in turning_tasks(30)]
 
     def order(name: str) -> list[str]:
         host = Host(tmp_path / "order", settings, tmp_path / "key")

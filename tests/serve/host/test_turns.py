@@ -1,4 +1,4 @@
-"""Whose turn it is: tasks one after another, each once, whatever an agent sends."""
+"""Turns: each task is attempted once, one after the other, regardless of what an agent sends."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ async def test_messages_after_the_answer_are_refused(tmp_path: Path) -> None:
      b'{"type": "reply", "text": "7", "headline": "correct"}',
      b'{"type": "calls", "calls": [{"id": "1", "name": "go_home", "arguments": {"n": NaN}}]}'],
 )  # fmt: skip
-async def test_garbage_ends_the_attempt_and_the_host_goes_on(tmp_path: Path, garbage: bytes) -> None:
+async def test_garbage_ends_the_attempt_and_the_host_continues(tmp_path: Path, garbage: bytes) -> None:
     fake = ScriptedWorker(2)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
         assert (await agent.post(garbage)).status_code == 409, "garbage begins no task"
@@ -73,7 +73,7 @@ async def test_garbage_ends_the_attempt_and_the_host_goes_on(tmp_path: Path, gar
     assert fake.log["anna-0"] == ["hello", "agent-protocol"]
 
 
-async def test_a_large_message_is_refused_and_the_host_goes_on(tmp_path: Path) -> None:
+async def test_a_large_message_is_refused_and_the_host_continues(tmp_path: Path) -> None:
     fake = ScriptedWorker(1)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
         await agent.say(HELLO)
@@ -110,7 +110,7 @@ async def test_a_wrong_version_begins_no_task(tmp_path: Path) -> None:
         assert (await agent.progress())["begun"] == 0
 
 
-async def test_a_host_that_is_restarted_carries_the_attempt_on(tmp_path: Path) -> None:
+async def test_a_restarted_host_resumes_the_attempt(tmp_path: Path) -> None:
     fake = ScriptedWorker(2)
     async with hosting(tmp_path / "host", fake.worker, SETTINGS) as hosted, hosted.agent() as agent:
         await attempt(agent)

@@ -136,7 +136,7 @@ WRONG: tuple[tuple[str, dict[str, Any], str], ...] = (
 
 
 @pytest.mark.anyio
-async def test_a_wrong_call_is_answered_with_what_to_do(free: Served) -> None:
+async def test_a_wrong_call_is_answered_with_a_remedy(free: Served) -> None:
     async with agent(free) as client:
         for tool, arguments, message in WRONG:
             result = await client.call_tool(tool, arguments)
@@ -166,7 +166,7 @@ async def test_a_panorama_is_a_link_to_a_resource(free: Served) -> None:
 
 
 @pytest.mark.parametrize("size", [(1080, 1920), (4000, 12000), (3, 5)])
-def test_pictures_fit_whatever_they_show(size: tuple[int, int]) -> None:
+def test_pictures_fit_regardless_of_their_content(size: tuple[int, int]) -> None:
     noise = np.random.default_rng(1).integers(0, 255, (*size, 3), np.uint8)  # the worst case for JPEG
     assert len(fitting_jpeg(noise, MAX_PICTURE_BYTES, 1280)) <= MAX_PICTURE_BYTES
 

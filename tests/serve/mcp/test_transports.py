@@ -280,7 +280,7 @@ def test_a_missing_package_is_named_with_its_extra(options: str) -> None:
 
 
 @pytest.mark.full
-def test_the_server_works_without_mcp_and_says_so(served: Served, tmp_path: Path) -> None:
+def test_the_server_works_without_mcp_and_reports_it(served: Served, tmp_path: Path) -> None:
     options = f"'serve', '--port', '0', '--json', '--runs-dir', {str(tmp_path)!r}"
     with subprocess.Popen([sys.executable, "-c", MISSING.format(options=options)], stdout=subprocess.PIPE, text=True) as program:
         try:

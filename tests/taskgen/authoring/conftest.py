@@ -15,7 +15,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks, build
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
-from tests.support.shared import made_once
+from tests.support.shared import create_once
 
 QUOTAS: dict[Category, int] = {
     "counting": 8,
@@ -30,20 +30,20 @@ QUOTAS: dict[Category, int] = {
 
 
 @pytest.fixture(scope="session")
-def built(analytic_scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> BuiltTasks:
+def built_tasks(analytic_scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> BuiltTasks:
     def make(folder: Path) -> None:
         tasks = build([analytic_scene], 1, QUOTAS, None, is_answerable)
         dump_tasks(tasks.tasks, folder / "tasks.jsonl")
-        (folder / "short.json").write_text(json.dumps(tasks.short))
+        (folder / "short.json").write_text(json.dumps(tasks.missing))
 
-    folder = made_once(tmp_path_factory, "built-tasks", make)
+    folder = create_once(tmp_path_factory, "built-tasks", make)
     return BuiltTasks(list(load_tasks(folder / "tasks.jsonl")), json.loads((folder / "short.json").read_text()))
 
 
 @pytest.fixture(scope="session")
-def report(built: BuiltTasks, analytic_scene: Scene) -> ValidationReport:
+def report(built_tasks: BuiltTasks, analytic_scene: Scene) -> ValidationReport:
     scenes = {analytic_scene.name: analytic_scene}
-    return anyio.run(lambda: validate(built.tasks, scenes, ground_truth_tools(scenes)))
+    return anyio.run(lambda: validate(built_tasks.tasks, scenes, ground_truth_tools(scenes)))
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.taskgen.authoring.categories.descriptor_tasks import one_of
-from scope_ptz.taskgen.authoring.noun_phrases import about, article, listing, many_of, noun_of, plain_colour, plural, unit_of
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import options_with
+from scope_ptz.taskgen.authoring.noun_phrases import (
+    answer_words,
+    join_names,
+    object_words,
+    plain_colour,
+    plural_noun,
+    pluralise,
+    singular_noun,
+    with_article,
+)
 from scope_ptz.taskgen.facts.kinds import Kind
 
 
@@ -20,11 +29,11 @@ from scope_ptz.taskgen.facts.kinds import Kind
     ],
 )  # fmt: skip
 def test_plurals(one: str, many: str) -> None:
-    assert plural(one) == many
+    assert pluralise(one) == many
 
 
 @pytest.mark.parametrize(
-    ("noun", "said"),
+    ("noun", "expected"),
     [
         ("orange cone", "an orange cone"),
         ("car", "a car"),
@@ -35,24 +44,24 @@ def test_plurals(one: str, many: str) -> None:
         ("estate agent board", "an estate agent board"),
     ],
 )
-def test_articles(noun: str, said: str) -> None:
-    assert article(noun) == said
+def test_articles(noun: str, expected: str) -> None:
+    assert with_article(noun) == expected
 
 
 def test_lists() -> None:
-    assert listing(["a"]) == "a"
-    assert listing(["a", "b", "c"], "or") == "a, b or c"
+    assert join_names(["a"]) == "a"
+    assert join_names(["a", "b", "c"], "or") == "a, b or c"
 
 
 def test_names_of_kinds() -> None:
-    assert noun_of(Kind("traffic cone", "orange")) == "orange traffic cone"
-    assert noun_of(Kind("worker", None, ("vest", "orange"))) == "worker in an orange vest"
-    assert many_of(Kind("worker", None, ("helmet", "white"))) == "workers in white helmets"
-    assert many_of(Kind("person", None, ("state", "sitting"))) == "people who are sitting"
-    assert many_of(Kind("cross")) == "pharmacy crosses"
-    assert many_of(Kind("tyre stack")) == "stacks of tyres"
-    assert unit_of(Kind("traffic cone")) == ("traffic cone", "cone")
-    assert about(Kind("car", "red")) == ("car",)
+    assert singular_noun(Kind("traffic cone", "orange")) == "orange traffic cone"
+    assert singular_noun(Kind("worker", None, ("vest", "orange"))) == "worker in an orange vest"
+    assert plural_noun(Kind("worker", None, ("helmet", "white"))) == "workers in white helmets"
+    assert plural_noun(Kind("person", None, ("state", "sitting"))) == "people who are sitting"
+    assert plural_noun(Kind("cross")) == "pharmacy crosses"
+    assert plural_noun(Kind("tyre stack")) == "stacks of tyres"
+    assert answer_words(Kind("traffic cone")) == ("traffic cone", "cone")
+    assert object_words(Kind("car", "red")) == ("car",)
 
 
 def test_shades_map_to_their_plain_colour() -> None:
@@ -62,10 +71,10 @@ def test_shades_map_to_their_plain_colour() -> None:
 
 def test_values_with_the_same_meaning_share_an_option() -> None:
     kinds = ["road", "road bicycle", "step-through bicycle", "town"]
-    assert one_of("road bicycle", kinds, "bicycle") == {
+    assert options_with("road bicycle", kinds, "bicycle") == {
         "road bicycle": ("road",),
         "step-through bicycle": ("step-through",),
         "town": (),
     }
-    assert "cast iron" in one_of("iron", ["cast iron", "iron", "stone"], "bench")["iron"]
-    assert list(one_of("box", ["box", "horsebox", "tipper"], "lorry")) == ["box", "horsebox", "tipper"]
+    assert "cast iron" in options_with("iron", ["cast iron", "iron", "stone"], "bench")["iron"]
+    assert list(options_with("box", ["box", "horsebox", "tipper"], "lorry")) == ["box", "horsebox", "tipper"]

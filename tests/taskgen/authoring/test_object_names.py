@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.simulator.models import SceneInstance
-from scope_ptz.taskgen.authoring.noun_phrases import the
-from scope_ptz.taskgen.authoring.object_names import colours_confusable, name_could_refer_to, name_in_instruction
+from scope_ptz.taskgen.authoring.noun_phrases import with_the
+from scope_ptz.taskgen.authoring.object_names import are_confusable_colours, name_could_refer_to, name_in_instruction
 
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:
@@ -53,17 +53,17 @@ def test_attributes_count_as_part_of_a_name() -> None:
 
 
 def test_articles_before_names() -> None:
-    assert the("bakery sign") == "the bakery sign"
-    assert the("dock door 5") == "dock door 5"
-    assert the(name_in_instruction("The Copper Kettle sign")) == "the Copper Kettle sign"
+    assert with_the("bakery sign") == "the bakery sign"
+    assert with_the("dock door 5") == "dock door 5"
+    assert with_the(name_in_instruction("The Copper Kettle sign")) == "the Copper Kettle sign"
     assert name_in_instruction("price of apples") == "price card for apples"
     assert name_in_instruction("pedestrian waiting") == "waiting pedestrian"
 
 
 @pytest.mark.parametrize(("one", "other"), [("navy", "blue"), ("dark red", "red"), ("grey", "silver"), ("black", None)])
 def test_boards_of_similar_colours_are_confusable(one: str, other: str | None) -> None:
-    assert colours_confusable(one, other)
+    assert are_confusable_colours(one, other)
 
 
 def test_boards_of_different_colours_are_not_confusable() -> None:
-    assert not colours_confusable("navy", "dark red") and not colours_confusable("green", "brown")
+    assert not are_confusable_colours("navy", "dark red") and not are_confusable_colours("green", "brown")

@@ -1,13 +1,13 @@
-"""Lines of text are read from top to bottom as one piece of writing, or not asked about."""
+"""Lines of text that belong together are read from top to bottom, and other combinations are not used."""
 
 from __future__ import annotations
 
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.categories.ocr_tasks import is_on_object, lines, prices
+from scope_ptz.taskgen.authoring.categories.ocr_tasks import is_on_object, order_lines, select_prices
 
 
-def written(text: str, box: BoxTuple) -> TextSighting:
+def sighting_of(text: str, box: BoxTuple) -> TextSighting:
     source = SceneText(
         id=text,
         parent="sign",
@@ -23,28 +23,29 @@ def written(text: str, box: BoxTuple) -> TextSighting:
 
 
 ROAD, AHEAD, ASIDE = (
-    written("ROAD", (0.4, 0.40, 0.6, 0.44)), written("AHEAD", (0.42, 0.46, 0.6, 0.50)), written("LEFT", (0.7, 0.41, 0.8, 0.45)),
+    sighting_of("ROAD", (0.4, 0.40, 0.6, 0.44)), sighting_of("AHEAD", (0.42, 0.46, 0.6, 0.50)),
+    sighting_of("LEFT", (0.7, 0.41, 0.8, 0.45)),
 )  # fmt: skip
 
 
 def test_lines_are_ordered_from_top_to_bottom() -> None:
-    assert lines((AHEAD, ROAD)) == (ROAD, AHEAD)
+    assert order_lines((AHEAD, ROAD)) == (ROAD, AHEAD)
 
 
-def test_separate_texts_are_not_one_piece_of_writing() -> None:
-    assert lines((ROAD, ASIDE)) is None
-    assert lines((ROAD, written("FOOT", (0.4, 0.9, 0.6, 0.94)))) is None
-    assert lines(()) is None
+def test_separate_texts_are_not_joined() -> None:
+    assert order_lines((ROAD, ASIDE)) is None
+    assert order_lines((ROAD, sighting_of("FOOT", (0.4, 0.9, 0.6, 0.94)))) is None
+    assert order_lines(()) is None
 
 
 def test_a_repeated_text_counts_once() -> None:
-    again = written("ROAD", (0.1, 0.2, 0.2, 0.24))
-    assert lines((ROAD, again)) == (again,)
+    repeated = sighting_of("ROAD", (0.1, 0.2, 0.2, 0.24))
+    assert order_lines((ROAD, repeated)) == (repeated,)
 
 
 def test_only_the_price_of_a_price_card_is_read() -> None:
-    price = written("5.00", (0.4, 0.46, 0.6, 0.5))
-    assert prices((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
+    price = sighting_of("5.00", (0.4, 0.46, 0.6, 0.5))
+    assert select_prices((sighting_of("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
 
 
 def test_a_plate_next_to_an_object_is_not_a_text_on_it() -> None:

@@ -12,7 +12,7 @@ from scope_ptz.agent.records import RunLabels
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
-from scope_ptz.taskgen.generating.draft_schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.draft_schema import Draft, parse_draft, parse_reply, reply_schema
 from scope_ptz.taskgen.generating.operator_runs import read_runs
 from tests.cli.conftest import Scope, scenes, scope
 from tests.support import misbehaving as m
@@ -23,16 +23,16 @@ TO_YARD = {"moves": [{"preset": "yard"}]}
 BALL, BLOCK, BOARD = {"category": "ball"}, {"category": "block"}, {"category": "board"}
 
 
-def draft(instruction: str, category: str, program: str, expected: str, **further: Any) -> dict[str, Any]:
-    given: dict[str, Any] = {"start": "board", "views": [TO_YARD], "things": [BALL]}
-    return {"instruction": instruction, "category": category, "program": program, "expected": expected, **given, **further}
+def draft(instruction: str, category: str, program: str, expected: str, **extra: Any) -> dict[str, Any]:
+    defaults: dict[str, Any] = {"start": "board", "views": [TO_YARD], "things": [BALL]}
+    return {"instruction": instruction, "category": category, "program": program, "expected": expected, **defaults, **extra}
 
 
 COUNT = draft("Go to the yard preset and count the balls.", "counting", "count", "3")
-TURNED = {"moves": [{"preset": "yard"}, {"pan_deg": 30.0}]}
+TURN_FROM_YARD = {"moves": [{"preset": "yard"}, {"pan_deg": 30.0}]}
 GOOD = [
     COUNT,
-    draft("From the yard preset turn thirty degrees right: how many balls?", "counting", "count", "two", views=[TURNED]),
+    draft("From the yard preset turn thirty degrees right: how many balls?", "counting", "count", "two", views=[TURN_FROM_YARD]),
     draft(
         "Bring up the board preset and tell me what the board says.", "ocr", "text", "NO ENTRY",
         start="yard", views=[{"moves": [{"preset": "board"}]}], things=[BOARD],
@@ -50,8 +50,8 @@ BAD = {
     "does not name the preset 'yard'": {**COUNT, "instruction": "Count the balls there."},
     "does not name the ball": {**COUNT, "instruction": "Count the cars at yard."},
     "no 'dragon'": {**COUNT, "instruction": "Count the dragons at yard.", "things": [{"category": "dragon"}]},
-    "makes no task of the category": {**COUNT, "category": "ocr"},
-    "either names a preset or turns": {**COUNT, "views": [{"moves": [{"preset": "yard", "pan_deg": 3.0}]}]},
+    "is not allowed in the category": {**COUNT, "category": "ocr"},
+    "either name a preset": {**COUNT, "views": [{"moves": [{"preset": "yard", "pan_deg": 3.0}]}]},
     "beyond the camera's limits": {
         **COUNT, "instruction": "Tilt down 60 at yard and count the balls.",
         "views": [{"moves": [{"preset": "yard"}, {"tilt_deg": -60.0}]}],
@@ -68,11 +68,11 @@ BAD = {
     "does not say that it is about everything around": {**COUNT, "views": [{**TO_YARD, "sweep": True}]},
     "Input should be": "count the balls",
 }  # fmt: skip
-NEAR = {**COUNT, "instruction": "Please go to the yard preset and count the balls."}
-WANTED = ("--want", "counting=2", "--want", "ocr=1", "--want", "comparative=1", "--want", "single_call=1")
+NEAR_DUPLICATE = {**COUNT, "instruction": "Please go to the yard preset and count the balls."}
+WANT_OPTIONS = ("--want", "counting=2", "--want", "ocr=1", "--want", "comparative=1", "--want", "single_call=1")
 
 
-def says(*drafts: Any) -> m.Behaviour:
+def reply_with_drafts(*drafts: Any) -> m.Behaviour:
     return m.good(m.Say(json.dumps({"drafts": drafts})))
 
 
@@ -80,13 +80,15 @@ def says(*drafts: Any) -> m.Behaviour:
 def test_good_drafts_are_kept_and_no_request_is_repeated(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made"
     more = [draft("Look at the yard preset: is there a ball?", "descriptor", "exists", "yes")]
-    with m.Misbehaving([says(*GOOD, NEAR, COUNT), m.good(m.Say("Sorry, no.")), says(*more)]) as server:
+    with m.Misbehaving(
+        [reply_with_drafts(*GOOD, NEAR_DUPLICATE, COUNT), m.good(m.Say("Sorry, no.")), reply_with_drafts(*more)]
+    ) as server:
         options = ("bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out))
-        first = scope(*options, *WANTED, "--requests", "1")
+        first = scope(*options, *WANT_OPTIONS, "--requests", "1")
         assert first.code == 0, first.err
-        second = scope(*options, *WANTED, "--want", "descriptor=1", "--requests", "3")
+        second = scope(*options, *WANT_OPTIONS, "--want", "descriptor=1", "--requests", "3")
         assert second.code == 0, second.err
-        third = scope(*options, *WANTED, "--requests", "3")
+        third = scope(*options, *WANT_OPTIONS, "--requests", "3")
         assert third.code == 0 and len(server.requests) == 3
     tasks = load_tasks(out / "tasks.jsonl")
     assert [task.category for task in tasks] == ["counting", "counting", "ocr", "comparative", "single_call", "descriptor"]
@@ -100,12 +102,12 @@ def test_good_drafts_are_kept_and_no_request_is_repeated(scope: Scope, tmp_path:
 
 
 def test_content_of_the_prompt(scope: Scope, tmp_path: Path) -> None:
-    with m.Misbehaving([says(GOOD[4])]) as server:
-        done = scope(
+    with m.Misbehaving([reply_with_drafts(GOOD[4])]) as server:
+        result = scope(
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--out", str(tmp_path / "made"),
             "--model", "drafter", "--want", "single_call=1",
         )  # fmt: skip
-    assert done.code == 0, done.err
+    assert result.code == 0, result.err
     (request,) = server.requests
     content = json.loads(request.data["messages"][1]["content"])
     assert content["inventory"]["ball"] == {"no colour": 5}
@@ -119,17 +121,17 @@ def test_content_of_the_prompt(scope: Scope, tmp_path: Path) -> None:
 
 def test_wrong_and_malicious_drafts_are_dropped_with_a_reason(scope: Scope, tmp_path: Path) -> None:
     out, rows = tmp_path / "made", list(BAD.values())
-    with m.Misbehaving([says(COUNT, *rows[:9]), says(NEAR, *rows[9:])]) as server:
-        done = scope(
+    with m.Misbehaving([reply_with_drafts(COUNT, *rows[:9]), reply_with_drafts(NEAR_DUPLICATE, *rows[9:])]) as server:
+        result = scope(
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
             "--want", "counting=5", "--want", "ocr=5", "--want", "multi_step_reasoning=5", "--requests", "2",
         )  # fmt: skip
         content = json.loads(server.requests[1].data["messages"][1]["content"])
-    assert done.code == 1 and "still missing: 4 of counting" in done.err
+    assert result.code == 1 and "still missing: 4 of counting" in result.err
     entries = DraftLedger(out).entries
     assert [entry.fate for entry in entries] == ["kept", *["dropped"] * 9, "near-duplicate", *["dropped"] * (len(rows) - 9)]
     reasons = [entry.reason for entry in entries if entry.fate == "dropped"]
-    assert [wanted for wanted, reason in zip(BAD, reasons, strict=True) if wanted not in reason] == []
+    assert [expected_reason for expected_reason, reason in zip(BAD, reasons, strict=True) if expected_reason not in reason] == []
     assert any("does not name the ball" in reason for reason in content["why earlier drafts were dropped"])
     assert {path.name for path in out.iterdir()} == {"drafts.jsonl", "tasks.jsonl", "review.md"}
     assert not (tmp_path / "owned").exists()
@@ -138,43 +140,45 @@ def test_wrong_and_malicious_drafts_are_dropped_with_a_reason(scope: Scope, tmp_
 
 def test_unusable_replies_end_generation_without_losing_tasks(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made"
-    with m.Misbehaving([says(COUNT), m.good(m.Say("no")), m.good(m.Say("[")), m.good(m.Say('{"drafts": 3}'))]) as server:
-        done = scope(
+    with m.Misbehaving(
+        [reply_with_drafts(COUNT), m.good(m.Say("no")), m.good(m.Say("[")), m.good(m.Say('{"drafts": 3}'))]
+    ) as server:
+        result = scope(
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
             "--want", "counting=5",
         )  # fmt: skip
-    assert done.code == 1 and "3 consecutive requests returned no drafts" in done.err
+    assert result.code == 1 and "3 consecutive requests returned no drafts" in result.err
     assert len(load_tasks(out / "tasks.jsonl")) == 1
 
 
 @pytest.mark.parametrize("want", ["counting", "sums=3", "counting=0", "counting=-1"])
 def test_an_invalid_number_of_tasks_is_reported(scope: Scope, tmp_path: Path, want: str) -> None:
-    done = scope(
+    result = scope(
         "bench", "generate", "--scene", "analytic-yard", "--url", "http://127.0.0.1:9/v1", "--out", str(tmp_path), "--want", want
     )
-    assert done.code == 2 and "counting=5" in done.err
+    assert result.code == 2 and "counting=5" in result.err
 
 
 def test_replies_may_be_fenced_or_a_bare_list() -> None:
-    assert read_reply(f"```json\n{json.dumps([COUNT])}\n```") == [COUNT]
-    assert isinstance(read_draft(COUNT), Draft)
+    assert parse_reply(f"```json\n{json.dumps([COUNT])}\n```") == [COUNT]
+    assert isinstance(parse_draft(COUNT), Draft)
     with pytest.raises(ValueError, match="not JSON"):
-        read_reply("[" * 100_000)
+        parse_reply("[" * 100_000)
     with pytest.raises(ValueError, match="longer"):
-        read_reply("x" * 300_000)
-    assert "instruction" in str(read_draft({**COUNT, "instruction": ["a"]}))
-    assert "pan_deg" in str(read_draft({**COUNT, "views": [{"moves": [{"pan_deg": float("nan")}]}]}))
+        parse_reply("x" * 300_000)
+    assert "instruction" in str(parse_draft({**COUNT, "instruction": ["a"]}))
+    assert "pan_deg" in str(parse_draft({**COUNT, "views": [{"moves": [{"pan_deg": float("nan")}]}]}))
 
 
 def test_operator_runs_are_summarised_with_their_feedback(scope: Scope, tmp_path: Path) -> None:
-    done = scope("ask", "count the balls", "--scene", "analytic-yard", "--json")
-    assert done.code == 0, done.err
+    result = scope("ask", "count the balls", "--scene", "analytic-yard", "--json")
+    assert result.code == 0, result.err
     (run,) = (tmp_path / "runs").iterdir()
     feedback = tmp_path / "feedback.jsonl"
     feedback.write_text(json.dumps({"run": run.name, "rating": "bad", "note": "It missed one."}) + "\n")
-    (read,) = read_runs(tmp_path / "runs", feedback)
-    assert read.summary()["asked"] == "count the balls" and read.summary()["operator said"] == "bad: It missed one."
-    assert read.trace.started.labels == RunLabels(perception_note=read.trace.started.labels.perception_note, seed=0)
+    (operator_run,) = read_runs(tmp_path / "runs", feedback)
+    assert operator_run.summary()["asked"] == "count the balls" and operator_run.summary()["operator said"] == "bad: It missed one."
+    assert operator_run.trace.started.labels == RunLabels(perception_note=operator_run.trace.started.labels.perception_note, seed=0)
     feedback.write_text(json.dumps({"run": "../elsewhere", "rating": "bad"}) + "\n")
     with pytest.raises(InputError, match="not in"):
         read_runs(tmp_path / "runs", feedback)

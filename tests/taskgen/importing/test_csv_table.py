@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.importing.csv_table import read_table
-from scope_ptz.taskgen.importing.structured_cells import structure
+from scope_ptz.taskgen.importing.structured_cells import parse_cell
 
 HEADER = "question_id,question,expected_answer"
 
@@ -43,28 +43,28 @@ def test_many_formats_give_the_same_rows(tmp_path: Path, content: bytes | str) -
 
 
 def test_line_numbers_are_those_of_the_file(tmp_path: Path) -> None:
-    found = table(tmp_path, f'{HEADER}\n\n1,"two\nlines, ""quoted""",5\n\n2,one,6\n')
-    assert [row.line for row in found.rows] == [3, 6]
-    assert found.rows[0].cells["question"] == 'two\nlines, "quoted"'
+    parsed = table(tmp_path, f'{HEADER}\n\n1,"two\nlines, ""quoted""",5\n\n2,one,6\n')
+    assert [row.line for row in parsed.rows] == [3, 6]
+    assert parsed.rows[0].cells["question"] == 'two\nlines, "quoted"'
 
 
 def test_ragged_rows_keep_all_cells(tmp_path: Path) -> None:
     long, short = table(tmp_path, f"{HEADER}\n1,a,b,c,d\n2,a\n").rows
-    assert (long.extra, long.short) == (("c", "d"), 0)
-    assert (short.extra, short.short) == ((), 1)
+    assert (long.extra, long.missing) == (("c", "d"), 0)
+    assert (short.extra, short.missing) == ((), 1)
     assert short.cells["expected_answer"] == ""
 
 
 def test_another_encoding_is_reported(tmp_path: Path) -> None:
-    found = table(tmp_path, f"{HEADER}\n1,caf\xe9?,5\n".encode("cp1252"))
-    assert found.rows[0].cells["question"] == "café?"
-    assert found.encoding == "cp1252"
-    assert any("Windows-1252" in note for note in found.notes)
+    parsed = table(tmp_path, f"{HEADER}\n1,caf\xe9?,5\n".encode("cp1252"))
+    assert parsed.rows[0].cells["question"] == "café?"
+    assert parsed.encoding == "cp1252"
+    assert any("Windows-1252" in note for note in parsed.notes)
 
 
 def test_an_open_quotation_mark_is_reported(tmp_path: Path) -> None:
-    found = table(tmp_path, f'{HEADER}\n1,"never closed,5\n2,x,6\n')
-    assert any("never closed" in note for note in found.notes)
+    parsed = table(tmp_path, f'{HEADER}\n1,"never closed,5\n2,x,6\n')
+    assert any("never closed" in note for note in parsed.notes)
 
 
 @pytest.mark.parametrize(
@@ -98,10 +98,10 @@ def test_output_of_a_csv_writer_is_read_back(tmp_path_factory: pytest.TempPathFa
     writer = csv.writer(out)
     writer.writerow(("question", "expected_answer"))
     writer.writerows(rows)
-    found = table(tmp_path_factory.mktemp("csv"), out.getvalue())
-    kept = [(a.strip(), b.strip()) for a, b in rows if a.strip() or b.strip()]
-    assert [(row.cells["question"], row.cells["expected_answer"]) for row in found.rows] == kept
-    assert len({row.line for row in found.rows}) == len(kept)
+    parsed = table(tmp_path_factory.mktemp("csv"), out.getvalue())
+    expected = [(a.strip(), b.strip()) for a, b in rows if a.strip() or b.strip()]
+    assert [(row.cells["question"], row.cells["expected_answer"]) for row in parsed.rows] == expected
+    assert len({row.line for row in parsed.rows}) == len(expected)
 
 
 @given(st.binary(max_size=400))
@@ -109,10 +109,10 @@ def test_output_of_a_csv_writer_is_read_back(tmp_path_factory: pytest.TempPathFa
 def test_any_bytes_give_rows_or_one_clear_error(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
     for start in (b"", b"question,expected_answer\n"):
         try:
-            found = table(tmp_path_factory.mktemp("csv"), start + content)
+            parsed = table(tmp_path_factory.mktemp("csv"), start + content)
         except InputError:
             continue
-        assert {"question", "expected_answer"} <= set(found.columns)
+        assert {"question", "expected_answer"} <= set(parsed.columns)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_any_bytes_give_rows_or_one_clear_error(tmp_path_factory: pytest.TempPat
     ],
 )  # fmt: skip
 def test_structured_cells(cell: str, content: Any) -> None:
-    assert structure(cell) == content
+    assert parse_cell(cell) == content
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_structured_cells(cell: str, content: Any) -> None:
 )
 def test_unreadable_cells_are_rejected(cell: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
-        structure(cell)
+        parse_cell(cell)
 
 
 LEAF = st.none() | st.booleans() | st.integers() | CELL
@@ -147,5 +147,5 @@ LEAF = st.none() | st.booleans() | st.integers() | CELL
 def test_json_is_read_as_json_and_as_python(content: Any) -> None:
     if not isinstance(content, list | dict) or not content:
         return
-    assert structure(json.dumps(content)) == content
-    assert structure(repr(content)) == content
+    assert parse_cell(json.dumps(content)) == content
+    assert parse_cell(repr(content)) == content

@@ -18,11 +18,11 @@ from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, is_impor
 from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.importing.import_report import Imported, import_file, report_lines
+from scope_ptz.taskgen.importing.import_report import ImportedFile, import_file, report_lines
 from scope_ptz.taskgen.importing.paper_names import category_of, scope_of
 from scope_ptz.taskgen.importing.row_checks import answer_in_question
 from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
-from tests.bench.making import counted, play
+from tests.bench.sample_runs import count_step, play
 
 COLUMNS = (
     "question_id", "file_location", "preset_start", "presets_available", "question", "expected_answer", "question_type",
@@ -36,7 +36,7 @@ TYPICAL = {
 }  # fmt: skip
 
 
-def imported(tmp_path: Path, *rows: dict[str, str], names: SceneNames = NAMES) -> Imported:
+def import_rows(tmp_path: Path, *rows: dict[str, str], names: SceneNames = NAMES) -> ImportedFile:
     path = tmp_path / "Paper Tasks.csv"
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS)
@@ -45,13 +45,13 @@ def imported(tmp_path: Path, *rows: dict[str, str], names: SceneNames = NAMES) -
     return import_file(path, names)
 
 
-def kinds(done: Imported, at: int = 0) -> set[str]:
-    return {finding.kind for finding in done.findings[done.rows[at].line]}
+def kinds(result: ImportedFile, index: int = 0) -> set[str]:
+    return {finding.kind for finding in result.findings[result.rows[index].line]}
 
 
 def test_a_typical_row(tmp_path: Path) -> None:
-    done = imported(tmp_path, {"answer_view": "full_scene", "difficulty": "Hard", "evaluation_notes": "Any wording."})
-    (task,) = done.tasks
+    result = import_rows(tmp_path, {"answer_view": "full_scene", "difficulty": "Hard", "evaluation_notes": "Any wording."})
+    (task,) = result.tasks
     facts = task.facts
     assert (facts.id, facts.dataset, facts.stratum) == ("imported-paper-tasks-1", "imported-paper-tasks", "imported")
     assert (facts.scene, facts.preset, facts.viewpoint) == ("parking-lot", "gate", "mast")
@@ -98,10 +98,10 @@ def test_tools_and_arguments(
         "python": (repr([theirs]), repr([{"tool": theirs, "args": arguments}])),
     }
     order, args = cells[form]
-    done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": args})
-    ((call,),) = (task.calls for task in done.tasks)
+    result = import_rows(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": args})
+    ((call,),) = (task.calls for task in result.tasks)
     assert (call.tool, call.arguments) == (ours, required)
-    assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unreadable-cell"}
+    assert not kinds(result) & {"wrong-arguments", "unknown-tool", "unreadable-cell"}
 
 
 @pytest.mark.parametrize(
@@ -120,35 +120,37 @@ def test_tools_and_arguments(
     ],
 )
 def test_wrong_arguments_are_reported_and_the_row_still_runs(tmp_path: Path, tool: str, arguments: dict[str, Any]) -> None:
-    done = imported(tmp_path, {"expected_tool_order_json": json.dumps([tool]), "expected_tool_args_json": json.dumps([arguments])})
-    assert "wrong-arguments" in kinds(done)
-    assert len(done.tasks) == 1
+    result = import_rows(
+        tmp_path, {"expected_tool_order_json": json.dumps([tool]), "expected_tool_args_json": json.dumps([arguments])}
+    )
+    assert "wrong-arguments" in kinds(result)
+    assert len(result.tasks) == 1
 
 
 def test_one_tool_is_expected_several_times(tmp_path: Path) -> None:
-    done = imported(
+    result = import_rows(
         tmp_path,
         {
             "expected_tool_order_json": '["ptz_adjust", "ptz_adjust"]',
             "expected_tool_args_json": '{"ptz_adjust": [{"pan_deg": 5}, {"pan_deg": 6}]}',
         },
     )
-    assert [call.arguments["pan_deg"].equals for call in done.tasks[0].calls] == [5, 6]
+    assert [call.arguments["pan_deg"].equals for call in result.tasks[0].calls] == [5, 6]
 
 
 @pytest.mark.parametrize("zoom", [{"zoom_percent": 0}, {"zoom_factor": 1}, {}])
 def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, zoom: dict[str, Any]) -> None:
-    wanted = json.dumps([{"pan_deg": 20, "tilt_deg": 0, **zoom}])
-    done = imported(tmp_path, {"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": wanted})
-    (task,) = done.tasks
-    for further, met in (
+    arguments = json.dumps([{"pan_deg": 20, "tilt_deg": 0, **zoom}])
+    result = import_rows(tmp_path, {"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": arguments})
+    (task,) = result.tasks
+    for extra, passed in (
         ({}, True),
         ({"zoom_percent": 0.0}, True),
         ({"zoom_factor": 2.0}, not zoom),
         ({"zoom_limit": "in"}, not zoom),
     ):
-        check = check_imported_calls(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
-        assert check.passed is met, (further, check.reason)
+        check = check_imported_calls(task, play([("adjust_ptz", {"pan_deg": 20.0, **extra})], "Done."))
+        assert check.passed is passed, (extra, check.reason)
 
 
 @pytest.mark.parametrize(
@@ -158,9 +160,9 @@ def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, 
         (["ptz_adjust", None], None, "unknown-tool", "null names no tool"),
         (["ptz_adjust", True], None, "unknown-tool", "true names no tool"),
         (["ptz_adjust", {"tool": 7}], None, "unknown-tool", '{"tool": 7} names no tool'),
-        (["count_pointing"], {"object_of_interest": ["a", "b"]}, "wrong-arguments", '["a", "b"], which is no text'),
-        (["count_pointing"], [{"object_of_interest": 5}], "wrong-arguments", "object_of_interest is 5, which is no text"),
-        (["count_pointing"], {"object_of_interest": "a", "name": "b"}, "unchecked-argument", 'name is "b", and object_of_interest'),
+        (["count_pointing"], {"object_of_interest": ["a", "b"]}, "wrong-arguments", '["a", "b"], which is not text'),
+        (["count_pointing"], [{"object_of_interest": 5}], "wrong-arguments", "object_of_interest is 5, which is not text"),
+        (["count_pointing"], {"object_of_interest": "a", "name": "b"}, "unchecked-argument", 'name is "b", but object_of_interest'),
         (["count_pointing"], {"ptz_adjust": {"pan_deg": 5}}, "unchecked-argument", "ptz_adjust: "),
         (["count_pointing"], [{}, {"pan_deg": 5}], "unchecked-argument", '{"pan_deg": 5} (number 2)'),
         (["count_pointing"], ["cars"], "unchecked-argument", '"cars" (number 1)'),
@@ -172,10 +174,10 @@ def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, 
 )
 def test_unused_parts_are_reported(tmp_path: Path, order: Any, arguments: Any, kind: str, detail: str) -> None:
     cells = {"expected_tool_order_json": json.dumps(order), "expected_tool_args_json": json.dumps(arguments)}
-    done = imported(tmp_path, cells)
-    found = [finding for finding in done.findings[done.rows[0].line] if detail in finding.detail]
-    assert [finding.kind for finding in found] == [kind], done.findings
-    assert len(done.tasks) == 1
+    result = import_rows(tmp_path, cells)
+    found = [finding for finding in result.findings[result.rows[0].line] if detail in finding.detail]
+    assert [finding.kind for finding in found] == [kind], result.findings
+    assert len(result.tasks) == 1
 
 
 def test_used_parts_are_not_reported(tmp_path: Path) -> None:
@@ -189,16 +191,16 @@ def test_used_parts_are_not_reported(tmp_path: Path) -> None:
         ('["count_pointing"]', {"object_of_interest": "cars", "view_type": "full"}),
         ('["query_answer"]', {"instruction": "what?", "object_of_interest": "van"}),
     ):
-        done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": json.dumps(arguments)})
-        assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unchecked-argument"}, (arguments, done.findings)
+        result = import_rows(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": json.dumps(arguments)})
+        assert not kinds(result) & {"wrong-arguments", "unknown-tool", "unchecked-argument"}, (arguments, result.findings)
 
 
 def test_a_file_without_rows_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "empty.csv"
     path.write_text("question,expected_answer\n", "utf-8")
-    done = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
-    assert done.exit_code == 1
-    assert "contains a header but no rows" in done.stderr and "--map" not in done.stderr
+    result = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
+    assert result.exit_code == 1
+    assert "contains a header but no rows" in result.stderr and "--map" not in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -220,7 +222,7 @@ def test_views_by_their_spellings() -> None:
     ]  # fmt: skip
 
 
-FOUND: list[tuple[str, list[dict[str, str]]]] = [
+FINDINGS: list[tuple[str, list[dict[str, str]]]] = [
     ("empty-question", [{"question": ""}]),
     ("nothing-expected", [{"expected_answer": "", "expected_tool_order_json": ""}]),
     ("unknown-category", [{"eval_category": "poetry"}]),
@@ -243,19 +245,19 @@ FOUND: list[tuple[str, list[dict[str, str]]]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("kind", "rows"), FOUND)
+@pytest.mark.parametrize(("kind", "rows"), FINDINGS)
 def test_findings_are_reported_for_every_affected_row(tmp_path: Path, kind: str, rows: list[dict[str, str]]) -> None:
-    done = imported(tmp_path, *rows)
-    assert all(kind in kinds(done, at) for at in range(len(rows)))
-    assert kind in "\n".join(report_lines(done))
-    blocked = any(finding.blocks for finding in done.findings[done.rows[0].line])
-    assert len(done.tasks) == (0 if blocked else len(rows))
-    assert len(done.as_dict()["each"]) == len(rows), "no row is dropped"
+    result = import_rows(tmp_path, *rows)
+    assert all(kind in kinds(result, index) for index in range(len(rows)))
+    assert kind in "\n".join(report_lines(result))
+    blocked = any(finding.blocks for finding in result.findings[result.rows[0].line])
+    assert len(result.tasks) == (0 if blocked else len(rows))
+    assert len(result.as_dict()["each"]) == len(rows), "no row is dropped"
 
 
 COUNT_FULL = '[{"tool": "count_pointing", "args": {"object_of_interest": "cones", "view_type": "full_panorama"}}]'
 GO_GATE = {"question": "Go to preset gate and count", "expected_tool_order_json": '["go_to_preset", "count_pointing"]'}
-DISAGREE: list[tuple[dict[str, str], str]] = [
+CONTRADICTIONS: list[tuple[dict[str, str], str]] = [
     ({"expected_tool_order_json": COUNT_FULL.replace("full_panorama", "full"),
       "expected_tool_args_json": '[{"view_type": "current"}]'}, "the expected tools say view 'full', the arguments say 'current'"),
     ({"expected_tool_order_json": '[{"tool": "track_object", "args": {"duration": 5}}]',
@@ -276,12 +278,12 @@ DISAGREE: list[tuple[dict[str, str], str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("row", "detail"), DISAGREE)
+@pytest.mark.parametrize(("row", "detail"), CONTRADICTIONS)
 def test_fields_that_contradict_each_other_are_reported(tmp_path: Path, row: dict[str, str], detail: str) -> None:
-    done = imported(tmp_path, row)
-    found = [finding.detail for finding in done.findings[done.rows[0].line] if finding.kind == "fields-disagree"]
-    assert any(detail in text for text in found), (found, done.findings)
-    assert done.tasks, "a contradiction is reported, and the row can still be run"
+    result = import_rows(tmp_path, row)
+    found = [finding.detail for finding in result.findings[result.rows[0].line] if finding.kind == "fields-disagree"]
+    assert any(detail in text for text in found), (found, result.findings)
+    assert result.tasks, "a contradiction is reported, and the row can still be run"
 
 
 @pytest.mark.parametrize(
@@ -297,11 +299,11 @@ def test_fields_that_contradict_each_other_are_reported(tmp_path: Path, row: dic
          "expected_tool_args_json": '{"ptz_adjust": {"pan_deg": 20.0}}'},
     ],
 )  # fmt: skip
-def test_fields_that_say_the_same_in_other_words_are_no_contradiction(tmp_path: Path, row: dict[str, str]) -> None:
-    assert "fields-disagree" not in kinds(imported(tmp_path, row))
+def test_equivalent_fields_are_no_contradiction(tmp_path: Path, row: dict[str, str]) -> None:
+    assert "fields-disagree" not in kinds(import_rows(tmp_path, row))
 
 
-MERGED = SceneNames(
+MERGED_NAMES = SceneNames(
     NAMES.scenes, SceneNameMap(presets={"parking-lot": {"Preset 1": "gate", "Preset 2": "gate", "Entrance": "gate", "*": "bridge"}})
 )
 
@@ -309,42 +311,42 @@ MERGED = SceneNames(
 @pytest.mark.parametrize(
     ("first", "second"), [("Preset 1", "Preset 2"), ("Gate", "Preset 1"), ("Preset 8", "Preset 9"), ("Entrance", "gate")]
 )
-def test_presets_that_were_mapped_to_one_are_not_duplicates(tmp_path: Path, first: str, second: str) -> None:
-    same = imported(tmp_path, {"preset_start": first}, {"preset_start": second}, names=MERGED)
+def test_presets_mapped_to_the_same_preset_are_not_duplicates(tmp_path: Path, first: str, second: str) -> None:
+    same = import_rows(tmp_path, {"preset_start": first}, {"preset_start": second}, names=MERGED_NAMES)
     assert same.tasks[0].facts.preset == same.tasks[1].facts.preset
     assert "duplicate" not in kinds(same, 0) | kinds(same, 1)
-    assert any("2 presets of the file are mapped to the preset" in note for note in same.notes), same.notes
-    other = imported(tmp_path, {"preset_start": first}, {"preset_start": second, "expected_answer": "six"}, names=MERGED)
+    assert any("2 presets in the file are mapped to the preset" in note for note in same.notes), same.notes
+    other = import_rows(tmp_path, {"preset_start": first}, {"preset_start": second, "expected_answer": "six"}, names=MERGED_NAMES)
     assert "contradiction" not in kinds(other, 0) | kinds(other, 1)
 
 
 @pytest.mark.parametrize(
     ("first", "second"), [("Preset 1", "preset-1"), ("Gate", "preset gate"), ("", "home"), ("gate", ""), ("Preset 8", "PRESET_8")]
 )
-def test_other_spellings_of_one_preset_are_duplicates(tmp_path: Path, first: str, second: str) -> None:
-    spelled = MERGED.mapping.presets["parking-lot"] | {"preset-1": "gate"}
-    names = SceneNames(NAMES.scenes, SceneNameMap(presets={"parking-lot": spelled}))
-    done = imported(tmp_path, {"preset_start": first}, {"preset_start": second}, names=names)
-    assert "duplicate" in kinds(done, 0) & kinds(done, 1)
-    assert not any("are mapped to the preset" in note for note in done.notes)
+def test_other_spellings_of_the_same_preset_are_duplicates(tmp_path: Path, first: str, second: str) -> None:
+    spellings = MERGED_NAMES.mapping.presets["parking-lot"] | {"preset-1": "gate"}
+    names = SceneNames(NAMES.scenes, SceneNameMap(presets={"parking-lot": spellings}))
+    result = import_rows(tmp_path, {"preset_start": first}, {"preset_start": second}, names=names)
+    assert "duplicate" in kinds(result, 0) & kinds(result, 1)
+    assert not any("are mapped to the preset" in note for note in result.notes)
 
 
-def test_scenes_that_were_mapped_to_one_are_not_duplicates(tmp_path: Path) -> None:
+def test_scenes_mapped_to_the_same_scene_are_not_duplicates(tmp_path: Path) -> None:
     names = SceneNames(NAMES.scenes, SceneNameMap(scenes={"*": "parking-lot"}))
-    done = imported(
+    result = import_rows(
         tmp_path, {"file_location": "a.blend"}, {"file_location": "b.blend"}, {"file_location": "x/a.blend"}, names=names
     )
-    assert "duplicate" not in kinds(done, 1)
-    assert "duplicate" in kinds(imported(tmp_path, {"file_location": "a.blend"}, {"file_location": "a.blend"}, names=names), 0)
+    assert "duplicate" not in kinds(result, 1)
+    assert "duplicate" in kinds(import_rows(tmp_path, {"file_location": "a.blend"}, {"file_location": "a.blend"}, names=names), 0)
 
 
 def test_an_unknown_category_is_reported_when_another_column_replaces_it(tmp_path: Path) -> None:
-    done = imported(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
-    (task, usual) = done.tasks
+    result = import_rows(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
+    (task, usual) = result.tasks
     assert (task.facts.category, usual.facts.category) == ("location", "counting")
-    (finding,) = [f for f in done.findings[done.rows[0].line] if f.kind == "unknown-value"]
+    (finding,) = [f for f in result.findings[result.rows[0].line] if f.kind == "unknown-value"]
     assert finding.detail == "eval_category: Telepathy; read as location, by question_type: location"
-    assert "unknown-value" not in kinds(done, 1)
+    assert "unknown-value" not in kinds(result, 1)
 
 
 CLEAN = {"answer_view": "full"}
@@ -362,8 +364,8 @@ CLEAN = {"answer_view": "full"}
     ],
 )  # fmt: skip
 def test_sound_rows_have_no_findings(tmp_path: Path, row: dict[str, str]) -> None:
-    done = imported(tmp_path, row)
-    assert kinds(done) == set()
+    result = import_rows(tmp_path, row)
+    assert kinds(result) == set()
 
 
 def test_answers_in_the_question_are_found() -> None:
@@ -373,10 +375,10 @@ def test_answers_in_the_question_are_found() -> None:
 
 
 def test_ids_are_unique_whatever_the_file_contains(tmp_path: Path) -> None:
-    done = imported(
+    result = import_rows(
         tmp_path, *({"question_id": name, "question": f"{n}?"} for n, name in enumerate(["a b", "A-B", "a-b-x2", "", "../x"]))
     )
-    ids = [task.facts.id for task in done.tasks]
+    ids = [task.facts.id for task in result.tasks]
     assert len(set(ids)) == 5
     assert all("/" not in name and "." not in name for name in ids)
 
@@ -386,13 +388,16 @@ def test_scenes_and_presets_by_mapping(tmp_path: Path) -> None:
     path.write_text("scenes: {'moon.blend': parking-lot, '*': parking-lot}\npresets: {parking-lot: {crater: bridge, '*': gate}}\n")
     names = SceneNames(NAMES.scenes, read_scene_names(path))
     rows = [{"file_location": "x/moon.blend", "preset_start": "crater"}, {"file_location": "mars.blend", "preset_start": "rim"}]
-    done = imported(tmp_path, *rows, names=names)
-    assert [task.facts.preset for task in done.tasks] == ["bridge", "gate"]
-    without = imported(tmp_path, *rows, {"preset_start": "rim"})
-    assert without.map_to_fill() == {"scenes": {"mars.blend": "", "x/moon.blend": ""}, "presets": {"parking-lot": {"rim": ""}}}
-    assert SceneNameMap.model_validate(without.map_to_fill())
+    result = import_rows(tmp_path, *rows, names=names)
+    assert [task.facts.preset for task in result.tasks] == ["bridge", "gate"]
+    without_mapping = import_rows(tmp_path, *rows, {"preset_start": "rim"})
+    assert without_mapping.mapping_template() == {
+        "scenes": {"mars.blend": "", "x/moon.blend": ""},
+        "presets": {"parking-lot": {"rim": ""}},
+    }
+    assert SceneNameMap.model_validate(without_mapping.mapping_template())
     wrong = SceneNames(NAMES.scenes, SceneNameMap(scenes={"moon.blend": "nowhere"}))
-    assert "missing-scene" in kinds(imported(tmp_path, rows[0], names=wrong))
+    assert "missing-scene" in kinds(import_rows(tmp_path, rows[0], names=wrong))
 
 
 @pytest.mark.parametrize("content", ["[1]", "scenes: 3", "worlds: {}", "a: [", "\0"])
@@ -404,15 +409,15 @@ def test_wrong_mappings_are_rejected(tmp_path: Path, content: str) -> None:
 
 
 def test_imported_tasks_are_stored_without_loss(tmp_path: Path) -> None:
-    done = imported(
+    result = import_rows(
         tmp_path,
         {"expected_tool_args_json": "[{'object_of_interest': 'cones'}]"},
         {"question": "Another?", "multi_step_mode": "ordered"},
     )
     path = tmp_path / "tasks.jsonl"
-    dump_imported(done.tasks, path)
+    dump_imported(result.tasks, path)
     assert is_imported_file(path)
-    assert load_imported(path) == done.tasks
+    assert load_imported(path) == result.tasks
     assert not is_imported_file(tmp_path / "none")
     assert not is_imported_file(tmp_path / "Paper Tasks.csv")
     path.write_text(path.read_text() + '{"imported": 1}\n')
@@ -420,7 +425,7 @@ def test_imported_tasks_are_stored_without_loss(tmp_path: Path) -> None:
         load_imported(path)
 
 
-ODD = st.sampled_from(
+ODD_CELLS = st.sampled_from(
     [
         '[{"tool": 5}]', '{"ptz_adjust": 7}', '[[["a"]]]', "[null, 1, 2.5, true]", '{"ptz_adjust": {"pan_deg": {"x": 1}}}',
         '[{"pan_deg": 1e400}]', "[" * 3000, '{"go_to_preset": {"name": ["a"]}}', "{1: 2}", 'b"x"', '{"count_pointing": []}',
@@ -431,50 +436,53 @@ ODD = st.sampled_from(
 ) | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r"), max_size=12)  # fmt: skip
 
 
-@given(st.lists(st.fixed_dictionaries({}, optional=dict.fromkeys(COLUMNS, ODD)), min_size=1, max_size=4))
+@given(st.lists(st.fixed_dictionaries({}, optional=dict.fromkeys(COLUMNS, ODD_CELLS)), min_size=1, max_size=4))
 @settings(deadline=None, max_examples=60)
-def test_arbitrary_rows_are_neither_lost_nor_break_the_import(
+def test_arbitrary_rows_are_kept_and_do_not_break_the_import(
     tmp_path_factory: pytest.TempPathFactory, rows: list[dict[str, str]]
 ) -> None:
     folder = tmp_path_factory.mktemp("odd")
-    done = imported(folder, *rows)
-    assert len(done.rows) == len(rows)
-    assert len(done.tasks) + len(done.not_runnable) == len(rows)
-    assert all(character.isprintable() for line in report_lines(done) for character in line)
-    dump_imported(done.tasks, folder / "tasks.jsonl")
-    assert load_imported(folder / "tasks.jsonl") == done.tasks
-    json.dumps(done.as_dict(), allow_nan=False)
+    result = import_rows(folder, *rows)
+    assert len(result.rows) == len(rows)
+    assert len(result.tasks) + len(result.not_runnable) == len(rows)
+    assert all(character.isprintable() for line in report_lines(result) for character in line)
+    dump_imported(result.tasks, folder / "tasks.jsonl")
+    assert load_imported(folder / "tasks.jsonl") == result.tasks
+    json.dumps(result.as_dict(), allow_nan=False)
 
 
 # The check of calls
 
 
 def task_with(tmp_path: Path, tools: Sequence[str], arguments: object = "", **cells: str) -> ImportedTask:
-    given = {"expected_tool_order_json": json.dumps(tools), "expected_tool_args_json": json.dumps(arguments) if arguments else ""}
-    return imported(tmp_path, {**given, **cells}).tasks[0]
+    defaults = {
+        "expected_tool_order_json": json.dumps(tools),
+        "expected_tool_args_json": json.dumps(arguments) if arguments else "",
+    }
+    return import_rows(tmp_path, {**defaults, **cells}).tasks[0]
 
 
-GO, LOOK = ("go_to_preset", {"name": "highway"}), counted(5)
+PRESET_CALL, COUNT_CALL = ("go_to_preset", {"name": "highway"}), count_step(5)
 
 
 @pytest.mark.parametrize(
     ("cells", "steps", "passed"),
     [
-        ({}, [GO, LOOK], True),
-        ({}, [LOOK, GO], True),
-        ({"multi_step_mode": "ordered"}, [GO, LOOK], True),
-        ({"multi_step_mode": "ordered"}, [LOOK, GO], False),
-        ({}, [GO], False),
+        ({}, [PRESET_CALL, COUNT_CALL], True),
+        ({}, [COUNT_CALL, PRESET_CALL], True),
+        ({"multi_step_mode": "ordered"}, [PRESET_CALL, COUNT_CALL], True),
+        ({"multi_step_mode": "ordered"}, [COUNT_CALL, PRESET_CALL], False),
+        ({}, [PRESET_CALL], False),
         ({}, [], False),
-        ({}, [GO, LOOK, ("take_image", {})], True),
-        ({"required_tools_policy": "exact"}, [GO, LOOK, ("take_image", {})], False),
-        ({"required_tools_policy": "exact"}, [GO, LOOK], True),
-        ({"required_tools_policy": "any_of"}, [LOOK], True),
+        ({}, [PRESET_CALL, COUNT_CALL, ("take_image", {})], True),
+        ({"required_tools_policy": "exact"}, [PRESET_CALL, COUNT_CALL, ("take_image", {})], False),
+        ({"required_tools_policy": "exact"}, [PRESET_CALL, COUNT_CALL], True),
+        ({"required_tools_policy": "any_of"}, [COUNT_CALL], True),
         ({"required_tools_policy": "any_of"}, [("take_image", {})], False),
         ({"required_tools_policy": "optional"}, [], None),
-        ({}, [("go_to_preset", {"name": "gate"}), LOOK], False),
-        ({"args_check": "off"}, [("go_to_preset", {"name": "gate"}), LOOK], True),
-        ({}, [("go_to_preset", {"name": "highway"}, {"error": "no"}), LOOK], False),
+        ({}, [("go_to_preset", {"name": "gate"}), COUNT_CALL], False),
+        ({"args_check": "off"}, [("go_to_preset", {"name": "gate"}), COUNT_CALL], True),
+        ({}, [("go_to_preset", {"name": "highway"}, {"error": "no"}), COUNT_CALL], False),
     ],
 )
 def test_check_of_required_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
@@ -485,20 +493,20 @@ def test_check_of_required_calls(tmp_path: Path, cells: dict[str, str], steps: l
 
 
 def test_without_expected_calls_the_check_has_no_result(tmp_path: Path) -> None:
-    assert check_imported_calls(task_with(tmp_path, []), play([LOOK], "5")).passed is None
+    assert check_imported_calls(task_with(tmp_path, []), play([COUNT_CALL], "5")).passed is None
 
 
 # The command
 
 
 def test_the_command_writes_tasks_and_a_report(tmp_path: Path, analytic_folder: Path) -> None:
-    imported(tmp_path, {"file_location": "analytic_yard.blend", "preset_start": ""}, {"file_location": "moon.blend"})
+    import_rows(tmp_path, {"file_location": "analytic_yard.blend", "preset_start": ""}, {"file_location": "moon.blend"})
     out = tmp_path / "new" / "tasks.jsonl"
     command = ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--scenes", str(analytic_folder.parent), "--out", str(out)]
-    done = CliRunner().invoke(app, command)
-    assert done.exit_code == 0, done.output
-    assert "2 rows in" in done.output
-    assert "1 can be run, 1 cannot" in done.output
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 0, result.output
+    assert "2 rows in" in result.output
+    assert "1 can be run, 1 cannot" in result.output
     (task,) = load_imported(out)
     assert task.facts.scene == "analytic-yard"
     report = json.loads((tmp_path / "new" / "tasks.report.json").read_text())
@@ -507,10 +515,10 @@ def test_the_command_writes_tasks_and_a_report(tmp_path: Path, analytic_folder: 
 
 
 def test_the_command_fails_when_no_row_can_be_run(tmp_path: Path) -> None:
-    imported(tmp_path, {})
-    done = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--out", str(tmp_path / "x.jsonl")])
-    assert done.exit_code == 1
-    assert "no row can be run" in done.output
+    import_rows(tmp_path, {})
+    result = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--out", str(tmp_path / "x.jsonl")])
+    assert result.exit_code == 1
+    assert "no row can be run" in result.output
     assert (tmp_path / "x.report.json").is_file()
     for options in (["--scenes", str(tmp_path / "none")], ["--map", str(tmp_path / "none")]):
         wrong = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), *options])

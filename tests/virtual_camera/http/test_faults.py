@@ -90,7 +90,7 @@ async def test_every_account_is_refused(served_device: VirtualDevice) -> None:
         reply = await session.get(PTZ, params={"pan": "1"})
         assert reply.status_code == 401
         assert reply.headers["www-authenticate"].startswith("Digest")
-    assert not served_device.moving()
+    assert not served_device.is_moving()
 
 
 async def test_replies_are_garbage(served_device: VirtualDevice) -> None:

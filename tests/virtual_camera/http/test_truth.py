@@ -19,7 +19,7 @@ async def test_the_truth_of_a_picture_stands_beside_it_and_can_be_asked_for(serv
     async with camera_and_client(served_device, truth=True) as (_, session):
         first = await session.get(IMAGE)
         await session.get(PTZ, params={"pan": "33", "tilt": "-7", "zoom": "5000"})
-        await until(lambda: not served_device.moving())
+        await until(lambda: not served_device.is_moving())
         second = await session.get(IMAGE)
         assert second.headers["x-scope-pose"] == "pan=33.0;tilt=-7.0;zoom=3.0"
         for reply, pose in ((first, served_device.home), (second, Pose(33, -7, 3))):

@@ -156,7 +156,7 @@ async def test_continuous_moves_run_until_their_timeout_or_a_stop(ptz: Any, devi
     assert device.velocity.zoom_rate < 0.0
     await ptz.Stop({"ProfileToken": PROFILE})
     time.pass_(1.0)
-    assert not device.moving()
+    assert not device.is_moving()
 
 
 async def test_a_stop_of_one_axis_lets_an_absolute_move_of_the_other_go_on(

@@ -191,7 +191,7 @@ async def test_several_devices_answer_one_probe(device: VirtualDevice, searcher:
 
 async def test_an_interface_that_is_not_there_is_an_error(device: VirtualDevice) -> None:
     for host in ("203.0.113.7", "::1"):
-        with pytest.raises(ConfigError, match="without discovery"):
+        with pytest.raises(ConfigError, match="Turn discovery off"):
             async with serve_discovery([DiscoverableCamera(device, HTTP_PORT)], host=host, port=0):
                 raise AssertionError
 

@@ -44,7 +44,7 @@ async def test_focus_moves_and_reports_its_position(imaging: Any, source: dict[s
     assert after.Position <= before.Position
     assert (await imaging.GetImagingSettings(source)).Focus.AutoFocusMode == "MANUAL"
     await imaging.Move({**source, "Focus": {"Continuous": {"Speed": 1.0}}})
-    assert device.lens.focusing
+    assert device.lens.is_focusing
     await imaging.SetImagingSettings({**source, "ImagingSettings": {"Focus": {"AutoFocusMode": "AUTO"}}})
     assert device.lens.autofocus
 

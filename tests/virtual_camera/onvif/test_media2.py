@@ -93,7 +93,7 @@ async def test_moves_by_the_profile_of_media2(
     header = token("admin", "s3cret")
     assert (await post(served.url, envelope(ptz_request("Stop"), header), "/onvif/ptz_service")).codes == []
     time.pass_(1.0)
-    assert not device.moving()
+    assert not device.is_moving()
 
 
 @pytest.mark.full

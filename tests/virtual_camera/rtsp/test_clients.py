@@ -63,7 +63,7 @@ CLIENTS = {"pyav": pyav_frames, "opencv": opencv_frames}
 def settled(device: VirtualDevice, pose: Pose) -> NDArray[np.uint8]:
     """Move, and return the picture that follows."""
     device.move(pose)
-    while device.moving():
+    while device.is_moving():
         pass
     return device.expose().image
 

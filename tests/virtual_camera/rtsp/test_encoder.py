@@ -32,7 +32,7 @@ def images(analytic_scene: Scene) -> list[NDArray[np.uint8]]:
     taken = []
     for pan_deg in range(0, 40, 4):
         device.move(Pose(float(pan_deg), 0.0, 1.0))
-        while device.moving():
+        while device.is_moving():
             pass
         taken.append(device.expose().image)
     return taken

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scope_ptz.virtual_camera.rtsp.messages import (
     MAX_BODY_BYTES,
     MAX_LINE_BYTES,
-    Interleaved,
+    InterleavedPacket,
     MalformedError,
     RefusedError,
     Reply,
@@ -23,8 +23,8 @@ from scope_ptz.virtual_camera.rtsp.messages import (
 from scope_ptz.virtual_camera.rtsp.transport_header import TransportOffer, choose_transport
 
 
-def read(content: bytes) -> Request | TunnelRequest | Interleaved | None:
-    async def run() -> Request | TunnelRequest | Interleaved | None:
+def read(content: bytes) -> Request | TunnelRequest | InterleavedPacket | None:
+    async def run() -> Request | TunnelRequest | InterleavedPacket | None:
         reader = asyncio.StreamReader(limit=MAX_LINE_BYTES)
         reader.feed_data(content)
         reader.feed_eof()
@@ -49,7 +49,7 @@ def test_empty_lines_between_requests_are_skipped(line: bytes) -> None:
 
 
 def test_packets_between_requests() -> None:
-    assert read(b"$\x01\x00\x03abc") == Interleaved(1, b"abc")
+    assert read(b"$\x01\x00\x03abc") == InterleavedPacket(1, b"abc")
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_is_no_request_is_refused(content: bytes, status: int) -> None:
 )
 def test_any_bytes_are_a_message_a_refusal_or_unfinished(content: bytes, start: bytes) -> None:
     with suppress(MalformedError, asyncio.IncompleteReadError):
-        assert isinstance(read(start + content), Request | TunnelRequest | Interleaved | None)
+        assert isinstance(read(start + content), Request | TunnelRequest | InterleavedPacket | None)
 
 
 def test_a_reply_repeats_the_sequence_number_and_headers() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from scope_ptz.virtual_camera.rtsp.live_stream import AccessUnit
 from scope_ptz.virtual_camera.rtsp.playback import MAX_AGE_S, MAX_QUEUED, Playback, StreamStatistics
-from scope_ptz.virtual_camera.rtsp.rtp import RtpClock
+from scope_ptz.virtual_camera.rtsp.rtp import RtpPacketizer
 from scope_ptz.virtual_camera.rtsp.sinks import BATCH_PACKETS
 from tests.support.rtsp_client import RtpPacket
 from tests.virtual_camera.rtsp.serving import until
@@ -50,7 +50,7 @@ class RecordingSink:
 async def playing(sink: RecordingSink, latency_s: float = 0.0) -> AsyncIterator[tuple[Playback, StreamStatistics]]:
     statistics = StreamStatistics()
     playback = Playback(
-        sink, RtpClock(), latency_s=latency_s, clock_skew_s=lambda: 0.0, statistics=statistics, on_sent=lambda: None
+        sink, RtpPacketizer(), latency_s=latency_s, clock_skew_s=lambda: 0.0, statistics=statistics, on_sent=lambda: None
     )
     task = asyncio.create_task(playback.run())
     try:

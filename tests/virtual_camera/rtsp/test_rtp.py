@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.virtual_camera.rtsp.rtcp import goodbye, sender_report
-from scope_ptz.virtual_camera.rtsp.rtp import MAX_PAYLOAD_BYTES, RtpClock, payloads
+from scope_ptz.virtual_camera.rtsp.rtp import MAX_PAYLOAD_BYTES, RtpPacketizer, payloads
 from tests.support.rtsp_client import Depacketizer, RtpPacket, SenderReport
 
 _BORDERS = [1, 2, *(MAX_PAYLOAD_BYTES * k + d for k in (1, 2, 3) for d in range(-6, 7))]
@@ -21,29 +21,31 @@ _BORDERS = [1, 2, *(MAX_PAYLOAD_BYTES * k + d for k in (1, 2, 3) for d in range(
 )
 def test_pictures_survive_packets(shapes: list[tuple[int, int]], random: object) -> None:
     nals = [bytes([header]) + random.randbytes(size) for header, size in shapes]  # type: ignore[attr-defined]
-    clock, depacketizer = RtpClock(), Depacketizer()
-    packets = clock.packets(payloads(nals), 12.5)
+    packetizer, depacketizer = RtpPacketizer(), Depacketizer()
+    packets = packetizer.packets(payloads(nals), 12.5)
     assert all(len(packet) <= 12 + MAX_PAYLOAD_BYTES for packet in packets)
     parsed = [RtpPacket.parse(packet) for packet in packets]
     assert [packet.marker for packet in parsed] == [False] * (len(parsed) - 1) + [True]
-    assert {packet.timestamp for packet in parsed} == {clock.timestamp(12.5)}
+    assert {packet.timestamp for packet in parsed} == {packetizer.timestamp(12.5)}
     assert [depacketizer.add(packet) for packet in parsed][-1] == nals
 
 
 def test_sequence_numbers_and_time_stamps_wrap() -> None:
-    clock = RtpClock()
-    clock.sequence = 65534
-    numbers = [RtpPacket.parse(packet).sequence for packet in clock.packets([b"\x41a"] * 4, 0.0)]
+    packetizer = RtpPacketizer()
+    packetizer.sequence = 65534
+    numbers = [RtpPacket.parse(packet).sequence for packet in packetizer.packets([b"\x41a"] * 4, 0.0)]
     assert numbers == [65534, 65535, 0, 1]
     week_s = 7 * 24 * 3600.0
-    stamps = [clock.timestamp(week_s + k) for k in range(60_000)]
+    stamps = [packetizer.timestamp(week_s + k) for k in range(60_000)]
     assert all((later - sooner) % 2**32 == 90_000 for sooner, later in pairwise(stamps))
     assert all(0 <= stamp < 2**32 for stamp in stamps)
 
 
 def test_senders_start_anywhere() -> None:
-    clocks = [RtpClock() for _ in range(8)]
-    assert len({clock.ssrc for clock in clocks}) == len({clock.timestamp(1.0) for clock in clocks}) == 8
+    packetizers = [RtpPacketizer() for _ in range(8)]
+    assert (
+        len({packetizer.ssrc for packetizer in packetizers}) == len({packetizer.timestamp(1.0) for packetizer in packetizers}) == 8
+    )
 
 
 def test_a_report_says_which_time_a_time_stamp_is() -> None:

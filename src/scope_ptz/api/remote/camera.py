@@ -20,9 +20,9 @@ from scope_ptz.geometry import Limits, Optics, Perspective, Pose
 
 
 class RemoteCamera(Camera):
-    """A camera behind a connection. ``RemoteCamera.open`` reads its properties from the server.
+    """A camera on a server. ``RemoteCamera.open`` reads its properties from the server.
 
-    Frames carry no ground truth, like those of any network camera.
+    As with any network camera, frames have no ground truth.
     """
 
     def __init__(self, connection: Connection, info: CameraInfo) -> None:
@@ -31,7 +31,7 @@ class RemoteCamera(Camera):
 
     @classmethod
     async def open(cls, connection: Connection) -> RemoteCamera:
-        """Return the camera.
+        """Open the camera of a connection.
 
         Raises:
             UnknownNameError: The server has no such camera.
@@ -42,7 +42,7 @@ class RemoteCamera(Camera):
             info = CameraInfo(
                 name=f"{state['name']} at {connection.server}",
                 limits=Limits(**state["limits"]),
-                optics=Optics(tuple((float(zoom), float(field)) for zoom, field in state["fields_of_view"])),
+                optics=Optics(tuple((float(zoom), float(hfov_deg)) for zoom, hfov_deg in state["fields_of_view"])),
                 frame_width=int(state["frame_width"]),
                 frame_height=int(state["frame_height"]),
                 simulated=False,
@@ -68,7 +68,7 @@ class RemoteCamera(Camera):
 
     async def presets(self) -> list[PresetInfo]:
         presets = await self._connection.request("GET", "~/presets")
-        return [PresetInfo(each["name"], each["description"]) for each in presets]
+        return [PresetInfo(preset["name"], preset["description"]) for preset in presets]
 
     async def go_to_preset(self, name: str) -> Arrival:
         return _arrival(await self._connection.request("POST", f"~/presets/{quote(name, safe='')}/go", no_timeout=True))
@@ -104,7 +104,7 @@ class RemoteCamera(Camera):
 
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
-        """Return a context in which this session controls the camera. Only one holder in the session has control at a time."""
+        """Control the camera within a context. Only one holder in the session can have control at a time."""
         state = await self._connection.request("POST", "~/control")
         if not state["mine"]:
             await self._connection.request("DELETE", "~/control")

@@ -27,8 +27,8 @@ from scope_ptz.settings import load_settings
 
 TIMEOUT = httpx2.Timeout(30.0, connect=10.0)
 NO_TIMEOUT = httpx2.Timeout(None, connect=10.0)
-"""Timeouts of requests that move the camera, start a run or call a tool. Only connecting is limited: the reply may take any length
-of time."""
+"""Timeouts for requests that move the camera, start a run or call a tool. Only connecting has a time limit, because the reply may
+take any length of time."""
 
 MAX_REPLY_BYTES = 64_000_000  # longer replies are rejected
 
@@ -43,7 +43,8 @@ _ERRORS: Mapping[str, type[ScopeError]] = {
     "perception_failed": PerceptionError,
     "kept_out": KeepOutError,
 }
-"""Exceptions by error code of the API. Except for ``unknown``, codes that are not listed raise ``CameraError``."""
+"""Exceptions by API error code. The code ``unknown`` raises ``RemoteNameError``, and other unlisted codes raise
+``CameraError``."""
 
 
 class RemoteNameError(UnknownNameError):
@@ -55,13 +56,13 @@ class RemoteNameError(UnknownNameError):
 
 
 class Connection:
-    """Sends requests about one camera to its server. It follows no redirects and uses no proxy.
+    """Sends requests about a camera to its server. Redirects are not followed, and proxies are not used.
 
     Args:
         address: The address of the camera, such as ``http://host:8000/yard-gate``.
 
     Raises:
-        ConfigError: The address names no camera, or contains a password.
+        ConfigError: The address does not contain a camera name, or contains a password.
     """
 
     def __init__(self, address: str) -> None:
@@ -88,20 +89,20 @@ class Connection:
         await self.close()
 
     async def close(self) -> None:
-        """Close the connections."""
+        """Close all connections to the server."""
         await self._client.aclose()
 
     async def request(self, method: str, path: str, body: Mapping[str, Any] | None = None, *, no_timeout: bool = False) -> Any:
-        """Send a request and return its reply, parsed as JSON; None if the reply is empty.
+        """Send a request, and return the reply as parsed JSON; None if the reply is empty.
 
         Args:
             method: The HTTP method.
-            path: The path below ``/api/v1``. A leading ``~`` stands for the path of the camera.
+            path: The path below ``/api/v1``. A leading ``~`` represents the camera's path.
             body: The body, which is sent as JSON.
             no_timeout: Whether to wait for the reply indefinitely.
 
         Raises:
-            ScopeError: The server replied with an error. Its class is that of the same error in a local session.
+            ScopeError: The server replied with an error. The class of the exception is the same as in a local session.
             CameraError: The server cannot be reached, or its reply is invalid.
         """
         response = await self._send(method, path, body, no_timeout=no_timeout)
@@ -113,7 +114,7 @@ class Connection:
             raise self._not_a_scope_server() from None
 
     async def picture(self, path: str) -> tuple[bytes, dict[str, Any]]:
-        """Return an encoded picture, and the parsed content of its ``Scope-Frame`` header."""
+        """Download an encoded picture, and return it with the parsed content of its ``Scope-Frame`` header."""
         response = await self._send("GET", path, None)
         try:
             facts = json.loads(response.headers.get("scope-frame", "{}"))
@@ -122,7 +123,7 @@ class Connection:
         return response.content, facts
 
     def picture_sync(self, path: str) -> bytes:
-        """Return an encoded picture, for callers outside the event loop."""
+        """Download an encoded picture. This method is for callers outside the event loop."""
         try:
             with httpx2.Client(headers=self._headers, timeout=TIMEOUT, follow_redirects=False, trust_env=False) as client:
                 response = client.get(self._url(path))
@@ -133,10 +134,10 @@ class Connection:
         return response.content
 
     async def events(self, run: str) -> AsyncIterator[bytes]:
-        """Yield the records of a run as JSON, as they arrive. If the connection is lost, reconnect.
+        """Yield the records of a run as JSON as they arrive. A lost connection is re-established.
 
         Raises:
-            CameraError: The connection is lost and cannot be re-established.
+            CameraError: The connection was lost and cannot be re-established.
         """
         last, failures = -1, 0
         while True:
@@ -182,13 +183,15 @@ class Connection:
         if code == "unknown":
             raise RemoteNameError(message)
         if code == "sign_in":
-            message = f"{self.server} needs a token. Create one there with `scope token add`, and set SCOPE_TOKEN to it."
+            message = (
+                f"{self.server} requires a token. Create a token on the server with `scope token add`, and set SCOPE_TOKEN to it."
+            )
         raise _ERRORS.get(code, CameraError)(message)
 
     def _unreachable(self, error: Exception) -> CameraError:
         reason = str(error) or type(error).__name__
         return CameraError(
-            f"The server {self.server} does not answer: {reason}. Start it with `scope serve`, or check the address."
+            f"The server {self.server} does not answer: {reason}. Start the server with `scope serve`, or check the address."
         )
 
     def _not_a_scope_server(self) -> CameraError:

@@ -1,4 +1,4 @@
-"""A session whose camera, planner and perception are on a server."""
+"""A session with a camera, planner and perception backend on a server."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from scope_ptz.api.building import Parts
 from scope_ptz.api.options import ServedModels, SessionOptions
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection, RemoteNameError
-from scope_ptz.api.run import Event, Run, event_of
+from scope_ptz.api.run import Event, Run, create_event
 from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import CameraError, InputError, PerceptionError, PlannerError, ScopeError, ToolCallError
 from scope_ptz.perception.no_perception import NoPerception
@@ -31,18 +31,18 @@ if TYPE_CHECKING:
     from PIL import Image
 
 _R = TypeVar("_R", bound=Result)
-_FAULTS: Mapping[str, type[ScopeError]] = {"bad_call": ToolCallError, "perception": PerceptionError}
+_ERRORS_BY_FAULT: Mapping[str, type[ScopeError]] = {"bad_call": ToolCallError, "perception": PerceptionError}
 
 
 class RemoteSession(AsyncScope):
     """A session with a camera on a ``scope serve`` server: ``scope_ptz.open("http://host:8000/yard-gate")``.
 
-    It behaves like any other session. Runs are stored on the server, and their pictures are downloaded on first use.
+    The session behaves like a local one, but runs are stored on the server, and their pictures are downloaded on first use.
     """
 
     def __init__(self, options: SessionOptions) -> None:
         super().__init__(options)
-        _check(options)
+        _check_options(options)
         self._connection = Connection(str(options.camera))
         self._conversation_id: str | None = None
 
@@ -87,7 +87,7 @@ class RemoteSession(AsyncScope):
             raise InputError("The instruction is empty. Describe what the camera should do.")
         connection, records, run_id = self._connection, list[Any](), ""
         try:
-            with self._working():
+            with self._busy():
                 try:
                     with anyio.CancelScope(shield=True):  # a run whose id is unknown could not be cancelled on the server
                         run_id = await self._start(instruction)
@@ -116,7 +116,7 @@ class RemoteSession(AsyncScope):
         return str((await connection.request("POST", "/runs", body, no_timeout=True))["id"])
 
     async def _follow(self, run_id: str, records: list[Any], listener: EventListener) -> None:
-        """Append the records of a run to ``records`` until the run ends. Records that the list already contains are skipped."""
+        """Append the records of a run to ``records`` until the run ends. Records that are already in the list are skipped."""
         number = 0
         async with aclosing(self._connection.events(run_id)) as events:  # type: ignore[type-var] # it is a generator
             async for data in events:
@@ -131,13 +131,13 @@ class RemoteSession(AsyncScope):
                     ) from error
                 records.append(record)
                 if not isinstance(record, Ended):
-                    listener(event_of(record))
+                    listener(create_event(record))
 
     async def _run_tool(self, result_type: type[_R], name: str, /, **arguments: Any) -> _R:
         self._open_parts()
         call_arguments = {key: value for key, value in arguments.items() if value is not None}
-        TOOLS.parse_call(name, call_arguments)  # raise the same error for wrong arguments as a local session
-        with self._working():
+        TOOLS.parse_call(name, call_arguments)  # invalid arguments raise the same error as in a local session
+        with self._busy():
             try:
                 reply = await self._connection.request("POST", f"~/tools/{name}{self._query()}", call_arguments, no_timeout=True)
             except anyio.get_cancelled_exc_class():
@@ -148,11 +148,11 @@ class RemoteSession(AsyncScope):
                 if reply["fault"] == "bad_call" and name == "go_to_preset":
                     raise RemoteNameError(reply["error"])
                 kept_out = reply.get("code") == "kept_out"  # servers before 0.2.0 send no code
-                raise (KeepOutError if kept_out else _FAULTS.get(str(reply["fault"]), CameraError))(reply["error"])
+                raise (KeepOutError if kept_out else _ERRORS_BY_FAULT.get(str(reply["fault"]), CameraError))(reply["error"])
             result = TOOLS[name].result_type().model_validate(reply["result"])
             assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
             if (file := getattr(result, "file", None)) is not None:
-                # The server stores each call as a separate run, so the name of the picture is unique only with the id of the run.
+                # The server stores each call as a separate run, so picture names are unique only in combination with the run id.
                 result = result.model_copy(update={"file": f"{reply['run']}/{file}"})
             return result
         raise ScopeError("The call was cancelled.")
@@ -170,7 +170,7 @@ class RemoteSession(AsyncScope):
 
 
 class _RemotePlanner(Planner):
-    """The planner of a server. It cannot be called locally."""
+    """A planner on a server. It cannot be called locally."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -180,7 +180,7 @@ class _RemotePlanner(Planner):
 
 
 class _RemotePerception(NoPerception):
-    """The perception backend of a server. It cannot be called locally."""
+    """A perception backend on a server. It cannot be called locally."""
 
     def __init__(self, name: str) -> None:
         super().__init__("")
@@ -223,15 +223,15 @@ def _run(connection: Connection, run_id: str, records: list[Any]) -> Run | None:
     return Run(trace, ended, _RemotePictures(connection, run_id, trace))
 
 
-def _check(options: SessionOptions) -> None:
+def _check_options(options: SessionOptions) -> None:
     """Raise ``InputError`` for options that only the server can set."""
     if options.dry_run:
-        raise InputError("dry_run= is only for cameras that this program opens. Remove the argument.")
+        raise InputError("dry_run= cannot be used with a camera on a server. Remove the argument.")
     default, models = SessionOptions(options.camera), options.served
     names = ("planner", "perception", "viewpoint", "time_s", "seed", "realtime", "runs_dir", "budgets")
     given = [name for name in names if getattr(options, name) != getattr(default, name)]
     given += [name for name in ServedModels.__dataclass_fields__ if name != "pair" and getattr(models, name) is not None]
     if given:
         raise InputError(
-            f"The server of this camera determines {', '.join(given)}. Remove the argument. Use pair= to select one of its pairs."
+            f"The camera's server determines {', '.join(given)}. Remove these arguments. Use pair= to select one of its pairs."
         )

@@ -1,5 +1,5 @@
-"""External agents: the protocol that they speak, and the channels that carry it.
+"""External agents: the agent protocol, and the channels that carry its messages.
 
-The scorer's process sends an agent the instruction, the tools and the results of calls. Tasks, ground truth and checks never leave
-the scorer's process.
+The scorer's process sends an agent the instruction, the tools and the results of its calls. Tasks, ground truth and checks never
+leave the scorer's process.
 """

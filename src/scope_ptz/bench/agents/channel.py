@@ -1,4 +1,4 @@
-"""The channel between the host of a run and its agent."""
+"""The channel between the host of a run and the agent."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from scope_ptz.bench.agents.messages import AgentMessage, HostMessage
 Isolation = Literal["in-process", "isolated", "sandboxed", "hosted"]
 """How an external agent is separated from the tasks, the ground truth and the checks.
 
-- ``in-process``: it runs in the scorer's process and can reach everything.
-- ``isolated``: it runs in a process of its own on the same machine, and can read the files of its user.
-- ``sandboxed``: it runs in a sandbox without the network and without the files of the dataset.
+- ``in-process``: it runs in the scorer's process and can access everything.
+- ``isolated``: it runs in a separate process on the same machine, and can read the files of its user.
+- ``sandboxed``: it runs in a sandbox without access to the network and the dataset's files.
 - ``hosted``: it runs elsewhere and is connected over a network.
 """
 ISOLATIONS: tuple[Isolation, ...] = get_args(Isolation)
 ISOLATION_NOTES: dict[Isolation, str] = {
     "in-process": "it can reach the tasks, the answers and the checks",
-    "isolated": "a process of its own, which can read files of this machine",
-    "sandboxed": "without the network and without the files of the dataset",
+    "isolated": "a separate process, which can read files on this machine",
+    "sandboxed": "without access to the network and the dataset's files",
     "hosted": "connected over a network",
 }
-"""What each label means, for the output of commands and for reports."""
+"""The meaning of each label, for command output and reports."""
 
 
 class AgentChannel(ABC):
-    """Carries the messages of one run. It belongs to one run and cannot be used again.
+    """Carries the messages of one run. A channel cannot be reused for another run.
 
-    A channel checks messages and reports failures of the agent and its connection as ``PlannerError`` with a kind of
-    ``bench.agents.faults``. It sets no time limits: a caller that stops waiting cancels ``receive``, and then closes the channel.
+    A channel validates messages. It raises failures of the agent and the connection as ``PlannerError`` with a kind from
+    ``bench.agents.faults``. It has no time limits: a caller that stops waiting cancels ``receive`` and then closes the channel.
     """
 
     isolation: Isolation
@@ -39,7 +39,7 @@ class AgentChannel(ABC):
         """Send a message to the agent.
 
         Raises:
-            PlannerError: The agent has gone.
+            PlannerError: The agent has exited or disconnected.
         """
 
     @abstractmethod
@@ -47,13 +47,13 @@ class AgentChannel(ABC):
         """Wait for the agent's next message and return it.
 
         Raises:
-            PlannerError: The agent has gone, or sent something that is not a valid message.
+            PlannerError: The agent has exited or disconnected, or it sent an invalid message.
         """
 
     @abstractmethod
     async def close(self, reason: str) -> None:
-        """End the agent's part in the run, and release everything that belongs to it. Closing again does nothing.
+        """Stop the agent and release its resources. Calling this method again has no effect.
 
         Args:
-            reason: Why the run ends. An agent that is still connected receives it as the message ``end``.
+            reason: Why the run ends. It is sent to the agent in an ``end`` message if the agent is still connected.
         """

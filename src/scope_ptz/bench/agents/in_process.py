@@ -1,4 +1,4 @@
-"""A channel to an agent in the scorer's own process. It is meant for debugging: the agent can reach tasks, truth and checks."""
+"""A channel to an agent in the scorer's own process, for debugging. The agent can access tasks, ground truth and checks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import anyio
 
 from scope_ptz.bench.agents.channel import AgentChannel, Isolation
-from scope_ptz.bench.agents.faults import agent_failed
+from scope_ptz.bench.agents.faults import agent_failure
 from scope_ptz.bench.agents.messages import (
     MAX_QUOTED_CHARS,
     PROTOCOL,
@@ -25,11 +25,11 @@ from scope_ptz.bench.agents.messages import (
 from scope_ptz.bench.agents.runner import Message, Session
 
 JOIN_S = 2.0
-"""Seconds for an agent to end after its run. Its thread cannot be killed."""
+"""Timeout in seconds for an agent's thread to end after the run. Threads cannot be killed."""
 
 
 class InProcessChannel(AgentChannel):
-    """A channel to an agent in a thread of this process, with an event loop of its own."""
+    """A channel to an agent in a thread of this process, with its own event loop."""
 
     isolation: Isolation = "in-process"
 
@@ -43,13 +43,13 @@ class InProcessChannel(AgentChannel):
         self._agent_class = agent_class
         self._sees = bool(getattr(agent_class, "sees", False))
         self._loop = asyncio.get_running_loop()
-        self._arrived: asyncio.Queue[Message | BaseException] = asyncio.Queue()
-        self._arrived.put_nowait({"type": "hello", "protocol": PROTOCOL, "name": name, "sees": self._sees})
+        self._incoming: asyncio.Queue[Message | BaseException] = asyncio.Queue()
+        self._incoming.put_nowait({"type": "hello", "protocol": PROTOCOL, "name": name, "sees": self._sees})
         self._session: Session | None = None
         self._thread: threading.Thread | None = None
 
     async def send(self, message: HostMessage) -> None:
-        """Pass a message to the agent. The task starts it."""
+        """Pass a message to the agent. The task message starts the agent."""
         content = message.model_dump(mode="json")
         if isinstance(message, TaskMessage):
             self._session = Session(content, self._put, self._sees)
@@ -62,17 +62,17 @@ class InProcessChannel(AgentChannel):
         """Wait for the agent's next message and return it.
 
         Raises:
-            PlannerError: The agent raised an exception, or sent something that is not a valid message.
+            PlannerError: The agent raised an exception or sent an invalid message.
         """
-        message = await self._arrived.get()
+        message = await self._incoming.get()
         if isinstance(message, BaseException):
-            self._arrived.put_nowait(message)
+            self._incoming.put_nowait(message)
             problem = printable(f"{type(message).__name__}: {message}", MAX_QUOTED_CHARS)
-            raise agent_failed("agent-error", f"The agent failed: {problem}") from message
+            raise agent_failure("agent-error", f"The agent failed: {problem}") from message
         return parse_agent_message(json.dumps(message))
 
     async def close(self, reason: str) -> None:
-        """Cancel the agent. A thread that goes on regardless is left behind, because threads cannot be killed."""
+        """Cancel the agent. A thread that does not end is abandoned, because threads cannot be killed."""
         await self.send(End(reason=reason))
         thread = self._thread
         if thread is not None:
@@ -87,4 +87,4 @@ class InProcessChannel(AgentChannel):
 
     def _put(self, message: Message | BaseException) -> None:
         if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._arrived.put_nowait, message)
+            self._loop.call_soon_threadsafe(self._incoming.put_nowait, message)

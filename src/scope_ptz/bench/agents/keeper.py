@@ -1,14 +1,14 @@
-"""Start a program, limit its resources, and end it with everything that it started. This file uses only the standard library.
+"""Run a program with limited resources, and kill it with all processes that it started. Uses only the standard library.
 
-Usage: ``python keeper.py '{"command": [...], ...}'``, with the fields of ``Orders``. The keeper runs in a process between the host
-and an agent, which inherits stdin and stdout. The keeper ends the agent, and every process that the agent started, when
+Usage: ``python keeper.py '{"command": [...], ...}'``, with the fields of ``KeeperOptions``. The keeper is a process between the
+host and an agent. The agent inherits its stdin and stdout. The keeper kills the agent and every process that the agent started when
 
 - the agent's first process ends,
-- the host closes the control pipe or dies, after a grace period,
+- the host closes the control pipe or dies (after a grace period), or
 - the agent uses more memory, processes or output than allowed.
 
-It writes two lines to the status pipe: first the agent's process id, and at the end a JSON object with the exit code or the signal,
-the exceeded limit, and the last of stderr.
+It writes two lines to the status pipe: first the agent's process id, and finally a JSON object with the exit code or signal, the
+exceeded limit, and the last part of stderr.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-CHECK_S = 0.2  # seconds between two checks of memory and processes
+CHECK_S = 0.2  # seconds between checks of memory and processes
 TERMINATE_S = 1.0  # seconds between SIGTERM and SIGKILL
 GIVE_UP_S = 10.0  # seconds after which processes that cannot be killed are abandoned
-TAIL_BYTES = 4_000  # the end of stderr that is reported
-RESERVED_MB = 512  # headroom of the kernel's limit: it also counts memory that is reserved but not used, such as stacks
+TAIL_BYTES = 4_000  # size of the last part of stderr, which is reported
+RESERVED_MB = 512  # headroom, because the kernel's limit also counts memory that is reserved but not used, such as stacks
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 
 @dataclass
-class Orders:
-    """What to run and how.
+class KeeperOptions:
+    """The program to run and its limits.
 
     Attributes:
         command: The program and its arguments.
-        control: File descriptor whose end of file ends the program.
-        status: File descriptor for the report.
-        memory_mb: Maximum memory of all processes together in MB; None for no limit.
+        control: File descriptor of the control pipe. End of file stops the program.
+        status: File descriptor of the status pipe, for the report.
+        memory_mb: Maximum total memory of all processes in MB; None for no limit.
         processes: Maximum number of processes.
-        stderr_bytes: Maximum size of what is written to stderr.
-        grace_s: Seconds for the program to end by itself after the control pipe was closed.
+        stderr_bytes: Maximum number of bytes that the processes may write to stderr.
+        grace_s: Seconds that the program has to exit by itself after the control pipe was closed.
     """
 
     command: list[str]
@@ -55,10 +55,10 @@ class Orders:
 
 
 class Keeper:
-    """A running program."""
+    """The supervisor of a running program."""
 
-    def __init__(self, orders: Orders) -> None:
-        self.orders = orders
+    def __init__(self, options: KeeperOptions) -> None:
+        self.options = options
         self.exceeded: str | None = None
         self.tail = b""
         self.stderr_bytes = 0
@@ -70,10 +70,10 @@ class Keeper:
         signal.signal(signal.SIGCHLD, lambda *_: None)
         self.pid = self._start(writer)
         os.close(writer)
-        # Only the agent may hold the pipes to the host, so that they reach their end when the agent ends.
-        nothing = os.open(os.devnull, os.O_RDWR)
+        # Only the agent may keep the pipes to the host open, so that the host sees end of file when the agent ends.
+        devnull = os.open(os.devnull, os.O_RDWR)
         for descriptor in (0, 1, 2):
-            os.dup2(nothing, descriptor)
+            os.dup2(devnull, descriptor)
 
     def _start(self, stderr: int) -> int:
         import resource  # not available on every system
@@ -83,23 +83,23 @@ class Keeper:
             return pid
         try:
             os.setsid()
-            control_process(PR_SET_PDEATHSIG, signal.SIGKILL)
+            set_process_attribute(PR_SET_PDEATHSIG, signal.SIGKILL)
             os.dup2(stderr, 2)
             for number in (signal.SIGCHLD, signal.SIGPIPE, signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            if self.orders.memory_mb is not None:
-                limit = (self.orders.memory_mb + RESERVED_MB) * 1_000_000
+            if self.options.memory_mb is not None:
+                limit = (self.options.memory_mb + RESERVED_MB) * 1_000_000
                 resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
-            os.execvp(self.orders.command[0], self.orders.command)  # noqa: S606 - no shell is wanted
+            os.execvp(self.options.command[0], self.options.command)  # noqa: S606 - no shell is needed
         except OSError as error:
-            os.write(2, f"{self.orders.command[0]} cannot be started: {error.strerror}\n".encode())
+            os.write(2, f"{self.options.command[0]} cannot be started: {error.strerror}\n".encode())
         finally:
             os._exit(127)
 
     def watch(self) -> None:
-        """Wait until the program has ended or must be ended, then end everything that is left."""
-        readable: list[int] = [self.orders.control, self.wake, self.stderr]
+        """Wait until the program has ended or must be stopped, then kill all remaining processes."""
+        readable: list[int] = [self.options.control, self.wake, self.stderr]
         deadlines: list[tuple[float, int]] = []
         next_check = 0.0
         while self.wait_status is None and self.exceeded is None:
@@ -109,8 +109,8 @@ class Keeper:
                 elif descriptor == self.wake:
                     os.read(self.wake, 512)
                 else:
-                    readable.remove(self.orders.control)
-                    now = time.monotonic() + self.orders.grace_s
+                    readable.remove(self.options.control)
+                    now = time.monotonic() + self.options.grace_s
                     deadlines = [(now + TERMINATE_S, signal.SIGKILL), (now, signal.SIGTERM)]
             self._reap()
             while deadlines and time.monotonic() >= deadlines[-1][0] and self.wait_status is None:
@@ -118,15 +118,15 @@ class Keeper:
             if time.monotonic() >= next_check:
                 self._check_limits()
                 next_check = time.monotonic() + CHECK_S
-        self._end_all()
+        self._kill_all()
         while self.stderr in readable and select.select([self.stderr], [], [], 0)[0]:
             self._read_stderr(readable)
 
     def report(self) -> None:
-        """Write the report."""
+        """Write the report to the status pipe."""
         code = os.waitstatus_to_exitcode(self.wait_status) if self.wait_status is not None else None
         fields = {"code": code, "exceeded": self.exceeded, "stderr": self.tail.decode("utf-8", "replace")}
-        os.write(self.orders.status, json.dumps(fields).encode())
+        os.write(self.options.status, json.dumps(fields).encode())
 
     def _read_stderr(self, readable: list[int]) -> None:
         data = os.read(self.stderr, 65_536)
@@ -136,7 +136,7 @@ class Keeper:
         self.tail = (self.tail + data)[-TAIL_BYTES:]
 
     def _reap(self) -> bool:
-        """Collect processes that have ended. Return whether others are left."""
+        """Reap the processes that have ended. Return whether other processes remain."""
         while True:
             try:
                 pid, status = os.waitpid(-1, os.WNOHANG)
@@ -149,15 +149,15 @@ class Keeper:
 
     def _check_limits(self) -> None:
         pids = descendants(os.getpid())
-        if len(pids) > self.orders.processes:
+        if len(pids) > self.options.processes:
             self.exceeded = "processes"
-        elif self.stderr_bytes > self.orders.stderr_bytes:
+        elif self.stderr_bytes > self.options.stderr_bytes:
             self.exceeded = "stderr"
-        elif self.orders.memory_mb is not None and exceeds_memory(pids, self.orders.memory_mb * 1_000_000):
+        elif self.options.memory_mb is not None and exceeds_memory(pids, self.options.memory_mb * 1_000_000):
             self.exceeded = "memory"
 
-    def _end_all(self) -> None:
-        """Kill every process that is left. They are stopped first, so that none starts another while they are killed."""
+    def _kill_all(self) -> None:
+        """Kill all remaining processes. They are suspended first, so that they cannot start other processes in the meantime."""
         if sys.platform != "linux":
             self._signal_group(signal.SIGKILL)
         deadline = time.monotonic() + GIVE_UP_S
@@ -182,7 +182,7 @@ class Keeper:
 
 
 def descendants(root: int) -> list[int]:
-    """Return the ids of all processes below a process. Systems without ``/proc`` report none."""
+    """Return the ids of all descendants of a process. On systems without ``/proc``, the list is empty."""
     found: list[int] = []
     pending = [root]
     while pending:
@@ -197,25 +197,25 @@ def descendants(root: int) -> list[int]:
 
 
 def exceeds_memory(pids: list[int], limit_bytes: int) -> bool:
-    """Return whether processes together use more memory than a limit. Pages that several of them share are counted once."""
-    # The exact sum is slow for large processes, and it is never larger than the simple one.
+    """Return whether the total memory of processes exceeds a limit. Pages that several processes share are counted once."""
+    # Computing the exact memory is slow for large processes. It never exceeds the simple estimate.
     return simple_memory_bytes(pids) > limit_bytes and exact_memory_bytes(pids) > limit_bytes
 
 
 def simple_memory_bytes(pids: list[int]) -> int:
-    """Return the memory of processes in bytes. Shared pages are counted once for each process."""
+    """Return the total memory of processes in bytes. Shared pages are counted once for each process."""
     page_bytes = os.sysconf("SC_PAGE_SIZE")
-    return sum(int(text.split()[1]) * page_bytes for text in _readable(pids, "statm") if text)
+    return sum(int(text.split()[1]) * page_bytes for text in _read_process_files(pids, "statm") if text)
 
 
 def exact_memory_bytes(pids: list[int]) -> int:
-    """Return the memory of processes in bytes. Shared pages are counted once."""
-    lines = [line for text in _readable(pids, "smaps_rollup") for line in text.splitlines()]
+    """Return the total memory of processes in bytes. Shared pages are counted once."""
+    lines = [line for text in _read_process_files(pids, "smaps_rollup") for line in text.splitlines()]
     return sum(int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:"))
 
 
-def _readable(pids: list[int], name: str) -> list[str]:
-    """Return the texts of a file of each process. Processes that have ended are left out."""
+def _read_process_files(pids: list[int], name: str) -> list[str]:
+    """Read a file in the ``/proc`` folder of each process. Processes that have ended are omitted."""
     texts = []
     for pid in pids:
         with suppress(OSError):
@@ -223,8 +223,8 @@ def _readable(pids: list[int], name: str) -> list[str]:
     return texts
 
 
-def control_process(option: int, value: int) -> None:
-    """Set an attribute of this process (Linux only)."""
+def set_process_attribute(option: int, value: int) -> None:
+    """Set an attribute of this process with ``prctl`` (Linux only)."""
     if sys.platform == "linux":
         import ctypes
 
@@ -232,16 +232,16 @@ def control_process(option: int, value: int) -> None:
 
 
 def main() -> None:
-    """Run the program that the first argument describes."""
-    orders = Orders(**json.loads(sys.argv[1]))
-    for descriptor in (orders.control, orders.status):
+    """Run the program described by the first command-line argument."""
+    options = KeeperOptions(**json.loads(sys.argv[1]))
+    for descriptor in (options.control, options.status):
         os.set_inheritable(descriptor, False)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    # Orphans below this process become its children, so that it finds processes that detached themselves.
-    control_process(PR_SET_CHILD_SUBREAPER, 1)
-    keeper = Keeper(orders)
-    os.write(orders.status, f"{keeper.pid}\n".encode())
+    # Orphaned descendants become children of this process, so that it finds processes that detached themselves.
+    set_process_attribute(PR_SET_CHILD_SUBREAPER, 1)
+    keeper = Keeper(options)
+    os.write(options.status, f"{keeper.pid}\n".encode())
     keeper.watch()
     keeper.report()
 

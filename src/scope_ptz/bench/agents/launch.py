@@ -1,4 +1,4 @@
-"""How a local agent is started: as a class or a program, in which environment, and with which limits."""
+"""The settings for starting a local agent: its class or program, its environment and its limits."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from scope_ptz.bench.agents.planner import AgentTimes
 from scope_ptz.errors import ConfigError
 
 DEFAULT_MEMORY_MB = 4_096
-"""Default limit on the memory of an agent's processes together."""
+"""Default limit on the total memory of an agent's processes, in MB."""
 
 
 @dataclass(frozen=True, slots=True)
 class AgentOptions:
-    """What the user states about a local agent, besides the name of its class.
+    """The user's options for a local agent, other than the name of its class.
 
     Attributes:
-        command: Program with arguments that speaks the protocol on stdin and stdout; empty for a class.
+        command: Command line of a program that speaks the protocol on stdin and stdout; empty for a class.
         python: Interpreter of the agent's own environment; None for the interpreter that runs SCOPE.
-        in_process: Run the agent in the scorer's process.
-        sandbox: Run the agent in a sandbox.
-        variables: Names of further environment variables that the agent receives.
-        memory_mb: Maximum memory of the agent's processes together in MB; None for no limit.
+        in_process: Whether to run the agent in the scorer's process.
+        sandbox: Whether to run the agent in a sandbox.
+        variables: Names of additional environment variables to pass to the agent.
+        memory_mb: Maximum total memory of the agent's processes in MB; None for no limit.
         times: Limits on the agent's time.
     """
 
@@ -41,21 +41,21 @@ class AgentOptions:
 
     @property
     def isolation(self) -> Isolation:
-        """The label of the agent's results."""
+        """The isolation label of the agent's results."""
         return "in-process" if self.in_process else "sandboxed" if self.sandbox else "isolated"
 
 
 @dataclass(frozen=True, slots=True)
 class AgentLaunch:
-    """How an agent's process is started.
+    """The settings for starting an agent's process.
 
     Attributes:
         name: The agent's name in traces and on run cards.
-        command: The program and its arguments, with everything that the sandbox needs.
+        command: The program and its arguments, including the command line of the sandbox.
         folder: The working folder.
-        environment: All environment variables of the process.
-        isolation: The label of the agent's results.
-        memory_mb: Maximum memory of the agent's processes together in MB; None for no limit.
+        environment: The complete environment of the process.
+        isolation: The isolation label of the agent's results.
+        memory_mb: Maximum total memory of the agent's processes in MB; None for no limit.
     """
 
     name: str
@@ -69,14 +69,17 @@ class AgentLaunch:
 def agent_name(agent: str, options: AgentOptions) -> str:
     """Return the name of an agent: ``module:Class``, or ``command:FILE``.
 
-    The file is the first that the command's arguments name, or else its program. Other arguments may be private.
+    FILE is the first argument that names an existing file, or else the program. Other arguments are not shown, because they may be
+    private.
 
     Raises:
-        ConfigError: The name or the options contradict each other.
+        ConfigError: The name is invalid, or the options contradict each other.
     """
     if options.command:
         if options.python is not None or options.in_process:
-            raise ConfigError("--agent-python and --agent-in-process need --agent MODULE:CLASS; they do not fit --agent-command.")
+            raise ConfigError(
+                "--agent-python and --agent-in-process require --agent MODULE:CLASS and cannot be used with --agent-command."
+            )
         program, *arguments = split_command(options.command)
         return f"command:{Path(next(filter(os.path.isfile, arguments), program)).name}"
     module, colon, attribute = agent.partition(":")
@@ -88,17 +91,17 @@ def agent_name(agent: str, options: AgentOptions) -> str:
 
 
 def split_command(command: str) -> list[str]:
-    """Split a command into the program and its arguments. No shell is involved.
+    """Split a command into the program and its arguments, without using a shell.
 
     Raises:
-        ConfigError: The command is empty, or its quotes do not match.
+        ConfigError: The command is empty, or a quotation mark is missing.
     """
     try:
         parts = shlex.split(command)
     except ValueError as error:
-        raise ConfigError(f"--agent-command cannot be split into words: {error}.") from error
+        raise ConfigError(f"--agent-command is not a valid command line: {error}.") from error
     if not parts:
-        raise ConfigError("--agent-command is empty. Name a program that speaks the agent protocol.")
+        raise ConfigError("--agent-command is empty. Give the command line of a program that speaks the agent protocol.")
     return parts
 
 
@@ -106,13 +109,13 @@ def find_program(name: str, folder: Path) -> Path:
     """Return the path of a program.
 
     Args:
-        name: A name on the search path, or a path. Relative paths are below ``folder``.
+        name: A program name to look up on the search path, or a path. Relative paths are resolved against ``folder``.
         folder: The working folder.
 
     Raises:
-        ConfigError: There is no such program.
+        ConfigError: The program does not exist or is not executable.
     """
     found = shutil.which(str(folder / name) if "/" in name else name)
     if found is None:
-        raise ConfigError(f"The program '{name}' does not exist or cannot be executed. Correct the path.")
+        raise ConfigError(f"The program '{name}' does not exist or is not executable. Check the path.")
     return Path(found)

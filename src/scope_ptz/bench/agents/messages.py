@@ -1,13 +1,13 @@
-"""The messages of the agent protocol, version 1. A message is one JSON object, and its ``type`` names its model.
+"""The messages of the agent protocol, version 1. A message is a JSON object whose ``type`` determines its model.
 
 An agent and its host take turns:
 
 1. The agent sends ``hello``, and the host replies with ``task``.
-2. The agent sends ``calls``, and the host replies with ``results``. The calls of one message form one step.
-3. The agent can send ``view`` at any time when it is its turn, and the host replies with ``view``.
+2. The agent sends ``calls``, and the host replies with ``results``. The calls in one message form one step.
+3. The agent can send ``view`` whenever it is its turn, and the host replies with ``view``.
 4. The agent sends ``reply``, and the host replies with ``end``.
 
-The host sends ``error`` or ``end`` at any time to end the run. Agents must ignore fields that they do not know. The host rejects
+The host can send ``error`` or ``end`` at any time to end the run. Agents must ignore fields that they do not know. The host rejects
 messages with unknown fields.
 """
 
@@ -19,31 +19,31 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from scope_ptz.bench.agents.faults import agent_failed
+from scope_ptz.bench.agents.faults import agent_failure
 from scope_ptz.geometry import Limits, Pose
 
 PROTOCOL = 1
 """Version of the protocol."""
 MAX_MESSAGE_BYTES = 1_000_000
-"""Maximum size of a message from an agent."""
+"""Maximum size of a message from an agent in bytes."""
 MAX_CALLS = 64
-"""Maximum number of calls in a message."""
+"""Maximum number of calls per message."""
 MAX_REPLY_CHARS = 100_000
-"""Maximum length of the text of a reply."""
+"""Maximum length of a reply's text in characters."""
 MAX_NAME_CHARS = 200
-"""Maximum length of the names of agents and tools, and of the ids of calls."""
+"""Maximum length of agent names, tool names and call ids, in characters."""
 MAX_QUOTED_CHARS = 300
-"""Maximum length of a description of an invalid message."""
+"""Maximum length of the description of an invalid message, in characters."""
 MAX_DEPTH = 32
-"""Maximum nesting of a call's arguments."""
+"""Maximum nesting depth of a call's arguments."""
 MAX_INTEGER = 2**63
-"""Integers in a call's arguments must be smaller than this."""
+"""Upper bound (exclusive) on the absolute value of integers in a call's arguments."""
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_CHARS)]
 
 
-def _plain_values(arguments: dict[str, Any]) -> dict[str, Any]:
-    """Check that arguments contain only finite numbers of an ordinary size, and are not nested too deeply."""
+def _check_values(arguments: dict[str, Any]) -> dict[str, Any]:
+    """Check that all numbers in arguments are finite and fit into 64 bits, and that arguments are not nested too deeply."""
     pending: list[tuple[Any, int]] = [(arguments, 1)]
     while pending:
         value, depth = pending.pop()
@@ -65,12 +65,12 @@ class _Message(BaseModel):
 
 
 class Hello(_Message):
-    """The first message of an agent.
+    """An agent's first message.
 
     Attributes:
         protocol: Version of the protocol that the agent speaks.
         name: The agent's name.
-        sees: Whether the agent requests frames with ``view``.
+        sees: Whether the agent will request frames with ``view``.
     """
 
     type: Literal["hello"] = "hello"
@@ -80,28 +80,28 @@ class Hello(_Message):
 
 
 class RequestedCall(_Message):
-    """A tool call. ``id`` is chosen by the agent and must be unique within its message."""
+    """A tool call. The agent chooses ``id``, which must be unique within the message."""
 
     id: Name
     name: Name
-    arguments: Annotated[dict[str, Any], AfterValidator(_plain_values)] = {}
+    arguments: Annotated[dict[str, Any], AfterValidator(_check_values)] = {}
 
 
-def _unique_ids(calls: tuple[RequestedCall, ...]) -> tuple[RequestedCall, ...]:
+def _check_unique_ids(calls: tuple[RequestedCall, ...]) -> tuple[RequestedCall, ...]:
     if len({call.id for call in calls}) < len(calls):
         raise ValueError("the ids of the calls must differ from each other")
     return calls
 
 
 class Calls(_Message):
-    """Tool calls that form one step. Perception calls of a step run concurrently, and other calls in order."""
+    """Tool calls that form one step. Within a step, perception calls run concurrently and other calls in order."""
 
     type: Literal["calls"] = "calls"
-    calls: Annotated[tuple[RequestedCall, ...], Field(min_length=1, max_length=MAX_CALLS), AfterValidator(_unique_ids)]
+    calls: Annotated[tuple[RequestedCall, ...], Field(min_length=1, max_length=MAX_CALLS), AfterValidator(_check_unique_ids)]
 
 
 class ViewRequest(_Message):
-    """A request for the newest frame. Only frames that an agent requested count as observations."""
+    """A request for the newest frame. Only requested frames count as observations."""
 
     type: Literal["view"] = "view"
 
@@ -115,7 +115,7 @@ class Reply(_Message):
 
 
 class CameraPose(_Message):
-    """A pose: pan and tilt in degrees, positive to the right and up, and zoom as magnification."""
+    """A camera pose: pan (positive to the right) and tilt (positive up) in degrees, and zoom as magnification."""
 
     pan_deg: float
     tilt_deg: float
@@ -123,7 +123,7 @@ class CameraPose(_Message):
 
     @classmethod
     def of(cls, pose: Pose) -> CameraPose:
-        """Return the pose as part of a message."""
+        """Convert a pose to its form in messages."""
         return cls(pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom)
 
 
@@ -140,21 +140,21 @@ class CameraLimits(_Message):
 
     @classmethod
     def of(cls, limits: Limits) -> CameraLimits:
-        """Return the limits as part of a message."""
+        """Convert limits to their form in messages."""
         return cls(**asdict(limits))
 
 
 class TaskMessage(_Message):
-    """What an agent learns about its task.
+    """The task as the agent receives it.
 
     Attributes:
         protocol: Version of the protocol that the host speaks.
-        task: An opaque handle, different in every run. It says nothing about the task.
+        task: An opaque handle that differs in every run and reveals nothing about the task.
         instruction: The instruction to the agent.
         tools: The JSON schemas of the tools in the OpenAI function format.
         presets: The names of the presets.
         limits: The limits of the camera.
-        pose: The pose of the camera at the start.
+        pose: The initial pose of the camera.
     """
 
     type: Literal["task"] = "task"
@@ -176,14 +176,14 @@ class CallResult(_Message):
 
 
 class Results(_Message):
-    """The results of the calls of one step, in the order of the calls."""
+    """The results of the calls in one step, in the order of the calls."""
 
     type: Literal["results"] = "results"
     results: tuple[CallResult, ...]
 
 
 class View(_Message):
-    """The newest frame. ``media_type`` and ``data`` (base64) are null if the agent said in ``hello`` that it does not see."""
+    """The newest frame. ``media_type`` and ``data`` (base64) are null if ``sees`` is false in the agent's ``hello``."""
 
     type: Literal["view"] = "view"
     media_type: str | None = None
@@ -198,7 +198,7 @@ class End(_Message):
 
 
 class Error(_Message):
-    """The agent made a mistake that ends the run."""
+    """The run has ended because of an error by the agent."""
 
     type: Literal["error"] = "error"
     message: str
@@ -217,35 +217,35 @@ def parse_agent_message(line: bytes | str) -> AgentMessage:
     """Parse a message from an agent.
 
     Args:
-        line: One JSON object, in UTF-8 if it is bytes.
+        line: A JSON object as a string or UTF-8 bytes.
 
     Returns:
         The message.
 
     Raises:
-        PlannerError: The message is too long or not valid. Its kind is "agent-output" or "agent-protocol".
+        PlannerError: The message is too long or invalid. The error's kind is "agent-output" or "agent-protocol".
     """
     size = len(line) if isinstance(line, bytes) else len(line.encode("utf-8", "replace"))
     if size > MAX_MESSAGE_BYTES:
-        raise agent_failed("agent-output", f"The agent sent a message of more than {MAX_MESSAGE_BYTES} bytes.")
+        raise agent_failure("agent-output", f"The agent sent a message of more than {MAX_MESSAGE_BYTES} bytes.")
     try:
         return _FROM_AGENT.validate_json(line)
     except ValidationError as error:
-        raise agent_failed("agent-protocol", f"The agent sent an invalid message: {_first_problem(error)}.") from error
+        raise agent_failure("agent-protocol", f"The agent sent an invalid message: {_first_problem(error)}.") from error
 
 
 def parse_host_message(line: bytes | str) -> HostMessage:
-    """Parse a message from the host. Raises ``pydantic.ValidationError`` if it is not valid."""
+    """Parse a message from the host. Raises ``pydantic.ValidationError`` if the message is invalid."""
     return _FROM_HOST.validate_json(line)
 
 
-def line_of(message: AgentMessage | HostMessage) -> bytes:
-    """Return a message as a line of JSON that ends with a line feed."""
+def encode_message(message: AgentMessage | HostMessage) -> bytes:
+    """Encode a message as a line of JSON, including the line feed."""
     return message.model_dump_json().encode() + b"\n"
 
 
 def _first_problem(error: ValidationError) -> str:
-    """Return the first problem of an invalid message. It quotes little of the message, which may be long or unprintable."""
+    """Return the first problem in an invalid message, truncated and without unprintable characters."""
     first = error.errors(include_url=False, include_context=False, include_input=False)[0]
     place = ".".join(str(part) for part in first["loc"])
     problem = f"{place}: {first['msg']}" if place else first["msg"]
@@ -253,5 +253,5 @@ def _first_problem(error: ValidationError) -> str:
 
 
 def printable(text: str, length: int) -> str:
-    """Return the beginning of a text that an agent wrote, with "?" in place of characters that cannot be printed."""
+    """Truncate a text from an agent to ``length`` characters, and replace unprintable characters with "?"."""
     return "".join(character if character.isprintable() else "?" for character in text[:length])

@@ -1,4 +1,4 @@
-"""A planner whose decisions come from an external agent over a channel."""
+"""A planner whose decisions come from an external agent through a channel."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TypeVar
 import anyio
 
 from scope_ptz.bench.agents.channel import AgentChannel
-from scope_ptz.bench.agents.faults import agent_failed
+from scope_ptz.bench.agents.faults import agent_failure
 from scope_ptz.bench.agents.messages import (
     MAX_NAME_CHARS,
     PROTOCOL,
@@ -37,18 +37,18 @@ from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, 
 T = TypeVar("T")
 
 FAREWELL_S = 1.0
-"""Seconds for telling an agent why its run ends."""
+"""Timeout in seconds for telling an agent why its run has ended."""
 MAX_VIEWS_PER_STEP = 100
 """Maximum number of frames that an agent can request in one step."""
 
 
 @dataclass(frozen=True, slots=True)
 class AgentTimes:
-    """Limits on the time that an agent takes. The time of tools, perception and the camera is not counted.
+    """Limits on the time that an agent takes, not counting the time of tools, perception and the camera.
 
     Attributes:
-        step_s: Maximum seconds of one step: from the host's message to the agent's next calls or reply.
-        run_s: Maximum seconds of all steps of a run.
+        step_s: Maximum seconds per step, from the host's message to the agent's next calls or reply.
+        run_s: Maximum seconds for all steps of a run together.
     """
 
     step_s: float = 300.0
@@ -58,14 +58,14 @@ class AgentTimes:
 class ChannelPlanner(Planner):
     """A planner whose decisions are the tool calls and the final reply of an external agent.
 
-    An instance can be used for one run only, because the agent has its own state. Call ``connect`` before the run, because the
+    An instance can be used for only one run, because the agent keeps its own state. Call ``connect`` before the run, because the
     agent's first message states whether it needs frames.
 
     Attributes:
         channel: The channel to the agent. Closing the planner closes it.
         times: The limits on the agent's time.
         spent_s: Seconds that the agent has taken so far.
-        failure: Why the agent failed; None if it has not.
+        failure: The error with which the agent failed; None if it has not failed.
     """
 
     def __init__(self, channel: AgentChannel, name: str = "", times: AgentTimes | None = None) -> None:
@@ -73,7 +73,7 @@ class ChannelPlanner(Planner):
 
         Args:
             channel: The channel to the agent.
-            name: The agent's name in traces; by default the name that the agent gives itself.
+            name: The agent's name in traces. The default is the name in the agent's first message.
             times: The limits on the agent's time.
         """
         self.channel, self.name, self.times = channel, name or "external agent", times or AgentTimes()
@@ -83,18 +83,18 @@ class ChannelPlanner(Planner):
         self._connected = False
         self.failure: PlannerError | None = None
         self._pending: tuple[str, ...] = ()
-        self._begun = False
+        self._started = False
         self._calls_made = 0
         self._view: View = View()
 
     async def connect(self) -> None:
-        """Wait for the agent's first message. If the agent fails, the first step reports the failure."""
+        """Wait for the agent's first message. If the agent fails, the first step raises the failure."""
         try:
             hello = await self._receive()
             if not isinstance(hello, Hello):
-                raise agent_failed("agent-protocol", f"The agent's first message must be hello; it sent {hello.type}.")
+                raise agent_failure("agent-protocol", f"The agent's first message must be hello; it sent {hello.type}.")
             if hello.protocol != PROTOCOL:
-                raise agent_failed(
+                raise agent_failure(
                     "agent-protocol", f"The agent speaks version {hello.protocol} of the protocol; this host speaks {PROTOCOL}."
                 )
             self.sees, self._connected = hello.sees, True
@@ -106,7 +106,7 @@ class ChannelPlanner(Planner):
         """Return the agent's next calls or its reply.
 
         Raises:
-            PlannerError: The agent failed. Its kind is one of ``bench.agents.faults``, or "empty" for an empty reply.
+            PlannerError: The agent failed. The error's kind is one from ``bench.agents.faults``, or "empty" for an empty reply.
         """
         if self.failure is None and not self._connected:
             await self.connect()
@@ -136,17 +136,17 @@ class ChannelPlanner(Planner):
                 opened = opened or view.data is not None
                 await self._send(view)
             elif isinstance(message, Calls):
-                return CallTools(calls=self._numbered(message), opened=opened)
+                return CallTools(calls=self._numbered_calls(message), opened=opened)
             elif isinstance(message, Reply):
                 return self._finish(message, opened=opened)
             else:
-                raise agent_failed("agent-protocol", "The agent sent hello twice.")
-        raise agent_failed("agent-protocol", f"The agent requested more than {MAX_VIEWS_PER_STEP} frames in one step.")
+                raise agent_failure("agent-protocol", "The agent sent hello twice.")
+        raise agent_failure("agent-protocol", f"The agent requested more than {MAX_VIEWS_PER_STEP} frames in one step.")
 
     def _next_message(self, state: State) -> HostMessage:
-        """Return the task at the first step, and the results of the calls at later steps."""
-        if not self._begun:
-            self._begun = True
+        """Return the task at the first step and the results of the last calls at later steps."""
+        if not self._started:
+            self._started = True
             return TaskMessage(
                 task=secrets.token_hex(8),
                 instruction=state.instruction,
@@ -156,12 +156,12 @@ class ChannelPlanner(Planner):
                 pose=CameraPose.of(state.briefing.pose),
             )
         outcomes = state.history[-1].outcomes
-        # The loop limits the calls of a step and drops the rest. The last outcome says so, for each dropped call.
+        # The loop limits the calls per step. The last outcome reports the dropped calls, so it is repeated for each of them.
         padded = (*outcomes, *outcomes[-1:] * (len(self._pending) - len(outcomes)))
         return Results(results=tuple(_result_of(name, outcome) for name, outcome in zip(self._pending, padded, strict=True)))
 
-    def _numbered(self, message: Calls) -> tuple[ToolCall, ...]:
-        """Return the calls with ids that are unique in the run. The agent's own ids need not be."""
+    def _numbered_calls(self, message: Calls) -> tuple[ToolCall, ...]:
+        """Return the calls with ids that are unique in the run. The agent's ids are unique only within a message."""
         first = self._calls_made + 1
         self._calls_made += len(message.calls)
         self._pending = tuple(call.id for call in message.calls)
@@ -176,14 +176,14 @@ class ChannelPlanner(Planner):
         return Finish(kind=reply.kind, text=reply.text, opened=opened)
 
     async def _send(self, message: HostMessage) -> None:
-        """Send a message. An agent that does not read its messages uses up its time."""
-        await self._in_time(lambda: self.channel.send(message))
+        """Send a message. The time that an agent takes to read it counts towards the limits."""
+        await self._with_time_limit(lambda: self.channel.send(message))
 
     async def _receive(self) -> AgentMessage:
-        return await self._in_time(self.channel.receive)
+        return await self._with_time_limit(self.channel.receive)
 
-    async def _in_time(self, work: Callable[[], Awaitable[T]]) -> T:
-        """Wait for the agent, and end the run if the step or the whole run takes the agent too long."""
+    async def _with_time_limit(self, work: Callable[[], Awaitable[T]]) -> T:
+        """Await ``work``, and raise ``PlannerError`` if the agent takes too long for the step or for the whole run."""
         step_left_s, run_left_s = self.times.step_s - self._step_spent_s, self.times.run_s - self.spent_s
         started = time.monotonic()
         try:
@@ -194,11 +194,11 @@ class ChannelPlanner(Planner):
             self._step_spent_s += seconds
             self.spent_s += seconds
         if step_left_s <= run_left_s:
-            raise agent_failed("agent-timeout", f"The agent took longer than {self.times.step_s:g} s for one step.")
-        raise agent_failed("agent-timeout", f"The agent took longer than {self.times.run_s:g} s in one run.")
+            raise agent_failure("agent-timeout", f"The agent took longer than {self.times.step_s:g} s for one step.")
+        raise agent_failure("agent-timeout", f"The agent took longer than {self.times.run_s:g} s for the whole run.")
 
     async def _report(self, error: PlannerError) -> None:
-        """Remember the failure, and tell the agent about it if it is still connected and reads its messages."""
+        """Store the failure, and send it to the agent if the agent is still reading its messages."""
         self.failure = error
         with suppress(PlannerError), anyio.move_on_after(FAREWELL_S):
             await self.channel.send(Error(message=str(error)))

@@ -1,8 +1,8 @@
-"""Run the class of an external agent in a process of its own. This file uses only the standard library of Python 3.9 or later.
+"""Run an external agent's class in a separate process. Uses only the standard library of Python 3.9 or later.
 
-Usage: ``python runner.py MODULE:CLASS``, with the protocol of ``docs/external-agents.md`` on stdin and stdout. What the agent
-itself prints goes to stderr. SCOPE need not be installed: agents can import ``AgentReply`` from ``scope_agent``, a module that this
-file provides while it runs.
+Usage: ``python runner.py MODULE:CLASS``. Stdin and stdout carry the protocol described in ``docs/external-agents.md``, and the
+agent's own output goes to stderr. SCOPE need not be installed: agents can import ``AgentReply`` from the module ``scope_agent``,
+which this file creates at run time.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, Callable
 
 PROTOCOL = 1
 MODULE = "scope_agent"
-FAILED, OUT_OF_MEMORY, NOT_LOADED = 70, 71, 72
+FAILED, OUT_OF_MEMORY, NOT_LOADED = 70, 71, 72  # exit codes
 KINDS = ("answered", "clarification", "refused")
 
 Message = dict[str, Any]
@@ -43,11 +43,11 @@ class AgentReply:
 
 
 class AgentLoadError(Exception):
-    """The name of an agent is wrong, or it cannot be imported."""
+    """The agent cannot be imported, or it is not a valid agent class."""
 
 
 class Session:
-    """The interface of an agent to one run.
+    """An agent's interface to one run.
 
     Attributes:
         instruction: The instruction to the agent.
@@ -55,7 +55,7 @@ class Session:
         presets: The names of the presets.
         limits: The limits of the camera: ``min_pan_deg``, ``max_pan_deg``, ``min_tilt_deg``, ``max_tilt_deg``, ``min_zoom``,
             ``max_zoom`` and ``pan_endless``.
-        pose: The pose of the camera at the start: ``pan_deg``, ``tilt_deg`` and ``zoom``.
+        pose: The initial pose of the camera: ``pan_deg``, ``tilt_deg`` and ``zoom``.
     """
 
     def __init__(self, task: Message, send: Callable[[Message], None], sees: bool = False) -> None:
@@ -68,7 +68,7 @@ class Session:
         self._queued: list[tuple[Message, asyncio.Future[Message]]] = []
         self._sent: dict[str, asyncio.Future[Message]] = {}
         self._calls_made = 0
-        self._flush_planned = False
+        self._is_flush_scheduled = False
         self._view: bytes | None = None
         self._view_is_newest = False
         self._views: queue.Queue[Message | None] = queue.Queue()
@@ -77,20 +77,20 @@ class Session:
         self._ended = False
 
     async def call(self, name: str, arguments: dict[str, Any] | None = None) -> dict[str, Any]:
-        """Call a tool and return its result as JSON data, or ``{"error": "..."}`` if the call failed.
+        """Call a tool, and return its result as JSON data, or ``{"error": "..."}`` if the call failed.
 
-        Calls that are awaited together form one step. In a step, perception calls run concurrently and other calls in order.
+        Calls that are awaited together form one step. Within a step, perception calls run concurrently and other calls in order.
         """
         self._calls_made += 1
         call = {"id": f"call-{self._calls_made}", "name": name, "arguments": arguments or {}}
-        json.dumps(call, allow_nan=False)  # arguments that are not JSON fail here, in the agent's own code
+        json.dumps(call, allow_nan=False)  # arguments that are not valid JSON raise here, in the agent's own code
         answer: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         self._queued.append((call, answer))
-        self._plan_flush()
+        self._schedule_flush()
         return await answer
 
     def view(self) -> bytes | None:
-        """Return the newest view as JPEG if the agent's class has ``sees = True``, otherwise None."""
+        """Return the newest frame as JPEG data, or None unless the agent's class has ``sees = True``."""
         if self._sees and not self._view_is_newest and not self._ended:
             self._send({"type": "view"})
             message = self._views.get() or {}
@@ -99,7 +99,7 @@ class Session:
         return self._view
 
     def deliver(self, message: Message | None) -> None:
-        """Receive a message from the host, in any thread. None means that the host has gone."""
+        """Handle a message from the host. Can be called from any thread. None means that the host has disconnected."""
         kind = message["type"] if message is not None else "end"
         if kind == "view":
             self._views.put(message)
@@ -111,7 +111,7 @@ class Session:
             self._in_loop(self._cancel)
 
     async def run(self, agent_class: Callable[[], Any]) -> Message:
-        """Run an agent and return the message with its reply. If the host ends the run, the agent is cancelled."""
+        """Run an agent, and return the message with its reply. The agent is cancelled if the host ends the run."""
         self._loop = asyncio.get_running_loop()
         self._task = asyncio.ensure_future(self._reply(agent_class))
         if self._ended:
@@ -136,15 +136,15 @@ class Session:
         if self._task is not None:
             self._task.cancel()
 
-    def _plan_flush(self) -> None:
-        """Send the queued calls when the agent has made all calls that it awaits together, and no earlier step is under way."""
-        if self._queued and not self._sent and not self._flush_planned:
-            self._flush_planned = True
+    def _schedule_flush(self) -> None:
+        """Schedule sending the queued calls for when the agent has made all calls that it awaits together. Steps do not overlap."""
+        if self._queued and not self._sent and not self._is_flush_scheduled:
+            self._is_flush_scheduled = True
             loop = asyncio.get_running_loop()
             loop.call_soon(lambda: loop.call_soon(self._flush))
 
     def _flush(self) -> None:
-        self._flush_planned = False
+        self._is_flush_scheduled = False
         queued, self._queued = self._queued, []
         self._sent = {call["id"]: answer for call, answer in queued}
         self._send({"type": "calls", "calls": [call for call, _ in queued]})
@@ -156,7 +156,7 @@ class Session:
             answer = sent.get(result["id"])
             if answer is not None and not answer.done():
                 answer.set_result({"error": result["error"]} if result.get("result") is None else result["result"])
-        self._plan_flush()
+        self._schedule_flush()
 
 
 def load(name: str) -> Callable[[], Any]:
@@ -177,17 +177,17 @@ def load(name: str) -> Callable[[], Any]:
 
 
 def provide_module() -> None:
-    """Make ``from scope_agent import AgentReply`` work."""
-    module = types.ModuleType(MODULE, "What SCOPE provides to an external agent.")
+    """Create the module ``scope_agent``, so that agents can import ``AgentReply`` from it."""
+    module = types.ModuleType(MODULE, "The interface of SCOPE for external agents.")
     module.__dict__.update(AgentReply=AgentReply, AgentSession=Session)
     sys.modules[MODULE] = module
 
 
 class Pipe:
-    """The messages of the host and the agent on two file descriptors."""
+    """The connection to the host through the original stdin and stdout."""
 
     def __init__(self) -> None:
-        """Take over stdin and stdout. Afterwards stdin is empty, and what the agent prints goes to stderr."""
+        """Take over stdin and stdout. Afterwards, stdin is empty, and the agent's output goes to stderr."""
         self._input = os.fdopen(os.dup(0), "rb")
         self._output = os.fdopen(os.dup(1), "wb")
         self._lock = threading.Lock()
@@ -204,13 +204,13 @@ class Pipe:
             self._output.flush()
 
     def receive(self) -> Message | None:
-        """Wait for a message and return it; None if the host has gone."""
+        """Wait for the next message, and return it; None if the host has disconnected."""
         line = self._input.readline()
         return json.loads(line) if line else None
 
 
 def serve(agent_class: Callable[[], Any], name: str, pipe: Pipe) -> None:
-    """Run an agent on the task that the host sends."""
+    """Run an agent on the task from the host."""
     sees = bool(getattr(agent_class, "sees", False))
     pipe.send({"type": "hello", "protocol": PROTOCOL, "name": name, "sees": sees})
     task = pipe.receive()
@@ -229,9 +229,9 @@ def serve(agent_class: Callable[[], Any], name: str, pipe: Pipe) -> None:
 
 
 def main(name: str) -> int:
-    """Run an agent by its name, and return the exit code."""
+    """Run the agent ``module:Class``, and return the exit code."""
     pipe = Pipe()
-    # The folder of this file must not hide the agent's modules; the working folder must be found, as with ``python -m``.
+    # The folder of this file must not shadow the agent's modules. As with ``python -m``, search the working folder instead.
     sys.path[0] = str(Path.cwd())
     provide_module()
     try:

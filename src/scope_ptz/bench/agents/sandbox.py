@@ -1,4 +1,4 @@
-"""Run an agent in a sandbox: bubblewrap (``bwrap``), without the network, the home folder and the files of the dataset."""
+"""Run an agent in a bubblewrap sandbox (``bwrap``), without access to the network, the home folder and the dataset's files."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pathlib import Path
 from scope_ptz.errors import ConfigError
 
 RUNNER = Path("/run/scope/runner.py")
-"""Path of the runner in the sandbox."""
+"""Path of the runner inside the sandbox."""
 CHECK_S = 30.0
-"""Seconds for the check that the sandbox works."""
+"""Timeout in seconds for checking whether the sandbox works."""
 SCRATCH, SHARED_MEMORY = "/tmp", "/dev/shm"  # noqa: S108 - private folders of the sandbox
 SCRATCH_BYTES = 1_000_000_000
-"""Size of the private /tmp and of shared memory, each."""
-_SYSTEM = ("usr", "bin", "sbin", "lib", "lib32", "lib64", "libx32")
+"""Size of the private ``/tmp`` and of shared memory, each in bytes."""
+_SYSTEM_FOLDERS = ("usr", "bin", "sbin", "lib", "lib32", "lib64", "libx32")
 _SYSTEM_FILES = (
     "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "ssl", "ca-certificates", "alternatives", "localtime", "passwd", "group",
     "fonts", "mime.types",
@@ -27,22 +27,22 @@ _INSTALLATIONS = (
     "", "*/", "src/", "*/src/", "lib*/python*/*-packages/", "local/lib*/python*/*-packages/", "*/lib*/python*/*-packages/",
     "envs/*/lib*/python*/*-packages/",
 )  # fmt: skip
-_ISOLATED = ("--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL")
+_ISOLATION_OPTIONS = ("--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL")
 
 
-# If SCOPE runs as root, so does the agent, and /proc has files that root can write without any capability.
-_KERNEL = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
+# If SCOPE runs as root, so does the agent, and root can write to some files in /proc even without capabilities.
+_KERNEL_OPTIONS = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
 
 
 @dataclass(frozen=True, slots=True)
 class SandboxContents:
-    """What a sandbox shows and hides.
+    """The files that are visible and hidden in a sandbox.
 
     Attributes:
-        folder: The agent's own folder, which is the working folder; None for an agent in the interpreter's environment.
-        shown: Further folders and files: the interpreter's environment.
+        folder: The agent's folder, which becomes the working folder; None for an agent in the interpreter's environment.
+        shown: Other visible folders and files, such as the interpreter's environment.
         runner: The runner's file; None for an agent that is not a class.
-        hidden: Folders and files that are hidden where they lie within what is shown.
+        hidden: Folders and files to hide if they are inside a visible folder.
     """
 
     folder: Path | None
@@ -52,28 +52,28 @@ class SandboxContents:
 
 
 def own_files() -> tuple[Path, ...]:
-    """Return the folders of SCOPE itself: the package, and the checkout that it belongs to."""
+    """Return SCOPE's own folders: the package, and the checkout that contains it, if any."""
     package = Path(__file__).resolve().parents[2]
     checkout = package.parent.parent
     return (package, checkout) if package.parent.name == "src" and (checkout / "pyproject.toml").is_file() else (package,)
 
 
 def require_sandbox() -> None:
-    """Check that sandboxes can be created.
+    """Check that a sandbox can be created.
 
     Raises:
-        ConfigError: bubblewrap is missing, or the system does not permit it.
+        ConfigError: bubblewrap is not installed, or the system does not permit sandboxes.
     """
     if shutil.which("bwrap") is None:
-        raise ConfigError("--sandbox needs bubblewrap. Install it, for example with: apt-get install bubblewrap")
+        raise ConfigError("--sandbox requires bubblewrap. Install it, for example with: apt-get install bubblewrap")
     try:
-        command = ["bwrap", *_ISOLATED, "--ro-bind", "/", "/", "--proc", "/proc", "--dev", "/dev", "true"]
-        done = subprocess.run(command, capture_output=True, timeout=CHECK_S, check=False)
-        problem = done.stderr.decode(errors="replace").strip() if done.returncode else ""
+        command = ["bwrap", *_ISOLATION_OPTIONS, "--ro-bind", "/", "/", "--proc", "/proc", "--dev", "/dev", "true"]
+        result = subprocess.run(command, capture_output=True, timeout=CHECK_S, check=False)
+        problem = result.stderr.decode(errors="replace").strip() if result.returncode else ""
     except (OSError, subprocess.SubprocessError) as error:
         problem = str(error)
     else:
-        if done.returncode == 0:
+        if result.returncode == 0:
             return
     raise ConfigError(
         f"--sandbox cannot be used here, because bubblewrap cannot create a namespace: {problem or 'unknown reason'}. "
@@ -81,27 +81,35 @@ def require_sandbox() -> None:
     )
 
 
-def sandboxed(command: Sequence[str], contents: SandboxContents) -> tuple[str, ...]:
-    """Return the command that runs another one in the sandbox.
+def sandbox_command(command: Sequence[str], contents: SandboxContents) -> tuple[str, ...]:
+    """Return the command line that runs a command in the sandbox.
 
     Args:
         command: The program and its arguments.
-        contents: What the sandbox shows and hides.
+        contents: The files that are visible and hidden in the sandbox.
 
     Raises:
-        ConfigError: The agent's folder contains, or lies in, a folder that must not be visible as a whole.
+        ConfigError: The agent's folder contains the home folder or is inside a hidden folder.
     """
     folder = contents.folder
     if folder is not None:
         _check_folder(folder.resolve(), contents.hidden)
-    options = ["bwrap", *_ISOLATED, "--hostname", "agent", *_KERNEL, *_scratch(SHARED_MEMORY), *_scratch(SCRATCH)]
-    options += _system()
+    options = [
+        "bwrap",
+        *_ISOLATION_OPTIONS,
+        "--hostname",
+        "agent",
+        *_KERNEL_OPTIONS,
+        *_tmpfs_options(SHARED_MEMORY),
+        *_tmpfs_options(SCRATCH),
+    ]
+    options += _system_options()
     mounts = [Path("/usr")]
     for path in (*contents.shown, *([folder] if folder is not None else [])):
         if not any(path.is_relative_to(mount) for mount in mounts):
             options += ["--ro-bind", str(path), str(path)]
             mounts.append(path)
-    for path in _masked(mounts, contents.hidden):
+    for path in _paths_to_mask(mounts, contents.hidden):
         options += ["--tmpfs", str(path), "--remount-ro", str(path)] if path.is_dir() else ["--ro-bind", "/dev/null", str(path)]
     if contents.runner is not None:
         options += ["--ro-bind", str(contents.runner), str(RUNNER)]
@@ -112,24 +120,24 @@ def _check_folder(folder: Path, hidden: Sequence[Path]) -> None:
     home = Path.home().resolve()
     if folder == Path("/") or home.is_relative_to(folder):
         raise ConfigError(
-            f"--sandbox shows the agent its own folder, but {folder} contains the home folder. Start from another folder."
+            f"--sandbox makes the agent's folder visible, but {folder} contains the home folder. Run the command in another folder."
         )
     for path in (path.resolve() for path in hidden):
         if folder.is_relative_to(path):
             raise ConfigError(
                 f"The agent's folder {folder} is in {path}, which --sandbox hides. "
-                "Copy the agent to a folder of its own and start there."
+                "Copy the agent to a separate folder, and run the command there."
             )
 
 
-def _scratch(path: str) -> list[str]:
+def _tmpfs_options(path: str) -> list[str]:
     return ["--size", str(SCRATCH_BYTES), "--tmpfs", path]
 
 
-def _system() -> list[str]:
-    """Return the options that show the operating system's programs and libraries."""
+def _system_options() -> list[str]:
+    """Return the options that make the operating system's programs and libraries visible."""
     options: list[str] = []
-    for name in _SYSTEM:
+    for name in _SYSTEM_FOLDERS:
         path = Path("/") / name
         if path.is_symlink():
             options += ["--symlink", str(path.readlink()), str(path)]
@@ -140,8 +148,8 @@ def _system() -> list[str]:
     return options
 
 
-def _masked(mounts: Sequence[Path], hidden: Sequence[Path]) -> list[Path]:
-    """Return the paths that must be covered: what is hidden, and every installation of SCOPE, within what is shown."""
+def _paths_to_mask(mounts: Sequence[Path], hidden: Sequence[Path]) -> list[Path]:
+    """Return the paths to mask: all hidden paths and installations of SCOPE inside visible folders."""
     masked: set[Path] = set()
     for mount in mounts:
         place = mount.resolve()

@@ -1,4 +1,4 @@
-"""Find the source of an external agent without importing it, because importing would run its code in the scorer's process."""
+"""Find an external agent's source files without importing them, because that would run the agent in the scorer's process."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from scope_ptz.errors import ConfigError
 
 DIGEST_CHARS = 16
-"""Length of a digest in hexadecimal characters."""
+"""Length of a source digest in hexadecimal characters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,9 +21,9 @@ class Interpreter:
     """A Python interpreter.
 
     Attributes:
-        program: Path of the program, as the user named it.
-        prefixes: Folders of the environment and of the installation that it is based on.
-        search_path: Folders in which it finds modules.
+        program: Path of the program, as given by the user.
+        prefixes: Folder of the environment, and folder of the installation that it is based on.
+        search_path: Folders that it searches for modules.
     """
 
     program: Path
@@ -37,9 +37,9 @@ def own_interpreter() -> Interpreter:
 
 
 def interpreter_at(program: Path) -> Interpreter:
-    """Return what the files of an interpreter's environment say about it.
+    """Return the interpreter at a path, as described by the files of its environment.
 
-    The interpreter is not run: its environment may contain code that runs whenever it starts, and belongs to the agent.
+    The interpreter is not run, because the environment belongs to the agent and may contain code that runs at startup.
 
     Args:
         program: Path of the program.
@@ -55,7 +55,7 @@ def interpreter_at(program: Path) -> Interpreter:
 
 
 def _lines(file: Path) -> list[str]:
-    """Return the lines of a file that lists folders; none if it cannot be read."""
+    """Return the lines of a file, or no lines if the file cannot be read."""
     try:
         return [line.strip() for line in file.read_text("utf-8", "replace").splitlines()]
     except OSError:
@@ -64,11 +64,11 @@ def _lines(file: Path) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class AgentSource:
-    """The source of an agent.
+    """The source files of an agent.
 
     Attributes:
-        folder: The folder in which its module or package, or its program, was found.
-        files: The files by their name in the digest.
+        folder: The folder in which the module, package or program was found.
+        files: The files by their names in the digest.
     """
 
     folder: Path
@@ -85,20 +85,20 @@ class AgentSource:
             try:
                 digest.update(f"{name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
             except OSError as error:
-                raise ConfigError(f"The source of the agent cannot be read: {path}: {error.strerror}.") from error
+                raise ConfigError(f"The agent's source file {path} cannot be read: {error.strerror}.") from error
         return digest.hexdigest()[:DIGEST_CHARS] if self.files else ""
 
 
 def find_module(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentSource | None:
-    """Return the source of ``module:Class``: its module, or all Python files of its package.
+    """Return the source of the agent ``module:Class``: its module, or all Python files of its package.
 
     Args:
-        agent: The name of the class.
+        agent: The agent's name.
         folder: The working folder, which is searched first.
-        search_path: The folders that are searched afterwards.
+        search_path: The folders to search afterwards.
 
     Returns:
-        The source; None if there is no such module on the search path.
+        The source; None if the module was not found.
     """
     top = agent.partition(":")[0].partition(".")[0]
     importlib.invalidate_caches()
@@ -117,7 +117,7 @@ def find_module(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentS
 
 
 def find_command(words: Sequence[str], program: Path, folder: Path) -> AgentSource:
-    """Return the source of a command: its program, and the files that its arguments name.
+    """Return the source of an agent command: its program, and the files named by its arguments.
 
     Args:
         words: The program and its arguments.

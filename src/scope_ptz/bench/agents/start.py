@@ -1,4 +1,4 @@
-"""Start external agents: turn the user's options into a planner for each run."""
+"""Start external agents: create a planner for each run from the user's options."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_ptz.bench.agents.in_process import InProcessChannel
 from scope_ptz.bench.agents.launch import AgentLaunch, AgentOptions, agent_name, find_program, split_command
 from scope_ptz.bench.agents.pipe import PipeChannel
 from scope_ptz.bench.agents.planner import ChannelPlanner
-from scope_ptz.bench.agents.sandbox import RUNNER, SCRATCH, SandboxContents, own_files, require_sandbox, sandboxed
+from scope_ptz.bench.agents.sandbox import RUNNER, SCRATCH, SandboxContents, own_files, require_sandbox, sandbox_command
 from scope_ptz.bench.agents.source import AgentSource, Interpreter, find_command, find_module, interpreter_at, own_interpreter
 from scope_ptz.errors import ConfigError
 from scope_ptz.settings import agent_environment
@@ -25,15 +25,15 @@ OpenChannel = Callable[[], Awaitable[AgentChannel]]
 
 @dataclass(frozen=True, slots=True)
 class LocalAgent:
-    """An external agent on this machine, ready to be started for any number of runs.
+    """An external agent on this machine, which can be started for any number of runs.
 
     Attributes:
         name: Its name in traces and on run cards.
-        isolation: How it is separated from the tasks and the ground truth; its results carry this label.
-        source: Digest of its source; empty if the source is unknown.
+        isolation: How it is separated from the tasks and the ground truth. This is a label of its results.
+        source: Digest of its source files; empty if they are unknown.
         settings: Other settings that affect its results, as JSON data. They are part of an evaluation's identity.
-        options: The options.
-        open_channel: Starts it for one run.
+        options: The user's options.
+        open_channel: Starts the agent for one run.
     """
 
     name: str
@@ -44,17 +44,17 @@ class LocalAgent:
     open_channel: OpenChannel
 
     async def open(self) -> ChannelPlanner:
-        """Start the agent for one run. If it fails to start, the first step of the run reports that."""
+        """Start the agent for one run. If it does not start, the first step of the run raises the failure."""
         planner = ChannelPlanner(await self.open_channel(), self.name, self.options.times)
         try:
             await planner.connect()
-        except BaseException:  # including cancellation, which must leave no process behind
+        except BaseException:  # including cancellation, so that no process is left behind
             await planner.close()
             raise
         return planner
 
     async def check(self) -> None:
-        """Start the agent once, without a task.
+        """Check that the agent starts and speaks the protocol, without giving it a task.
 
         Raises:
             ConfigError: The agent does not start, or does not speak the protocol.
@@ -68,15 +68,15 @@ class LocalAgent:
 
 
 def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()) -> LocalAgent:
-    """Return an agent that can be started. Its code is not run yet.
+    """Return an agent that is ready to start. None of its code is run yet.
 
     Args:
-        agent: ``module:Class``; not used if the options name a command.
-        options: The options.
-        hidden: Folders and files that a sandbox hides besides SCOPE itself.
+        agent: ``module:Class``; ignored if the options contain a command.
+        options: The user's options.
+        hidden: Folders and files that a sandbox hides in addition to SCOPE itself.
 
     Raises:
-        ConfigError: The options contradict each other, or name something that does not exist.
+        ConfigError: The options contradict each other or name a program that does not exist.
     """
     name, folder = agent_name(agent, options), Path.cwd()
     if sys.platform == "win32" and not options.in_process:
@@ -84,20 +84,20 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
             "External agents need Linux or macOS. On Windows, use --agent-in-process or the Windows Subsystem for Linux."
         )
     if options.command:
-        return _program(name, options, folder, hidden)
+        return _command_agent(name, options, folder, hidden)
     if options.in_process:
         source = find_module(agent, folder, own_interpreter().search_path)
-        return LocalAgent(name, "in-process", source.digest() if source else "", {}, options, lambda: _in_process(agent))
-    return _class(name, options, folder, hidden)
+        return LocalAgent(name, "in-process", source.digest() if source else "", {}, options, lambda: _in_process_channel(agent))
+    return _class_agent(name, options, folder, hidden)
 
 
-def _class(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
+def _class_agent(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
     environment = agent_environment(options.variables, python_path=options.python is None)
-    interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute(options.python))
+    interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute_path(options.python))
     source = find_module(name, folder, interpreter.search_path)
     installed = source is not None and any(source.folder.is_relative_to(prefix) for prefix in interpreter.prefixes)
     if options.python is None and source is not None and source.folder != folder and not installed:
-        # This program may have added the folder to its own search path, which a new process does not inherit.
+        # The folder may have been added to this process's search path, which a new process does not inherit.
         environment["PYTHONPATH"] = os.pathsep.join(
             [str(source.folder), *environment.get("PYTHONPATH", "").split(os.pathsep)]
         ).rstrip(":")
@@ -107,11 +107,11 @@ def _class(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, .
     )
     settings = _settings(options) | ({"python": str(options.python)} if options.python is not None else {})
     if options.sandbox:
-        return _in_sandbox(launch, source, settings, options, interpreter, hidden)
-    return _local(launch, source, settings, options)
+        return _sandboxed_agent(launch, source, settings, options, interpreter, hidden)
+    return _process_agent(launch, source, settings, options)
 
 
-def _program(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
+def _command_agent(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
     words = split_command(options.command)
     program = find_program(words[0], folder)
     source = find_command(words, program, folder)
@@ -121,11 +121,11 @@ def _program(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path,
     )
     settings = _settings(options) | {"command": words}
     if options.sandbox:
-        return _in_sandbox(launch, source, settings, options, None, hidden)
-    return _local(launch, source, settings, options)
+        return _sandboxed_agent(launch, source, settings, options, None, hidden)
+    return _process_agent(launch, source, settings, options)
 
 
-def _in_sandbox(
+def _sandboxed_agent(
     launch: AgentLaunch,
     source: AgentSource | None,
     settings: dict[str, Any],
@@ -133,7 +133,7 @@ def _in_sandbox(
     interpreter: Interpreter | None,
     hidden: tuple[Path, ...],
 ) -> LocalAgent:
-    """Return an agent in the sandbox. Its working folder is the folder that contains its module."""
+    """Return an agent that runs in the sandbox. Its working folder is the folder that contains its module."""
     require_sandbox()
     visible: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_links_to(interpreter.program))
     installed = source is None or any(source.folder.is_relative_to(path) for path in visible)
@@ -143,9 +143,9 @@ def _in_sandbox(
         runner=Path(runner.__file__) if interpreter is not None else None,
         hidden=(*own_files(), *hidden, *(path / "scope_ptz" for path in (interpreter.search_path if interpreter else ()))),
     )
-    kept = {name: value for name, value in launch.environment.items() if name not in ("PYTHONPATH", "TMPDIR")}
-    sandbox_launch = replace(launch, folder=Path("/"), environment=kept | {"HOME": SCRATCH})
-    return _local(sandbox_launch, source, settings, options, contents)
+    environment = {name: value for name, value in launch.environment.items() if name not in ("PYTHONPATH", "TMPDIR")}
+    sandbox_launch = replace(launch, folder=Path("/"), environment=environment | {"HOME": SCRATCH})
+    return _process_agent(sandbox_launch, source, settings, options, contents)
 
 
 def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
@@ -153,14 +153,14 @@ def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
 
 
 def _links_to(program: Path) -> tuple[Path, ...]:
-    """Return the program and each target of its chain of symbolic links, down to the real file."""
+    """Return the program and the targets of its chain of symbolic links, down to the real file."""
     links = [program]
     while links[-1].is_symlink():
         links.append(Path(os.path.normpath(links[-1].parent / links[-1].readlink())))
     return tuple(links)
 
 
-def _local(
+def _process_agent(
     launch: AgentLaunch,
     source: AgentSource | None,
     settings: dict[str, Any],
@@ -168,17 +168,17 @@ def _local(
     contents: SandboxContents | None = None,
 ) -> LocalAgent:
     if contents is not None:
-        sandboxed(launch.command, contents)  # raises ConfigError now, and not at the first run
+        sandbox_command(launch.command, contents)  # raises ConfigError here rather than in the first run
 
     async def open_channel() -> AgentChannel:
-        # Files that must be hidden may appear later, such as the folder of the logs.
-        current = launch if contents is None else replace(launch, command=sandboxed(launch.command, contents))
+        # Paths that must be hidden, such as the log folder, may not have existed before.
+        current = launch if contents is None else replace(launch, command=sandbox_command(launch.command, contents))
         return await PipeChannel.start(current)
 
     return LocalAgent(launch.name, launch.isolation, source.digest() if source else "", settings, options, open_channel)
 
 
-async def _in_process(agent: str) -> AgentChannel:
+async def _in_process_channel(agent: str) -> AgentChannel:
     current_folder = str(Path.cwd())
     if current_folder not in sys.path:
         sys.path.insert(0, current_folder)
@@ -200,6 +200,6 @@ def _settings(options: AgentOptions) -> dict[str, Any]:
     }
 
 
-def _absolute(program: Path) -> Path:
-    """Return the absolute path of an interpreter. Links are kept, because Python finds a virtual environment by its link."""
+def _absolute_path(program: Path) -> Path:
+    """Return the absolute path of an interpreter. Links are not resolved, because they identify the virtual environment."""
     return find_program(str(program), Path.cwd()).absolute()

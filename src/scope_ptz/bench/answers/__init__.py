@@ -1,10 +1,10 @@
 """Parse an agent's free-text answer into a typed value and compare it with a task's expected answer.
 
 Import from this package only; its modules are internal. ``parse_answer`` and ``agrees`` are the entry points. The
-other functions are for code that looks for the same words and numbers in other texts, such as tool results and tool arguments.
+other functions find words and numbers in other texts, such as tool results and tool arguments.
 
-The parser shares no code with the planner's grammar or with the description parser of ground-truth perception. An error in one of
-them therefore cannot hide an error in another.
+The parser shares no code with the planner's grammar or with the description parser of ground-truth perception, so an error in one
+of them cannot hide an error in another.
 """
 
 from scope_ptz.bench.answers.helpers import is_stated, numbers_in

@@ -1,4 +1,4 @@
-"""Parse answers that name things: one option, a set of names, or the facts of a description."""
+"""Parse answers that name things: one of several options, a set of names, or the facts of a description."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from scope_ptz.bench.answers.comparisons import comparatives, described_thing, directions, reference_of
+from scope_ptz.bench.answers.comparisons import comparatives_by_direction, described_thing, find_comparatives, reference_of
 from scope_ptz.bench.answers.denials import says_none, says_yes
 from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
@@ -16,24 +16,24 @@ from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import all_wordings
 from scope_ptz.bench.tasks.expected import Choice, Description, Fact, NameSet
 
-SAME = (
+EQUALITY_PHRASES = (
     "the same", "same number", "same", "equal", "equally", "equals", "tie", "tied", "draw", "identical", "no difference",
     "not differ", "as many", "as much", "even", "evenly", "both",
 )  # fmt: skip
-"""Wordings of equality. They also name an option that is called "same"."""
+"""Phrases that state equality. They are also wordings of an option named "same"."""
 
 _CONCLUDING_WORDS = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
 """Words that introduce the conclusion of an answer."""
-_MARKED_NONE = ("none", "0", "zero")
-"""Marks that say that a named thing is absent, as in "bins: none"."""
-_ALL = re.compile(r"\b(all|everything|both|each|every)\b")
+_ABSENCE_MARKS = ("none", "0", "zero")
+"""Marks after a name that mean that the thing is absent, as in "bins: none"."""
+_ALL_OPTIONS_WORDS = re.compile(r"\b(all|everything|both|each|every)\b")
 """Words that refer to all options without naming them."""
 
 
 def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
-    """Parse the one option that an answer names and does not deny.
+    """Parse the only option that an answer names without denying it.
 
-    If several options are named, the one that a comparison picks or that the answer concludes with is returned.
+    If an answer names several options, return the one that a comparison picks or that the answer concludes with.
     """
     if expected.subject and True in absence_verdicts(text, expected.subject):
         return Unreadable("it says that there is none")
@@ -50,15 +50,15 @@ def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
 
 
 def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
-    """Return the mentions of options that the answer neither denies nor names only as a contrast."""
+    """Return the mentions of options that are neither denied nor made only for contrast."""
     options = dict(expected.options)
     if "same" in options:
-        options["same"] = (*options["same"], *SAME)
+        options["same"] = (*options["same"], *EQUALITY_PHRASES)
     return [m for m in option_mentions(text, options) if not m.denied and not m.contrast]
 
 
 def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer | None:
-    """Parse an answer that says that the options are equal; return None for other answers."""
+    """Parse an answer that calls the options equal; return None for other answers."""
     equalities = [m for m in mentions if m.name == "same"]
     if not equalities:
         return None
@@ -79,14 +79,14 @@ def _parse_comparison(
     mentions: Sequence[NameMention],
     stated: Sequence[NameMention],
 ) -> ParsedAnswer:
-    """Parse an answer to a question that asks for the most, the closest and so on.
+    """Parse the answer to a question about an extreme, such as "most" or "closest".
 
     Args:
         expected: The expected choice.
         text: The answer.
         compared: Mentions of options, without mentions of equality.
-        mentions: The mentions in ``compared`` that are not merely the reference of a comparison.
-        stated: The mentions in ``compared`` and the mentions of equality.
+        mentions: Those mentions in ``compared`` that are not just the reference of a comparison.
+        stated: The mentions in ``compared``, and the mentions of equality.
     """
     picked, excluded = _compare_options(expected, text, compared)
     if picked & excluded:
@@ -104,10 +104,10 @@ def _parse_comparison(
 
 
 def _single_option(text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer:
-    """Return the only option that is named.
+    """Return the only option that an answer names.
 
-    If several are named, bracketed remarks, parts of things and text before the conclusion are disregarded, in this order, until
-    one option remains.
+    If the answer names several, ignore bracketed remarks, then mentions of parts, then everything before the conclusion, until one
+    option remains.
     """
     named = {m.name for m in mentions}
     if len(named) > 1:
@@ -124,24 +124,24 @@ def _single_option(text: AnswerText, mentions: Sequence[NameMention]) -> ParsedA
 
 
 def _compare_options(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> tuple[set[str], set[str]]:
-    """Return the options that comparisons pick, and those that they exclude.
+    """Return the options that the comparisons in an answer pick, and the options that they exclude.
 
-    With only two options, excluding one picks the other: if the gate is farther, the other option is closer.
+    If there are only two options, excluding one picks the other: if the gate is farther, the other option is closer.
     """
     picked, excluded = set[str](), set[str]()
     pair = {name for name in expected.options if name != "same"}
-    for comparative in comparatives(text, directions(expected.picks)):
+    for comparative in find_comparatives(text, comparatives_by_direction(expected.picks)):
         described = described_thing(text, comparative, mentions)
         reference = reference_of(text, comparative, mentions)
-        one = {described.name} if described else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
-        other = {reference.name} if reference else pair - one if one and len(pair) == 2 else set[str]()
+        subject = {described.name} if described else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
+        other = {reference.name} if reference else pair - subject if subject and len(pair) == 2 else set[str]()
         if comparative.denied:
-            excluded |= one if comparative.name == "forward" else set()
+            excluded |= subject if comparative.name == "forward" else set()
         elif comparative.name == "forward":
-            picked |= one
+            picked |= subject
             excluded |= {reference.name} if reference else set()
         else:
-            excluded |= one
+            excluded |= subject
             picked |= other if len(pair) == 2 else set()
     return picked, excluded
 
@@ -153,13 +153,13 @@ def _is_heading(text: AnswerText, mention: NameMention) -> bool:
 
 
 def _is_only_counted(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
-    """Return whether the answer only counts an option ("9 skips", "skips: 9") and does not choose it."""
+    """Return whether the answer only counts an option ("9 skips", "skips: 9") without choosing it."""
     counts = [n for n in find_numbers(text, (mention.name, *wordings)) if n.counts_unit]
     return any(0 <= mention.start - n.end <= 3 or n.start == mention.end for n in counts)
 
 
 def _is_remark(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether an option is named only in a remark: "red" in "green (the wall above is red)", but not in "green (or red)"."""
+    """Return whether a mention is part of a remark, like "red" in "green (the wall above is red)" but not in "green (or red)"."""
     before = text.words[mention.start - 1].text if mention.start else ""
     return text.in_brackets(mention.start) and before not in _ALTERNATIVES
 
@@ -169,7 +169,7 @@ _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "ra
 
 
 def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
-    """Return the mentions that describe only a part of a thing or what it stands on: "yellow" in "blue, with a yellow top"."""
+    """Return the mentions that describe only a part of a thing or its support, like "yellow" in "blue, with a yellow top"."""
     parts = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = text.words[mention.end : mention.end + 1]
@@ -177,15 +177,15 @@ def _part_mentions(text: AnswerText, mentions: Sequence[NameMention]) -> list[Na
         more = bool(after) and after[0].text == "and"
         before = " ".join(word.text for word in text.words[max(0, mention.start - 2) : mention.start])
         listed = at > 0 and parts[-1:] == [mentions[at - 1]] and before.endswith("and")
-        if (_ATTACHED.search(before) and (continues or more)) or (listed and continues):
+        if (_PART_INTRODUCTION.search(before) and (continues or more)) or (listed and continues):
             parts.append(mention)
     return parts
 
 
-_ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
-"""Words before a mention that show that it describes a part of a thing or what it stands on."""
+_PART_INTRODUCTION = re.compile(r"\b(with( an?| the| its)?|on an?)$")
+"""Words before a mention which show that it describes a part of a thing or its support."""
 _CONNECTING_WORDS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
-"""Words after a mention that show that it does not modify a following noun, unlike "yellow" in "yellow top"."""
+"""Words after a mention which show that it does not modify a following noun, unlike "yellow" in "yellow top"."""
 
 
 def is_reference(text: AnswerText, mention: NameMention) -> bool:
@@ -196,19 +196,19 @@ def is_reference(text: AnswerText, mention: NameMention) -> bool:
 
 
 def parse_name_set(expected: NameSet, text: AnswerText) -> ParsedAnswer:
-    """Parse the set of all names that an answer states and does not deny."""
+    """Parse the set of all names that an answer states without denying them."""
     names = {name: all_wordings(name, other_wordings) for name, other_wordings in expected.options.items()}
-    mentions = [m for m in text.mentions(names) if not m.denied and not m.contrast and not text.is_marked(m.end, _MARKED_NONE)]
+    mentions = [m for m in text.mentions(names) if not m.denied and not m.contrast and not text.is_marked(m.end, _ABSENCE_MARKS)]
     named = frozenset(m.name for m in mentions)
-    for one, two in pairwise(mentions):
-        if any(w.text == "or" for w in text.words[one.end : two.start]):
+    for first, second in pairwise(mentions):
+        if any(w.text == "or" for w in text.words[first.end : second.start]):
             return Unreadable("it states alternatives")
     if named:
         return ParsedValue(named)
-    if _ALL.search(text.joined()):
+    if _ALL_OPTIONS_WORDS.search(text.plain_text()):
         return Unreadable("it does not say which")
     if (not says_yes(text) and (says_none(text) or _denies_all(text))) or any(
-        m.denied or text.is_marked(m.end, _MARKED_NONE) for m in text.mentions(names)
+        m.denied or text.is_marked(m.end, _ABSENCE_MARKS) for m in text.mentions(names)
     ):
         return ParsedValue(frozenset[str]())
     return Unreadable("nothing is named")
@@ -218,15 +218,15 @@ _DENIES_ALL = re.compile(
     r"^no (?!(information|data|results?|answers?|response|output|reply|image|idea)\b)\w+\b(?! (is|are) (missing|absent))|"
     r"\bthere (is|are) (no|not any)\b|\b(parts|see|saw|find|sees) (no|nothing)\b"
 )
-"""Denials of everything, such as "no lamps" and "there are no". Phrases such as "no data" are not denials."""
+"""Denials of everything, such as "no lamps" and "there are no". Phrases such as "no data" do not match."""
 
 
 def _denies_all(text: AnswerText) -> bool:
-    return _DENIES_ALL.search(text.joined()) is not None
+    return _DENIES_ALL.search(text.plain_text()) is not None
 
 
 def parse_description(expected: Description, text: AnswerText) -> ParsedAnswer:
-    """Parse which of the expected facts and which of the contradictions an answer states."""
+    """Parse the expected facts and the contradictions that an answer states."""
     return ParsedValue((_stated_facts(expected.facts, text), _stated_facts(expected.contradictions, text)))
 
 

@@ -1,4 +1,4 @@
-"""Determine what an answer claims about a thing that it names: that it is present, that it is absent, or nothing."""
+"""Determine what an answer claims when it names a thing: that the thing is present, that it is absent, or nothing."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):
-    """What an answer claims about a thing when it names it.
+    """A claim about a thing that an answer names.
 
-    ``STATED``: the sentence states something about the thing; whether it is denied is determined separately. ``FOUND`` and
-    ``MISSED``: the result of a search. ``NOTHING``: the thing is only searched for or asked about.
+    ``STATED``: the sentence makes a statement about the thing; whether the thing is denied is determined separately. ``FOUND`` and
+    ``MISSED``: the result of a search. ``NOTHING``: the sentence only mentions a search for the thing or a question about it.
     """
 
     STATED = auto()
@@ -23,39 +23,39 @@ class Claim(Enum):
 
 
 def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
-    """Return the claim that an answer makes about a thing, which the words from ``start`` to ``end`` (exclusive) name."""
+    """Return the claim about the thing that the words from ``start`` to ``end`` (exclusive) name."""
     clause = words[start].clause
     before = "".join(f"{w.text} " for w in words[max(0, start - 30) : start] if w.clause == clause)
     after = "".join(f"{w.text} " for w in words[end : end + 30] if w.clause == clause)
     after_noun = words[end : end + 1]
     if after_noun and after_noun[0].text in _TOOL_WORDS and not after_noun[0].gap.strip():
         return Claim.NOTHING
-    if words[start].text in _DIRECTIONS and _MOVED.search(before):
+    if words[start].text in _DIRECTIONS and _CAMERA_MOVE.search(before):
         return Claim.NOTHING
     if _NO_KNOWLEDGE.search(before) or _ONLY_CHECKED.match(after):
         return Claim.NOTHING
-    if not _is_sought(before, after):
+    if not _is_only_searched_for(before, after):
         return Claim.STATED
     following = after + "".join(f"{w.text} " for w in words[end : end + 60] if w.clause == clause + 1)
-    if _MISSED.search(following):
+    if _MISSED_PHRASE.search(following):
         return Claim.MISSED
-    return Claim.FOUND if _FOUND.search(following) else Claim.NOTHING
+    return Claim.FOUND if _FOUND_PHRASE.search(following) else Claim.NOTHING
 
 
-def _is_sought(before: str, after: str) -> bool:
+def _is_only_searched_for(before: str, after: str) -> bool:
     """Return whether the thing is only searched for or asked about, as in "I looked for cones"."""
-    asked = list(_WHETHER.finditer(before))
-    if asked and not _RESULT_WORDS.intersection(before[asked[-1].end() :].split()):
+    questions = list(_QUESTION_WORDS.finditer(before))
+    if questions and not _RESULT_WORDS.intersection(before[questions[-1].end() :].split()):
         return True
-    sought = list(_SOUGHT.finditer(before))
-    if not sought or _SEEN.match(after):
+    searches = list(_SEARCH_PHRASE.finditer(before))
+    if not searches or _VISIBILITY.match(after):
         return False
-    since = {*before[sought[-1].start() :].split()} - {"see", "find"} | {*before[sought[-1].end() :].split()}
+    since = {*before[searches[-1].start() :].split()} - {"see", "find"} | {*before[searches[-1].end() :].split()}
     return not since & (_RESULT_WORDS | _STATING_VERBS)
 
 
-_WHETHER = re.compile(r"\b(whether|if)\b")
-_SOUGHT = re.compile(
+_QUESTION_WORDS = re.compile(r"\b(whether|if)\b")
+_SEARCH_PHRASE = re.compile(
     r"\b(look|looks|looked|looking|search|searches|searched|searching|scan|scans|scanned|scanning|check|checks|checked|checking|hunt|"
     r"hunted|hunting|watch|watched|swept|sweep|query|queried) (\w+ ){0,6}?for\b|\bin search of\b|"
     r"\b(ask|asks|asked|asking|queried|inquired|enquired) (\w+ ){0,5}?(about|after|for)\b|"
@@ -66,17 +66,17 @@ _SOUGHT = re.compile(
 _RESULT_WORDS = frozenset({
     "found", "saw", "sees", "spotted", "detected", "but", "so", "then", "yes", "no", "however", "shows", "revealed", "identified",
 })  # fmt: skip
-"""Words that end the description of a search and begin its result."""
+"""Words that introduce the result of a search."""
 
 _STATING_VERBS = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
-"""Verbs after a phrase of search that show that the sentence already states something."""
-_SEEN = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
+"""Verbs after a search phrase which show that the sentence states a result."""
+_VISIBILITY = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
 """Phrases after a thing that state whether it is visible."""
-_FOUND = re.compile(
+_FOUND_PHRASE = re.compile(
     r"(?<!not )\b(found|find|see|saw|spotted|detected|located) (it|one|them|some|both|several|two|three|four|five|six|[1-9]\d*)\b"
 )
 """Results of a search that found something, such as "found two"."""
-_MISSED = re.compile(
+_MISSED_PHRASE = re.compile(
     r"\b(found|find|see|saw|spotted|detected|located) (none|nothing|neither|0|zero)\b"
     r"|\bnot (find|found|see|seen|spot|detect|locate)( (it|one|any|them|either)\b| $)"
     r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"
@@ -84,13 +84,13 @@ _MISSED = re.compile(
 """Results of a search that found nothing, such as "found none" and "without success"."""
 _DIRECTIONS = frozenset({"left", "right", "up", "down"})
 """Directions in which the camera can be moved."""
-_MOVED = re.compile(
+_CAMERA_MOVE = re.compile(
     r"(?:^|\b(?:i|we|camera|after|by|having|then|and|was|is) )(?:\w+ )?"
     r"(?:turned|turning|panned|panning|rotated|rotating|swung|swinging|moved|moving) (?:(?!(?:and|so|it|is|was)\b)\w+ ){0,6}$"
 )
-"""The beginning of a report of a camera's move, such as "I turned 20 degrees to the"."""
+"""The beginning of a statement that the camera moved, such as "I turned 20 degrees to the"."""
 _TOOL_WORDS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
-"""Nouns that turn the name of a thing into that of a tool or a request ("the car detector")."""
+"""Nouns that follow the name of a thing in the name of a tool or a request ("the car detector")."""
 _NO_KNOWLEDGE = re.compile(
     r"\b(no|without|not (?:have|get|got|receive|received|return|returned|give|given|provide|provided)|without any) (?:\w+ ){0,2}?"
     r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
@@ -98,4 +98,4 @@ _NO_KNOWLEDGE = re.compile(
 )
 """Phrases that deny knowledge rather than presence, such as "no information about"."""
 _ONLY_CHECKED = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")
-"""Phrases after a thing that say that it was checked, without a result."""
+"""Phrases after a thing which say that it was checked, but not with what result."""

@@ -1,4 +1,4 @@
-"""Find comparatives ("more", "closer"), the thing that each one describes, and the thing with which it is compared."""
+"""Find comparatives ("more", "closer"), the thing that each one describes, and the reference of the comparison."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ _OPPOSITES = (
 _COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
 """Comparatives that may precede the noun that they count ("fewer skips")."""
 _REFERENCE_WORDS = frozenset({"than", "versus", "vs", "against"})
-"""Words that introduce the reference of a comparative."""
+"""Words that introduce the reference of a comparison."""
 _PREPOSITIONS = frozenset({"of", "from", "to"})
-"""Words that introduce the reference shortly after a comparative, as in "left of B" and "closest to B"."""
+"""Prepositions that introduce the reference directly after a comparative, as in "left of B" and "closest to B"."""
 
 
-def directions(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Return the comparatives that mean the same as the given words ("forward") and those that mean the opposite ("backward")."""
+def comparatives_by_direction(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Return the synonyms ("forward") and the antonyms ("backward") of comparatives."""
     forward, backward = set(picks), set[str]()
-    for ones, others in _OPPOSITES:
-        for same, against in ((ones, others), (others, ones)):
+    for left, right in _OPPOSITES:
+        for same, opposite in ((left, right), (right, left)):
             if same & set(picks):
                 forward |= same
-                backward |= against
+                backward |= opposite
     return {"forward": tuple(sorted(forward)), "backward": tuple(sorted(backward - forward))}
 
 
-def comparatives(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
-    """Return the comparatives in an answer. "At least", "at most" and "more or less" are left out."""
+def find_comparatives(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
+    """Return the comparatives in an answer, except those in "at least", "at most" and "more or less"."""
     matches = list[NameMention]()
     for mention in text.mentions(wordings):
         before = text.words[mention.start - 1].text if mention.start else ""
@@ -51,8 +51,8 @@ def comparatives(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list
 def described_thing(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
     """Return the thing that a comparative describes.
 
-    This is the noun that the comparative counts ("fewer skips"). If there is none, it is the last thing named before the
-    comparative, otherwise the first thing after it.
+    If the comparative counts a noun ("fewer skips"), the noun is the thing. Otherwise, it is the last thing named before the
+    comparative, or else the first thing named after it.
     """
     words, reference = text.words, reference_of(text, comparative, things)
     clause = [m for m in things if words[m.start].clause == words[comparative.start].clause and m != reference]
@@ -66,7 +66,7 @@ def described_thing(text: AnswerText, comparative: NameMention, things: Sequence
 
 
 def reference_of(text: AnswerText, comparative: NameMention, things: Sequence[NameMention]) -> NameMention | None:
-    """Return the reference of a comparative, the thing compared with: B in "more than B", "left of B" and "compared with B"."""
+    """Return the reference of a comparison, which is B in "more than B", "left of B" and "compared with B"."""
     for mention in (m for m in things if text.words[m.start].clause == text.words[comparative.start].clause):
         between = [w.text for w in text.words[comparative.end : mention.start]] if mention.start > comparative.end - 1 else []
         if set(between) & _REFERENCE_WORDS:

@@ -1,4 +1,4 @@
-"""Parse the count that an answer states. The answer may contain other numbers."""
+"""Parse the count that an answer states among other numbers."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def parse_number(text: AnswerText, unit: Sequence[str], *, part: bool = False) -
 
     Args:
         text: The answer.
-        unit: The wordings of what is counted.
-        part: Whether the question asks for a part of a whole, so that "5 of the 7" means 5.
+        unit: Wordings of the counted thing.
+        part: Whether the question asks for a part of a whole, so that "5 of the 7" is read as 5.
 
     Returns:
-        The number, or the reason why there is none.
+        The number, or the reason why the answer does not state exactly one.
     """
     number = _stated_number(text, unit, part=part)
     if isinstance(number, float) and number > 0 and denies_entirely(text, unit):
@@ -34,26 +34,26 @@ def _stated_number(text: AnswerText, unit: Sequence[str], *, part: bool) -> floa
     wholes = _wholes(text, numbers)
     if wholes and not part:
         return "a part of a number"
-    if part and re.search(r"\bnone of (the|those|these)\b", text.joined()):
+    if part and re.search(r"\bnone of (the|those|these)\b", text.plain_text()):
         return 0.0
     numbers = [n for n in numbers if n not in wholes]
     if _is_range(text, numbers):
         return "a range"
-    if (adds_up := _breakdown(text, numbers)) is not None:
+    if (adds_up := _breakdown_agrees(text, numbers)) is not None:
         return numbers[0].value if adds_up else "numbers that do not fit together"
     total = _total(text, numbers)
     return total if total is not None else _single_number(text, unit, numbers)
 
 
-def _definite(numbers: Sequence[NumberMention]) -> list[NumberMention]:
-    """Return the exact numbers that do not count something else."""
+def _exact_numbers(numbers: Sequence[NumberMention]) -> list[NumberMention]:
+    """Return the exact numbers, except those that count other things."""
     return [n for n in numbers if not n.bound and not n.counts_other]
 
 
 def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | None:
-    """Return the stated total, or why it is unclear; None if the answer neither calculates nor states a total."""
+    """Return the stated total, or the reason why it is unclear. Return None if the answer neither calculates nor states a total."""
     operands = _operands(text, numbers)
-    results = [n for n in _definite(numbers) if n.total and n not in operands]
+    results = [n for n in _exact_numbers(numbers) if n.total and n not in operands]
     if not results:
         return "a sum that is not worked out" if operands else None
     totals, unit_totals = {n.value for n in results}, {n.value for n in results if n.counts_unit}
@@ -62,8 +62,8 @@ def _total(text: AnswerText, numbers: Sequence[NumberMention]) -> float | str | 
 
 
 def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[NumberMention]) -> float | str:
-    """Return the only number of an answer that states no total, or why there is no such number."""
-    definite = _definite(numbers)
+    """Return the only number in an answer without a total, or the reason why there is no single number."""
+    definite = _exact_numbers(numbers)
     values = {n.value for n in definite}
     if _is_denied(text, unit) and not any(n.counts_unit for n in definite):
         values.add(0.0)
@@ -77,26 +77,26 @@ def _single_number(text: AnswerText, unit: Sequence[str], numbers: Sequence[Numb
 
 
 def _number_in_words(text: AnswerText, unit: Sequence[str]) -> float | str:
-    """Return 0 for "none" and 1 for "a dog", or why the answer states no number."""
+    """Return 0 for "none" and 1 for "a dog", or the reason why the answer states no number."""
     if says_none(text):
         return "both some and none" if _names_exactly_one(text, unit) or says_yes(text) else 0.0
     return 1.0 if _names_exactly_one(text, unit) else "no number"
 
 
 def _is_denied(text: AnswerText, unit: Sequence[str]) -> bool:
-    """Return whether the answer denies the thing itself, rather than only a number of it."""
+    """Return whether the answer denies the thing itself, and not only a number of things."""
     return bool(unit) and any(m.denied and not is_only_number_denied(text, m, unit) for m in text.mentions({"unit": unit}))
 
 
 def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
-    """Return the totals of which another number is a part, such as 7 in "5 of the 7 cones" and in "5 out of 7"."""
+    """Return the numbers that are wholes, such as 7 in "5 of the 7 cones" and in "5 out of 7"."""
     links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
     pairs = pairwise(numbers)
-    return [two for one, two in pairs if [w.text for w in text.words[one.end : two.start]] in links]
+    return [second for first, second in pairs if [w.text for w in text.words[first.end : second.start]] in links]
 
 
-def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | None:
-    """Return whether the numbers after a colon or in brackets result in the first number, as a sum or as a difference.
+def _breakdown_agrees(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | None:
+    """Return whether the first number is the sum or the difference of the numbers that follow it after a colon or in brackets.
 
     Examples: "7: 5 bollards, 2 cones", "4 more (7 to 3)", "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 
@@ -121,12 +121,12 @@ def _breakdown(text: AnswerText, numbers: Sequence[NumberMention]) -> bool | Non
 
 
 def _is_range(text: AnswerText, numbers: Sequence[NumberMention]) -> bool:
-    for one, two in pairwise(numbers):
-        if one.counts_other or two.counts_other or one.value == two.value:
+    for first, second in pairwise(numbers):
+        if first.counts_other or second.counts_other or first.value == second.value:
             continue
-        between = [w.text for w in text.words[one.end : two.start]]
-        before = text.words[one.start - 1].text if one.start else ""
-        dashed = not between and re.fullmatch(r"\s*[-–~/]\s*", text.words[two.start].gap) is not None
+        between = [w.text for w in text.words[first.end : second.start]]
+        before = text.words[first.start - 1].text if first.start else ""
+        dashed = not between and re.fullmatch(r"\s*[-–~/]\s*", text.words[second.start].gap) is not None
         if dashed or between in (["to"], ["or"]) or (between == ["and"] and before == "between"):
             return True
     return False
@@ -139,22 +139,24 @@ def _is_absent(text: AnswerText, unit: Sequence[str], number: NumberMention) -> 
 
 
 def is_only_number_denied(text: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
-    """Return whether only a number of a thing is denied, but not its presence: "not 5 cones", "5 cones are missing"."""
+    """Return whether only a number is denied and not the presence of the thing, as in "not 5 cones" and "5 cones are missing"."""
     numbers = [q for q in find_numbers(text, unit) if q.counts_unit and 0 <= mention.start - q.end <= 4 and q.value > 0]
     return any(q.value > 1 or not q.denied for q in numbers)
 
 
 def _operands(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
-    """Return the operands of a calculation: "seven minus four", "2 + 1", "3 on the left and 3 on the right"."""
+    """Return the operands of calculations, as in "seven minus four", "2 + 1" and "3 on the left and 3 on the right"."""
     operands = list[NumberMention]()
-    for one, two in pairwise(numbers):
-        if text.words[one.start].clause != text.words[two.start].clause or one.counts_other or two.counts_other:
+    for first, second in pairwise(numbers):
+        if text.words[first.start].clause != text.words[second.start].clause or first.counts_other or second.counts_other:
             continue
-        between = [w.text for w in text.words[one.end : two.start]]
-        signed = not between and _SIGN.fullmatch(text.words[two.start].gap) is not None
-        twice = one.value == two.value > 0 and len(between) > 1 and between[-1] in ("and", "another", "plus") and not two.total
-        if signed or twice or _ARITHMETIC.search(" ".join(between)):
-            operands += [one, two]
+        between = [w.text for w in text.words[first.end : second.start]]
+        has_sign = not between and _SIGN.fullmatch(text.words[second.start].gap) is not None
+        is_repeated = (
+            first.value == second.value > 0 and len(between) > 1 and between[-1] in ("and", "another", "plus") and not second.total
+        )
+        if has_sign or is_repeated or _ARITHMETIC.search(" ".join(between)):
+            operands += [first, second]
     return operands
 
 
@@ -168,7 +170,7 @@ _ARITHMETIC = re.compile(
 
 
 def _names_exactly_one(text: AnswerText, unit: Sequence[str]) -> bool:
-    """Return whether the answer names exactly one ("a dog", "only a bus") and not a row or a group of them."""
+    """Return whether the answer names exactly one thing ("a dog", "only a bus"), and not a row or a group ("a row of dogs")."""
     for mention in text.mentions({"unit": unit}) if unit else ():
         words = [text.words[i] for i in range(max(0, mention.start - 4), mention.start)]
         texts = [w.text for w in words if w.segment == text.words[mention.start].segment]

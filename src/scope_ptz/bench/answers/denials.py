@@ -1,4 +1,4 @@
-"""Detect answers that deny that anything is there: "no", "none", "there are no cones at all"."""
+"""Detect answers that deny the presence of everything, such as "no", "none" and "there are no cones at all"."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.text import AnswerText
 
-_NONE = re.compile(
+_NONE_STATEMENT = re.compile(
     r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but|else))"
     r"(?! (\w+ )?(has |have )?(was |were |is |are |been |be )*(returned|reported|given|received|provided|loaded|answered|done|"
     r"happened|changed|moved|worked|came|executed|required|wrong)\b)"
@@ -16,19 +16,19 @@ _NONE = re.compile(
     r"|\b(found|find|see|saw|spotted|detected) (none|nothing)( (here|there|visible|in view))?$"
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )
-"""Statements that there is nothing: "none", "nothing is visible", "not a single one". "Nothing was returned" does not match."""
-_OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")
+"""Statements that nothing is there, such as "nothing is visible" and "not a single one". "Nothing was returned" does not match."""
+_OTHER_THINGS_WORDS = re.compile(r"\b(others?|else|elsewhere)\b")
 """Words that restrict "none" to other things or places ("no others", "nothing else")."""
 
 
 def says_none(text: AnswerText) -> bool:
-    """Return whether a part of the answer says only "none": "No.", "There are none", "Nothing like that is visible"."""
+    """Return whether a segment or clause says only "none", as in "No.", "There are none" and "Nothing like that is visible"."""
     parts = [" ".join(text.words[i].text for i in group) for group in (*text.segments(), *text.clauses())]
     return any(map(_is_none, parts))
 
 
 def _is_none(part: str) -> bool:
-    return _NONE.search(part) is not None and not _OF_OTHERS.search(part)
+    return _NONE_STATEMENT.search(part) is not None and not _OTHER_THINGS_WORDS.search(part)
 
 
 def says_yes(text: AnswerText) -> bool:
@@ -37,7 +37,7 @@ def says_yes(text: AnswerText) -> bool:
 
 
 def denies_entirely(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether a clause denies the subject without restricting it to a place ("at the gate") or a kind ("red ones")."""
+    """Return whether a clause denies the subject everywhere ("at the gate" is a restriction) and in full (so is "red ones")."""
     mentions = text.mentions({"subject": subject}) if subject else []
     numbers = find_numbers(text, subject)
     denials = {m.start for m in mentions if m.denied and not m.contrast}

@@ -1,4 +1,4 @@
-"""Parse an answer that should report a written figure, such as a price. The answer must state exactly one number."""
+"""Parse an answer that should report a written figure, such as a price."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
 _FIGURE = re.compile(r"[£$€]?\s*\d+(?:\.(\d+))?")
-"""A figure with or without a currency sign. The group contains its decimals."""
+"""A figure with or without a currency sign. The group contains the digits after the decimal point."""
 _PENCE = re.compile(r"(?<![\d.,])(\d{1,2})\s?(?:p|pence)\b", re.IGNORECASE)
 """An amount in pence, which is converted to pounds."""
-_MIXED = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
+_LETTER_JOINED_TO_DIGIT = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
 """A letter joined to a digit, as in "O.95"."""
 _MEASURE = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
-"""Digits with a unit or an ordinal ending: 3x, 1st."""
+"""Digits with a unit or an ordinal suffix, such as "3x" and "1st"."""
 
 
 def is_figure(accepted: Sequence[str]) -> bool:
@@ -27,7 +27,7 @@ def is_figure(accepted: Sequence[str]) -> bool:
 
 
 def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
-    """Parse the number in an answer and write it with as many decimals as the expected figure.
+    """Parse the only number in an answer and format it with as many decimal places as the expected figure.
 
     Returns:
         The figure, ``Unreadable`` if it is unclear, or None if the answer contains no number or joins letters to digits ("O.95").
@@ -42,7 +42,7 @@ def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     statement = answer_text(text)
     numbers = find_numbers(statement, ())
     stated = [q for q in numbers if not _is_denied(statement, q)]
-    if not numbers or _MIXED.search(_MEASURE.sub("", text)):
+    if not numbers or _LETTER_JOINED_TO_DIGIT.search(_MEASURE.sub("", text)):
         return None  # "O.95" is compared as text with look-alike characters, and "5.C0" is not 5.
     if any(q.bound for q in stated):
         return Unreadable("a bound, not a figure")

@@ -1,6 +1,6 @@
-"""Detect answers that only state in which half of the picture something is.
+"""Detect answers that only state which half of the picture something is in.
 
-Such answers do not show whether they are about the half that the question asks about.
+It is not clear whether such an answer is about the half that the question asks about.
 """
 
 from __future__ import annotations
@@ -14,27 +14,27 @@ _SIDE = (
     r"(on|in|at|to|from) (the |its )?(far |very )?(left|right|upper|lower|top|bottom|other)( hand)?( side| half| part)?\b"
     r"(?! (left|right|corner|quarter|quadrant|of the (?!picture|image|frame|view|photo|scene)))"
 )
-"""A phrase such as "on the left side". Quarters and sides of things other than the picture are not included."""
-_AT_A_SIDE = re.compile(rf"\b{_SIDE}")
-_NOT_AT_A_SIDE = re.compile(rf"\b(not|none|nothing|neither)( of (them|these|those))?( \w+){{0,2}}? {_SIDE}")
+"""A phrase such as "on the left side". Quarters of the picture and sides of other things do not match."""
+_ON_A_SIDE = re.compile(rf"\b{_SIDE}")
+_NOTHING_ON_A_SIDE = re.compile(rf"\b(not|none|nothing|neither)( of (them|these|those))?( \w+){{0,2}}? {_SIDE}")
 """Statements that nothing is on a side, such as "none on the right"."""
-_SOME_AT_A_SIDE = re.compile(
+_SOMETHING_ON_A_SIDE = re.compile(
     rf"\b(one|ones|some|several|two|three|four|five|six|[1-9]\d*|them|they|it|these|those|all)( \w+){{0,2}}? {_SIDE}"
 )
 """Statements that something is on a side, such as "two on the left"."""
-_ONLY = re.compile(r"\b(all|only|every|each|both|entirely|exclusively|just|solely|always)\b")
+_ALL_OR_ONLY = re.compile(r"\b(all|only|every|each|both|entirely|exclusively|just|solely|always)\b")
 """Words that place every instance in one half."""
-_DEFINITE = re.compile(
+_EVERY_INSTANCE_PREDICATE = re.compile(
     r"^(\w+ly )?(is|are|was|were) ((all|only|both|located|visible|standing|found|seen|placed|situated) )*" + _SIDE
 )
-"""The rest of a statement about every instance, such as "are on the left" after "the cones"."""
+"""The predicate of a statement about every instance, such as "are on the left" after "the cones"."""
 
 
 def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
     """Return whether it is unclear which half of the picture an answer is about.
 
-    This is so if the answer makes different statements about the two halves ("one on the left, none on the right"), or if it
-    places everything in one half.
+    It is unclear if the answer makes different statements about the two halves ("one on the left, none on the right"), or places
+    everything in one half.
     """
     mentions = text.mentions({"subject": subject}) if subject else []
     present, absent = False, False
@@ -43,18 +43,18 @@ def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
         inside = [m for m in mentions if group[0] <= m.start <= group[-1]]
         stated = [m for m in inside if not m.denied]
         present = present or bool(stated)
-        if not _AT_A_SIDE.search(segment):
+        if not _ON_A_SIDE.search(segment):
             continue
-        if any(_ONLY.search(segment) or _is_definite(text, group, m) for m in stated):
+        if any(_ALL_OR_ONLY.search(segment) or _is_about_every_instance(text, group, m) for m in stated):
             return True
-        denied = len(stated) < len(inside) or _NOT_AT_A_SIDE.search(segment) is not None
+        denied = len(stated) < len(inside) or _NOTHING_ON_A_SIDE.search(segment) is not None
         absent = absent or denied
-        present = present or (not denied and _SOME_AT_A_SIDE.search(segment) is not None)
+        present = present or (not denied and _SOMETHING_ON_A_SIDE.search(segment) is not None)
     return present and absent
 
 
-def _is_definite(text: AnswerText, group: Sequence[int], mention: NameMention) -> bool:
+def _is_about_every_instance(text: AnswerText, group: Sequence[int], mention: NameMention) -> bool:
     """Return whether a segment places every instance of the subject on one side, as in "the cones are on the left"."""
     before = " ".join(text.words[i].text for i in group if i < mention.start)
     after = " ".join(text.words[i].text for i in group if i >= mention.end)
-    return re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _DEFINITE.match(after) is not None
+    return re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _EVERY_INSTANCE_PREDICATE.match(after) is not None

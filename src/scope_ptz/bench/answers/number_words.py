@@ -1,4 +1,4 @@
-"""Parse numbers in words and in digits: "a dozen", "one hundred and two", "1,031"."""
+"""Parse numbers in words and digits, such as "a dozen", "one hundred and two" and "1,031"."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _BEFORE_ONE = frozenset({
     "show", "only", "just", "exactly", "about", "of", "total", "make", "makes", "has", "have", "there", "contains",
     "equals", "answer", "with", "precisely", "and", "least", "most", "than", "by",
 })  # fmt: skip
-"""Words after which "one" is a number and not a pronoun."""
+"""Words after which "one" is a number rather than a pronoun."""
 
 
 def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """Return the number that begins at position ``at``, and the position after it; (None, ``at``) if no number begins there."""
+    """Return the number that begins at position ``at`` and the position after it, or (None, ``at``) if no number begins there."""
     if at >= len(words):
         return None, at
     text, after = words[at].text, [w.text for w in words[at + 1 : at + 3]]
@@ -38,7 +38,7 @@ def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
 
 
 def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """Return the number that consecutive number words form, and the position after it; (None, ``at``) if there are none."""
+    """Return the number that consecutive number words form and the position after it, or (None, ``at``) if there are none."""
     start, total, part = at, 0, 0
     while at < len(words):
         text = words[at].text

@@ -1,4 +1,4 @@
-"""Find the numbers in a text that could be counts, and determine what each of them counts."""
+"""Find the numbers in a text that could be counts, and determine what each number counts."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
     "marked", "labelled", "saying", "view", "picture", "image", "frame",
 })  # fmt: skip
-"""Words that show that the digits after them are a label, as in "preset 3"."""
-_BARE_AFTER = frozenset({
+"""Words before digits which show that the digits are a label, as in "preset 3"."""
+_NOT_COUNTED_NOUNS = frozenset({
     "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
     "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "mentions", "present", "so", "then", "as", "but",
     "around", "within", "along", "across", "each", "per", "that", "which", "when", "after", "before", "total", "with",
@@ -28,33 +28,33 @@ _BOUNDS = re.compile(
     r"\b(at least|at most|more than|fewer than|less than|greater than|over|under|above|below|up to|a minimum of|a maximum of|"
     r"geq|leq|gt|lt|(half|twice|double|triple|thrice|times|x)( of)?( the)?|(half|third|quarter|root|square|multiple|fraction) of)$"
 )
-"""Phrases before a number that make it a bound or a part of a calculation ("at least", "half of")."""
-_OR_MORE = re.compile(r"(\w+ ){0,4}or (more|fewer|less|so)\b|(ish|plus)\b")
-"""Phrases after a number that make it inexact ("or more", "-ish")."""
-_FRACTION = re.compile(r"(and )?a (half|third|quarter)\b|(halves|thirds|quarters|fifths|tenths|squared|cubed|factorial)\b")
-"""Phrases after a number that change its value ("and a half", "squared")."""
-_COMPARED_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±≠])[=\s]*$")
+"""Phrases that turn the number after them into a bound or an operand ("at least", "half of")."""
+_INEXACT_SUFFIX = re.compile(r"(\w+ ){0,4}or (more|fewer|less|so)\b|(ish|plus)\b")
+"""Phrases that make the number before them inexact ("or more", "-ish")."""
+_VALUE_SUFFIX = re.compile(r"(and )?a (half|third|quarter)\b|(halves|thirds|quarters|fifths|tenths|squared|cubed|factorial)\b")
+"""Phrases that change the value of the number before them ("and a half", "squared")."""
+_SIGN_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±≠])[=\s]*$")
 """A comparison sign before a number, as in "<3"."""
-_COMPARED_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
+_SIGN_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
 """A comparison sign after a number, as in "3>"."""
-_BETWEEN_NOT_AND_NUMBER = frozenset({
+_WORDS_BETWEEN_NOT_AND_NUMBER = frozenset({
     "a", "an", "the", "total", "of", "exactly", "quite", "really", "just", "even", "there", "is", "are", "be", "was", "were", "to",
     "see", "seen", "count", "counted", "find", "mentions", "any", "answer", "number", "it", "that", "true", "correct", "right",
     "about", "precisely", "as", "many",
 })  # fmt: skip
-"""Words that may stand between "not" and the number that it denies."""
+"""Words that may occur between "not" and the number that it denies."""
 
 _TOTALS = re.compile(
     r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
 )
-"""Words that show that the numbers of a segment are totals or results."""
+"""Words which show that the numbers in the same segment are totals or results."""
 
-_ANNOUNCES_TOTAL = re.compile(
+_TOTAL_INTRODUCTION = re.compile(
     r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
 )
-"""Words directly before a number that make it a total or a result."""
+"""Words which show that the number directly after them is a total or a result."""
 _GENERAL_NOUNS = frozenset({"object", "objects", "item", "items", "thing", "things"})
-"""General words for countable things. A total of "items" is taken as a total of what the question asks about."""
+"""General words for countable things. A total of "items" is treated as a total of the things that the question asks about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +65,8 @@ class NumberMention:
         value: The number.
         start: Position of its first word.
         end: Position after its last word.
-        counts_unit: Whether it counts what the question asks about.
-        counts_other: Whether it counts something else.
+        counts_unit: Whether it counts the things that the question asks about.
+        counts_other: Whether it counts other things.
         bound: Whether it is not an exact count ("at least 3", "<3", "3 and a half").
         denied: Whether it is denied ("not 3").
         total: Whether the text states it as a total or a result.
@@ -85,12 +85,12 @@ class NumberMention:
 def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
     """Return every number that could be a count, in order.
 
-    Ordinals, labels and numbers joined to letters ("0x3", "A4") are left out. Measurements ("15 degrees", "2x") are left out unless
+    Ordinals, labels and numbers joined to letters ("0x3", "A4") are excluded. Measurements ("15 degrees", "2x") are excluded unless
     the question asks for them.
 
     Args:
         text: The text.
-        unit: The wordings of what is counted.
+        unit: Wordings of the things that the question asks about.
     """
     words, mentions, at = text.words, list[NumberMention](), 0
     while at < len(words):
@@ -98,9 +98,9 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
         if value is None:
             at += 1
             continue
-        is_glued = at > 0 and words[at].gap == ""
-        if not is_glued and (
-            (_followed_by(words, end, unit) and not _is_length_of(words, end)) or not _is_measure_or_label(words, at, end)
+        is_joined = at > 0 and words[at].gap == ""
+        if not is_joined and (
+            (_is_followed_by_unit(words, end, unit) and not _is_length_of(words, end)) or not _is_measure_or_label(words, at, end)
         ):
             mentions.append(_number_mention(text, value, at, end, unit))
         at = end
@@ -109,28 +109,34 @@ def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
 
 def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: Sequence[str]) -> NumberMention:
     words = text.words
-    counts_unit = _followed_by(words, end, unit) or _preceded_by(words, start, unit)
+    counts_unit = _is_followed_by_unit(words, end, unit) or _is_preceded_by_unit(words, start, unit)
     after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
     ones = re.match(r"(\w+ ){0,2}(ones|others)\b", " ".join(w.text for w in words[end : end + 3]))
-    bare = not after or ones is not None or after in _BARE_AFTER or number_at(words, end)[0] is not None or ")" in words[end].gap
+    has_no_noun = (
+        not after
+        or ones is not None
+        or after in _NOT_COUNTED_NOUNS
+        or number_at(words, end)[0] is not None
+        or ")" in words[end].gap
+    )
     before = " ".join(w.text for w in words[max(0, start - 4) : start])
     segment = " ".join(w.text for w in words if w.segment == words[start].segment)
-    announced_total = _ANNOUNCES_TOTAL.search(before) is not None
-    bare = bare or (announced_total and after in _GENERAL_NOUNS)
+    announced_total = _TOTAL_INTRODUCTION.search(before) is not None
+    has_no_noun = has_no_noun or (announced_total and after in _GENERAL_NOUNS)
     return NumberMention(
         value=value,
         start=start,
         end=end,
         counts_unit=counts_unit,
-        counts_other=not counts_unit and not bare,
+        counts_other=not counts_unit and not has_no_noun,
         bound=_is_bound(words, start, end),
         denied=_is_denied(words, start),
-        total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (counts_unit or bare)),
+        total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (counts_unit or has_no_noun)),
     )
 
 
 def _is_length_of(words: Sequence[Word], end: int) -> bool:
-    """Return whether a number is a measure of a row or group of things, as in "5 metres of cones"."""
+    """Return whether a number measures a row or group of things, as in "5 metres of cones"."""
     after = [word.text for word in words[end : end + 2]]
     return after[1:] == ["of"] and any(same_word(after[0], measure) for measure in _MEASURES if measure not in ("x", "time"))
 
@@ -160,23 +166,23 @@ def _is_bound(words: Sequence[Word], start: int, end: int) -> bool:
     segment = words[start].segment
     before = " ".join(w.text for w in words[max(0, start - 4) : start] if w.segment == segment)
     rest = " ".join(w.text for w in words[end : end + 6] if w.segment == segment)
-    signs = _COMPARED_BEFORE.search(words[start].gap) or (end < len(words) and _COMPARED_AFTER.match(words[end].gap))
-    return bool(_BOUNDS.search(before) or _OR_MORE.match(rest) or _FRACTION.match(rest) or signs)
+    signs = _SIGN_BEFORE.search(words[start].gap) or (end < len(words) and _SIGN_AFTER.match(words[end].gap))
+    return bool(_BOUNDS.search(before) or _INEXACT_SUFFIX.match(rest) or _VALUE_SUFFIX.match(rest) or signs)
 
 
 def _is_denied(words: Sequence[Word], start: int) -> bool:
-    """Return whether a number is denied: "not 3", "it is not the case that there are 3", "neither 3 nor 5"."""
+    """Return whether a number is denied, as in "not 3", "it is not the case that there are 3" and "neither 3 nor 5"."""
     at = start - 1
     while at >= 0 and words[at].segment == words[start].segment:
         if words[at].text in ("not", "never", "neither", "nor"):
             return True
-        if words[at].text not in _BETWEEN_NOT_AND_NUMBER and words[at].text != "case":
+        if words[at].text not in _WORDS_BETWEEN_NOT_AND_NUMBER and words[at].text != "case":
             return False
         at -= 1
     return False
 
 
-def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
+def _is_followed_by_unit(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
     """Return whether the counted thing follows the number, with at most four adjectives between them."""
     phrases = [plain_words(u) for u in unit]
     for at in range(end, min(end + 5, len(words))):
@@ -185,13 +191,13 @@ def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
         for phrase in phrases:
             if all(at + i < len(words) and same_word(words[at + i].text, p) for i, p in enumerate(phrase)):
                 return True
-        is_adjectives = words[at].text not in _BARE_AFTER or (words[at].text in ("and", "of") and at > end)
-        if not is_adjectives or number_at(words, at)[0] is not None:
+        may_be_adjective = words[at].text not in _NOT_COUNTED_NOUNS or (words[at].text in ("and", "of") and at > end)
+        if not may_be_adjective or number_at(words, at)[0] is not None:
             return False
     return False
 
 
-def _preceded_by(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
+def _is_preceded_by_unit(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
     """Return whether the counted thing precedes the number, as in "Cones: 5"."""
     if start == 0 or not re.fullmatch(r"\s*[:=]\s*|\s+-\s+", words[start].gap):
         return False

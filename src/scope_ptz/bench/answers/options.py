@@ -9,7 +9,7 @@ from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import all_wordings, plain_words, same_word
 
 _CONNECTING_WORDS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
-"""Words that end the core of a name: the core of "man with a hat" is "man"."""
+"""Words before which the core of a name ends. The core of "man with a hat" is "man"."""
 _ALLOWED_BEFORE = frozenset({
     "the", "a", "an", "then", "is", "are", "and", "or", "than", "more", "most", "fewer", "fewest", "order", "so", "therefore",
     "thus", "answer", "finally", "first", "last", "second", "third", "next", "lastly", "nearest", "closest", "farthest",
@@ -21,11 +21,11 @@ _ALLOWED_AFTER = frozenset({
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
     "to",
 })  # fmt: skip
-"""Words that may follow a short form. Followed by any other word, the short form is part of another name ("bus stop")."""
+"""Words that may follow a short form. Before any other word, the short form is part of another name ("bus stop")."""
 
 
 def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
-    """Return the mentions of options. "The bus" names the red double-decker bus if no other option is a bus."""
+    """Return the mentions of options. "The bus" refers to the red double-decker bus if no other option is a bus."""
     full_names = {name: all_wordings(name, other_wordings) for name, other_wordings in options.items()}
     short = _unambiguous_short_forms(full_names)
     mentions = text.mentions({name: (*wordings, *short[name]) for name, wordings in full_names.items()})
@@ -43,7 +43,7 @@ def _same_words(words: Sequence[str], named: Sequence[str]) -> bool:
 
 
 def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
-    """Return whether a short form is a name on its own and not part of the name of something else."""
+    """Return whether a short form stands alone and is not part of another name."""
     words = text.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
     plural = words[mention.end - 1].text.endswith("s")
@@ -61,19 +61,19 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
 
 
 _PLACE_PHRASES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
-"""Phrases that may follow a short form, because they only state where the thing is."""
+"""Phrases that may follow a short form because they only state the position of the thing."""
 
 
 def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
-    """Return the short forms of each option that fit no other option.
+    """Return, for each option, its short forms that match no other option.
 
-    A short form is the noun with some of the words before it, or the proper name at the beginning of the option.
+    A short form is the noun with some of the words before it, or the proper name at the beginning of the option's name.
     """
     short_forms = dict[str, tuple[str, ...]]()
     for name in full_names:
         others = [plain_words(wording) for other, wordings in full_names.items() if other != name for wording in wordings]
         short_forms[name] = tuple(
-            " ".join(words) for words in _short_forms(name) if not any(_is_within(words, other) for other in others)
+            " ".join(words) for words in _short_forms(name) if not any(_contains_in_order(words, other) for other in others)
         )
     return short_forms
 
@@ -92,8 +92,8 @@ def _short_forms(name: str) -> list[tuple[str, ...]]:
     return [s for s in shorter if list(s) != words and any(len(word) > 2 for word in s)]
 
 
-def _is_within(words: Sequence[str], other: Sequence[str]) -> bool:
-    """Return whether a name contains the words in their order, possibly with others between them."""
+def _contains_in_order(words: Sequence[str], other: Sequence[str]) -> bool:
+    """Return whether a name contains the words in the same order, possibly with other words between them."""
     at = 0
     for word in other:
         if at < len(words) and same_word(word, words[at]):

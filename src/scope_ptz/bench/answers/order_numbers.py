@@ -1,4 +1,4 @@
-"""Find the numbers that an answer gives for the things it puts in order, and where its final order begins."""
+"""Find the numbers that an answer gives for the things it orders, and where its final order begins."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ _CONCLUDING_WORDS = frozenset(
 )
 """Words that may introduce the final order. "From" counts only if "to" follows, as in "from most to fewest"."""
 _ASCENDING = frozenset({"nearest", "closest", "fewest", "smallest", "least", "lowest", "shortest"})
-"""Words for the first place of an order of rising numbers."""
+"""Words for the first item in an ascending order."""
 _DESCENDING = frozenset({"farthest", "furthest", "most", "largest", "biggest", "highest", "tallest"})
-"""Words for the first place of an order of falling numbers."""
-_BEFORE_NUMBER = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
+"""Words for the first item in a descending order."""
+_NUMBER_SEPARATOR = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
 """Separators between a thing and its number, as in "skips: 4" and "skips (4)"."""
 _LINKING_WORDS = frozenset(
     {"is", "are", "at", "about", "approximately", "roughly", "with", "stands", "has", "have", "only", "just", "around"}
 )
-"""Words that may stand between a thing and its number, as in "the skip is about 11 m away"."""
+"""Words that may occur between a thing and its number, as in "the skip is about 11 m away"."""
 
 
 def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
-    """Return the position of the word where the final order of the answer begins.
+    """Return the position of the word at which the final order in an answer begins.
 
-    This is the last concluding word ("so", "therefore") after which all names occur. If there is none, it is the beginning of a
-    list without numbers that follows a list with numbers. If there is no such list, the position is 0.
+    The final order begins at the last concluding word ("so", "therefore") that is followed by all names. Without such a word, it
+    begins at a list without numbers that follows a list with numbers. Without such a list, it begins at position 0.
     """
     last = 0
     for at, word in enumerate(text.words):
@@ -37,11 +37,11 @@ def final_order_start(text: AnswerText, mentions: Sequence[NameMention], names: 
         is_conclusion = "to" in after if word.text == "from" else not (word.text == "order" and after[:1] == ["to"])
         if word.text in _CONCLUDING_WORDS and is_conclusion and {m.name for m in mentions if m.start > at} == names:
             last = at
-    return last or _listed_after_numbers(text, mentions, names)
+    return last or _unnumbered_list_start(text, mentions, names)
 
 
-def _listed_after_numbers(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
-    numbered = [bool(_numbers(text, [m])) for m in mentions]
+def _unnumbered_list_start(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
+    numbered = [bool(_numbers_by_name(text, [m])) for m in mentions]
     start = numbered.index(False) if False in numbered else 0
     listed = mentions[start : start + len(names)]
     clauses = {text.words[m.start].clause for m in listed}
@@ -57,18 +57,18 @@ def numbers_contradict(text: AnswerText, mentions: Sequence[NameMention], order:
         text: The answer.
         mentions: The mentions of things in the answer.
         order: The stated order.
-        first: The words for the first place in the order, such as "most" or "nearest".
+        first: Words for the first item in the order, such as "most" or "nearest".
     """
-    falling, rising = bool(_DESCENDING.intersection(first)), bool(_ASCENDING.intersection(first))
-    if falling == rising:
+    descending, ascending = bool(_DESCENDING.intersection(first)), bool(_ASCENDING.intersection(first))
+    if descending == ascending:
         return False
-    numbers = _numbers(text, mentions)
+    numbers = _numbers_by_name(text, mentions)
     values = [numbers[name] for name in order if name in numbers]
-    return any(max(one) < min(two) if falling else min(one) > max(two) for one, two in pairwise(values))
+    return any(max(earlier) < min(later) if descending else min(earlier) > max(later) for earlier, later in pairwise(values))
 
 
-def _numbers(text: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set[float]]:
-    """Return the numbers that the answer gives for each thing: "4 skips", "skips (4)", "skips: 4", "the skip is 11 m away"."""
+def _numbers_by_name(text: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set[float]]:
+    """Return the numbers that the answer gives for each thing, as in "4 skips", "skips (4)" and "the skip is 11 m away"."""
     numbers = dict[str, set[float]]()
     words = text.words
     for mention in mentions:
@@ -90,7 +90,7 @@ def _number_after(text: AnswerText, mention: NameMention) -> float | None:
     words, at = text.words, mention.end
     if at >= len(words):
         return None
-    marked = _BEFORE_NUMBER.fullmatch(words[at].gap) is not None
+    marked = _NUMBER_SEPARATOR.fullmatch(words[at].gap) is not None
     while at < len(words) and words[at].text in _LINKING_WORDS and at < mention.end + 3 and (marked or not words[at].gap.strip()):
         marked, at = True, at + 1
     value, end = number_at(words, at)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 AnswerValue = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[frozenset[int], frozenset[int]]
-"""The value of an answer. Its type depends on the kind of expected answer."""
+"""The parsed value of an answer. Its type depends on the kind of expected answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedValue:
     """The value that an answer states.
 
-    For a description the value is a pair: the indices of the facts that are stated, and of the contradictions that are stated.
+    For a description, it is a pair of index sets: the stated facts and the stated contradictions.
     """
 
     value: AnswerValue
@@ -25,7 +25,7 @@ class Declined:
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """An answer that does not state exactly one value.
+    """An answer from which no single value could be parsed.
 
     Attributes:
         reason: Why no value could be parsed.

@@ -1,16 +1,16 @@
-"""Entry points of the answer parser: parse an answer as the type that a task expects, and compare it with the expected answer."""
+"""Entry points of the answer parser: parse an answer as the expected type, and compare it with the expected answer."""
 
 from __future__ import annotations
 
 from scope_ptz.bench.answers.choices import parse_choice, parse_description, parse_name_set
 from scope_ptz.bench.answers.counts import parse_number
-from scope_ptz.bench.answers.hedges import why_nothing_is_stated
+from scope_ptz.bench.answers.hedges import hedge_reason
 from scope_ptz.bench.answers.orders import parse_ordering, parse_relation
 from scope_ptz.bench.answers.parsed import Declined, ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.presence import parse_none_there, parse_yes_no
-from scope_ptz.bench.answers.refusals import declines
+from scope_ptz.bench.answers.refusals import declines_to_answer
 from scope_ptz.bench.answers.strings import parse_text, same_text
-from scope_ptz.bench.answers.text import AnswerText, answer_text, without_withdrawn
+from scope_ptz.bench.answers.text import AnswerText, answer_text, remove_withdrawn
 from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
@@ -33,14 +33,14 @@ _EPSILON = 1e-9
 def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
     """Parse an answer as a value of the type that a task expects.
 
-    The expected value itself is not used, so correct and wrong answers are parsed alike. An ambiguous answer is unreadable.
+    The expected value itself is not used, so right and wrong answers are parsed in the same way. Ambiguous answers are unreadable.
 
     Args:
         expected: The task's expected answer. Only its type and its wordings are used.
         answer: The agent's final answer.
 
     Returns:
-        The parsed value, ``Declined`` if the answer declines to give one, or ``Unreadable`` with the reason.
+        The parsed value; ``Declined`` if the answer declines to give a value; otherwise ``Unreadable`` with a reason.
     """
     text = answer_text(answer)
     parsed = _parse(expected, text, answer)
@@ -50,10 +50,10 @@ def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
     if text.hedged and isinstance(parsed, Unreadable):
         return Unreadable("only a guess")
     if isinstance(parsed, ParsedValue):
-        stated = without_withdrawn(clean(answer))
-        if declines(expected, stated):
+        stated = remove_withdrawn(clean(answer))
+        if declines_to_answer(expected, stated):
             return Declined()
-        if (reason := why_nothing_is_stated(expected, stated)) is not None:
+        if (reason := hedge_reason(expected, stated)) is not None:
             return Unreadable(reason)
     return parsed
 
@@ -97,7 +97,7 @@ def agrees(expected: AnyExpected, parsed: ParsedAnswer) -> bool | None:
         parsed: The result of ``parse_answer``.
 
     Returns:
-        Whether they agree. None if the answer is unreadable or the task expects no answer. A declined answer is wrong.
+        Whether the answer is right. None if it is unreadable or the task expects no answer. A declined answer is wrong.
     """
     if isinstance(parsed, Unreadable):
         return None

@@ -1,4 +1,4 @@
-"""Parse yes-or-no answers, and answers about whether something is present."""
+"""Parse yes-or-no answers, and answers to the question whether something is present."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from scope_ptz.bench.answers.tokenizer import plain_words
 from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
-"""Words that answer a question with yes if they stand alone."""
+"""Words that mean yes if they are the whole segment."""
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
-"""Words that answer a question with no if they stand alone."""
-_NO_LAST = frozenset({"no", "nope", "nah"})
-"""Words that express a verdict at the end of a segment: "I say no", "it is a no"."""
+"""Words that mean no if they are the whole segment."""
+_NO_AT_END = frozenset({"no", "nope", "nah"})
+"""Words that mean no at the end of a segment, as in "I say no" and "it is a no"."""
 
 
 def verdict_words(text: AnswerText) -> set[bool]:
-    """Return the verdicts that an answer gives with words such as "yes" and "no": True, False, or both if it contradicts itself.
+    """Return the verdicts that words such as "yes" and "no" give: True, False, or both if the answer contradicts itself.
 
     "No" counts only as a whole segment or at the end of one, because elsewhere it denies a thing ("no cones").
     """
@@ -35,10 +35,10 @@ def verdict_words(text: AnswerText) -> set[bool]:
             verdicts.add(True)
         if len(words) == 1 and words[0] in _NO:
             verdicts.add(False)
-        if words[-1] in _NO_LAST or words == ["not"]:
+        if words[-1] in _NO_AT_END or words == ["not"]:
             verdicts |= {False, "not" in words[:-1]}
-    verdicts |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", text.joined())}
-    if re.search(r"\b(yes|no) (and |or )?(yes|no)\b", text.joined()) or "not yes" in text.joined():
+    verdicts |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", text.plain_text())}
+    if re.search(r"\b(yes|no) (and |or )?(yes|no)\b", text.plain_text()) or "not yes" in text.plain_text():
         return {True, False}
     return verdicts
 
@@ -48,31 +48,31 @@ _ELLIPSIS = re.compile(
     r"(?P<verb>is|are|was|were|does|do|did|has|have)(?P<not> not)?( (the case|so|true|correct|right|actually|at all|indeed))*$"
 )
 """Short answers that omit what they confirm or deny, such as "it is" and "they do not"."""
-_REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
+_REFUTATION = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
 """Statements that a claim is false."""
 
 
-def _short_answers(text: AnswerText) -> set[bool]:
-    """Return the verdicts of short answers: "It is not.", "They do.", "That is not the case"."""
+def _short_answer_verdicts(text: AnswerText) -> set[bool]:
+    """Return the verdicts of short answers, such as "It is not." and "They do."."""
     verdicts = set[bool]()
     for group in text.segments():
         piece = _text_of(text, group)
         if match := _ELLIPSIS.match(piece):
             verdicts.add(match["not"] is None)
             verdicts |= {word == "yes" for word in piece.split() if word in ("yes", "no")}  # "No that is" contradicts itself
-        elif _REFUTED.match(piece):
+        elif _REFUTATION.match(piece):
             verdicts.add(False)
     return verdicts
 
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
-    """Parse an answer as yes or no, from words such as "yes" and from statements. A contradictory answer is unreadable."""
-    verdicts = verdict_words(text) | _short_answers(text)
+    """Parse an answer as yes or no, based on words such as "yes" and on statements. Contradictory answers are unreadable."""
+    verdicts = verdict_words(text) | _short_answer_verdicts(text)
     if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     mentions = text.mentions({"yes": expected.affirms, "no": expected.denies})
     stated = {(mention.name == "yes") != (mention.denied or mention.contrast) for mention in mentions}
-    if len(stated) == 2 and len(verdicts) == 1 and (last := text.segments()[-1:]) and _CONCLUDED.match(_text_of(text, last[0])):
+    if len(stated) == 2 and len(verdicts) == 1 and (last := text.segments()[-1:]) and _CONCLUSION.match(_text_of(text, last[0])):
         return ParsedValue(verdicts.pop())  # "At the gate: no van. At the works: 1 van. So yes."
     verdicts |= stated
     if not verdicts and says_none(text):
@@ -87,8 +87,8 @@ def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
     return Unreadable("both yes and no" if verdicts else "neither yes nor no")
 
 
-_CONCLUDED = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
-"""A final segment that states the conclusion, such as "so yes"."""
+_CONCLUSION = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
+"""A final segment that states a conclusion, such as "so yes"."""
 
 
 def _text_of(text: AnswerText, group: Sequence[int]) -> str:
@@ -96,17 +96,17 @@ def _text_of(text: AnswerText, group: Sequence[int]) -> str:
 
 
 def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
-    """Parse whether an answer says that there is none of something.
+    """Parse an answer to a question about something that is not there.
 
-    The value is True if the answer says so and does not also describe the thing as present, for example by a colour. It is False if
-    the answer says that there is one.
+    The value is True if the answer says that there is none and does not also describe the thing, for example by a colour. It is
+    False if the answer says that there is one.
     """
-    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.joined()):
+    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.plain_text()):
         return Unreadable("it states alternatives")
     verdicts = absence_verdicts(text, expected.subject)
     if not verdict_words(text) and is_half_unclear(text, expected.subject):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
-    if True in verdicts and (_counts_some(text, expected.subject) or _claims(text, expected)):
+    if True in verdicts and (_states_count(text, expected.subject) or _states_claim(text, expected)):
         verdicts = {True, False}
     if len(verdicts) == 1:
         return ParsedValue(verdicts.pop())
@@ -116,11 +116,11 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
 
 
 def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
-    """Return the answer's verdicts on the absence of the subject: True for "there is none", False for "there is one", or both."""
+    """Return the verdicts on the absence of the subject: True for "there is none", False for "there is one", or both."""
     mentions = text.mentions({"subject": subject})
     verdicts = {not v for v in verdict_words(text)}
-    mentions = [m for m in mentions if m.denied or not _is_another_thing(text, m, subject)]
-    verdicts |= {m.denied for m in mentions if not (m.contrast or (m.denied and _is_partial(text, m, subject)))}
+    mentions = [m for m in mentions if m.denied or not _refers_to_another_thing(text, m, subject)]
+    verdicts |= {m.denied for m in mentions if not (m.contrast or (m.denied and _is_partial_denial(text, m, subject)))}
     numbers = [q for q in find_numbers(text, subject) if not (q.counts_other or q.bound or q.denied)]
     verdicts |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
     if says_none(text):
@@ -128,67 +128,72 @@ def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
     return verdicts
 
 
-def _is_another_thing(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
-    """Return whether a mention means another thing, as in "the only van is red" when the question is about green vans."""
+def _refers_to_another_thing(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+    """Return whether a mention refers to another thing, as in "the only van is red" if the question is about green vans."""
     before = text.words[max(0, mention.start - 1) : mention.start]
     is_short = mention.end - mention.start < len(plain_words(subject[0]))
     return is_short and any(w.text in ("only", "other") for w in before)
 
 
-def _is_partial(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
-    """Return whether a denial covers only a place or a number: "no kite is in the other quarters", "not 5 kites"."""
+def _is_partial_denial(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+    """Return whether a denial is limited to a place or a number, as in "no kite is in the other quarters" and "not 5 kites"."""
     clause = text.words[mention.start].clause
     after = " ".join(w.text for w in text.words[mention.end : mention.end + 8] if w.clause == clause)
     elsewhere = re.match(r"(\w+ ){0,4}?((in|at|on|from|of) (the|any) others?|elsewhere)\b", after)
     return elsewhere is not None or is_only_number_denied(text, mention, subject)
 
 
-def _counts_some(text: AnswerText, subject: Sequence[str]) -> bool:
+def _states_count(text: AnswerText, subject: Sequence[str]) -> bool:
     """Return whether an answer states a number above zero that could count the subject."""
     number = parse_number(text, subject)
     some = isinstance(number, float) and number > 0
     return some or any(q.value > 0 and not (q.counts_other or q.denied) for q in find_numbers(text, subject))
 
 
-def _claims(text: AnswerText, expected: NoneThere) -> bool:
-    """Return whether an answer states something that only a present subject could have, such as its colour."""
+def _states_claim(text: AnswerText, expected: NoneThere) -> bool:
+    """Return whether an answer states a property that only a visible subject can have, such as its colour."""
     mentions = text.mentions({"claim": expected.claims, "subject": expected.subject})
     denials = [m for m in mentions if m.name == "subject" and m.denied]
     return any(
-        not (m.denied or m.contrast or _is_of_another(text, m) or any(_limits_denial(text, m, denial) for denial in denials))
+        not (
+            m.denied
+            or m.contrast
+            or _describes_another_thing(text, m)
+            or any(_limits_denial(text, m, denial) for denial in denials)
+        )
         for m in mentions
         if m.name == "claim"
     )
 
 
-def _is_of_another(text: AnswerText, claim: NameMention) -> bool:
-    """Return whether a claim describes another thing in its segment: "a green van", "a van stands top left"."""
+def _describes_another_thing(text: AnswerText, claim: NameMention) -> bool:
+    """Return whether a claim describes another thing in the same segment, as in "a green van" and "a van stands top left"."""
     segment = text.words[claim.start].segment
     before = "".join(f"{w.text} " for w in text.words[: claim.start] if w.segment == segment)
-    if _ANOTHER.search(before) and not _REFERS_TO_SUBJECT.search(before):
+    if _ANOTHER_THING.search(before) and not _REFERS_TO_SUBJECT.search(before):
         return True
     after = text.words[claim.end : claim.end + 1]
     if not after or after[0].segment != text.words[claim.end - 1].segment or re.search(r"[^\s-]", after[0].gap):
         return False
-    return not (after[0].text in _OF_THE_SUBJECT or after[0].text.endswith("ly"))
+    return not (after[0].text in _WORDS_AFTER_CLAIM or after[0].text.endswith("ly"))
 
 
 def _limits_denial(text: AnswerText, claim: NameMention, denial: NameMention) -> bool:
-    """Return whether a claim only limits a denial, as in "top left: no kite" and "the kite is absent from the top left"."""
+    """Return whether a claim only states where the denial applies, as in "top left: no kite"."""
     words, between = text.words, text.words[min(claim.end, denial.end) : max(claim.start, denial.start)]
     if claim.start < denial.start and words[claim.end].gap.strip() == ":" and words[claim.end].clause == words[denial.start].clause:
         return True
-    one_piece = words[claim.start].segment == words[denial.start].segment
-    return one_piece and not any(w.text in _NEW_STATEMENT_WORDS for w in (between if claim.start > denial.start else ()))
+    same_segment = words[claim.start].segment == words[denial.start].segment
+    return same_segment and not any(w.text in _NEW_STATEMENT_WORDS for w in (between if claim.start > denial.start else ()))
 
 
-_ANOTHER = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
+_ANOTHER_THING = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
 """Words before a claim that introduce another thing, such as "a van stands" in "a van stands top left"."""
 _REFERS_TO_SUBJECT = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
 """Words that refer to the subject, so that the claim after them is about it."""
 _NEW_STATEMENT_WORDS = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
 """Words between a denial and a claim that begin a new statement."""
-_OF_THE_SUBJECT = frozenset({
+_WORDS_AFTER_CLAIM = frozenset({
     "one", "ones", "thing", "things", "object", "item", "colour", "coloured", "shade", "in", "on", "at", "of", "and", "or",
     "is", "are", "was", "it", "they", "the", "a", "an", "to", "with", "by", "too", "also", "indeed", "overall", "then",
     "though", "however", "here", "there", "now", "so", "as", "for", "corner", "quarter", "quadrant", "side", "part", "half",

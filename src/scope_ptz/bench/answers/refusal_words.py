@@ -1,4 +1,4 @@
-"""Words that a refusal can contain without naming a subject, as in "I cannot tell how many of them there are"."""
+"""Words that do not name the subject of a refusal, as in "I cannot tell how many of them there are"."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMON_WORDS = frozenset({
     "visible", "available", "unavailable", "failed", "error", "take", "word", "put", "simply", "frankly", "truly", "none",
     "zero", "nothing", "yes", "0", "go", "moment", "today", "possible", "able", "given", "need",
 })  # fmt: skip
-"""Words that never name a subject, whatever the question asks."""
+"""Words that do not name a subject in answers to any question."""
 
 WORDS_OF_KIND: dict[str, frozenset[str]] = {
     "choice": frozenset({
@@ -41,4 +41,4 @@ WORDS_OF_KIND: dict[str, frozenset[str]] = {
         "count", "counts", "number", "sum", "difference",
     }),
 }  # fmt: skip
-"""Further such words for each kind of question: words for what it asks about."""
+"""Additional words that do not name a subject, by kind of expected answer, such as "colour" for a choice."""

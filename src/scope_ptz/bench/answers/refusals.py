@@ -1,7 +1,7 @@
-"""Detect answers that decline the question, although they may also state a value.
+"""Detect answers that decline to answer the question, even if they also state a value.
 
-"I cannot tell. There are 0." is not an answer of 0, and neither is "0, because the tool failed". A refusal counts only if it is
-about what the question asks: "5 cones; I cannot tell who put them there" is an answer.
+Neither "I cannot tell. There are 0." nor "0, because the tool failed" counts as the answer 0. A refusal counts only if it concerns
+the subject of the question: "5 cones; I cannot tell who put them there" is an answer.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _VERBS = (
     r"check|checked|observed?|perceived?|inspect|inspected|examined?|analysed?|measured?|make out|read|clear|available|"
     r"load|loaded|succeed|succeeded|respond|responded|work|worked|count)"
 )
-"""Verbs and adjectives of observation and knowledge."""
+"""Verbs and adjectives that describe observation and knowledge."""
 _NOUNS = (
     r"(?:images?|pictures?|photos?|frames?|video|feed|footage|view|camera|eyes|vision|sight|visibility|tools?|calls?|data|information|"
     r"info|access|results?|responses?|reply|replies|output|answers?|idea|clue|comment|knowledge|evidence|observations?|readings?|"
     r"counts?|detections?|ability|means|way)"
 )
-"""Nouns of observation and knowledge."""
+"""Nouns that denote means and results of observation."""
 _REFUSAL = re.compile(
     rf"\b(?:not|never|nor) (?:(?:\w+ly|been|be|yet|even|have|had|really|able to|in a position to) ){{0,3}}{_VERBS}\b"
     r"|\b(?:unable|impossible|hard|difficult|not able|too \w+|fail|failed|tried in vain) (?:for \w+ )?to "
@@ -65,10 +65,10 @@ _REFUSAL = re.compile(
     r"|\bnot (?:\w+ )?(?:see|make out|observe) (?:\w+ ){1,4}at all\b"
     r"|\b(?:not|never) (?:been )?seen (?:it|them|that|this)\b"
 )
-"""Phrases that decline to answer, or that say that nothing was observed."""
-_ABANDONED = re.compile(r"\b(?:i|we) (?:refuse|decline|abstain|(?:give|gave) up|skipped)\b|\bsight unseen\b")
-"""Phrases that abandon the task, whatever they name."""
-_FOREIGN = re.compile(
+"""Phrases that decline to answer or state that nothing was observed."""
+_ABANDONMENT = re.compile(r"\b(?:i|we) (?:refuse|decline|abstain|(?:give|gave) up|skipped)\b|\bsight unseen\b")
+"""Phrases that abandon the task, whatever the subject of the question."""
+_FOREIGN_REFUSAL = re.compile(
     r"\b(?:no (?:lo )?(?:s[ée]|puedo)|no tengo (?:ni )?idea|non (?:lo )?so|non posso|je ne (?:sais|peux|vois) (?:pas|rien)|"
     r"aucune id[ée]e|(?:wei(?:ß|ss)|kann|sehe) (?:es |ich |das |den |die )?(?:es |das |bild )?(?:nicht|nichts)|keine ahnung|"
     r"n[ãa]o (?:sei|posso|consigo)|"
@@ -76,80 +76,82 @@ _FOREIGN = re.compile(
 )
 """Refusals in other languages."""
 READINGS = re.compile(r"\"[^\"]*\"|\b[A-Z0-9][A-Z0-9'&-]+(?:[ /]+[A-Z0-9'&-]+)*\b")
-"""Quoted texts and texts in capitals, which are read from signs and decline nothing ("NO ACCESS")."""
-_RETRIED = re.compile(r"\b(?:first|initially|earlier|previously|before|until|again|retried|repeated|second|once|originally)\b")
-"""Words that show that a failure was overcome later."""
+"""Quoted texts and texts in capitals ("NO ACCESS"). They report signs, so they are not refusals."""
+_RETRY = re.compile(r"\b(?:first|initially|earlier|previously|before|until|again|retried|repeated|second|once|originally)\b")
+"""Words which show that a later attempt succeeded."""
 _BECAUSE = re.compile(r"^(?:because|since|as)\b")
 _ABSENCE = re.compile(r"\b(?:no|none|not|nothing|neither|without|absent|missing|zero|0)\b")
-"""Words that state an absence, which can be the reason why a question about a thing has no answer."""
+"""Words that state an absence. An absence can be the reason for a refusal."""
 
 _NOT_SEEN = re.compile(r"(?:find|locate|detect|spot|see) (?:it|them|that|this|one|any)$|at all$")
-"""The end of a statement that the thing was not seen."""
-_KINDS_OF_SEEN_THINGS = frozenset({"choice", "text", "ordering", "relation", "description"})
-"""Kinds of answers that can only be given of things that were seen."""
+"""Endings of statements that the thing was not seen."""
+_KINDS_REQUIRING_SIGHT = frozenset({"choice", "text", "ordering", "relation", "description"})
+"""Kinds of expected answers that can only be given if the thing is seen."""
 _SPECULATION = re.compile(
     r"\b(?:probably|likely|presumably|surely|must|should|would|guess|assume|typical|typically|usually|normally|generally|often|expected)\b"
 )
-"""Words that make a statement after a refusal a guess."""
+"""Words that turn a statement after a refusal into a guess."""
 
 
-def declines(expected: AnyExpected, cleaned: str) -> bool:
-    """Return whether a text declines the question, whatever else it states.
+def declines_to_answer(expected: AnyExpected, cleaned: str) -> bool:
+    """Return whether an answer declines to answer the question, even if it also states a value.
 
     Args:
         expected: The expected answer. Only its type and its wordings are used.
-        cleaned: The answer as ``tokenizer.clean`` returns it, without withdrawn statements.
+        cleaned: The answer as returned by ``tokenizer.clean``, without withdrawn statements.
     """
-    if _FOREIGN.search(cleaned.lower()) or re.search(r"\bn/a\b", cleaned.lower()):
+    if _FOREIGN_REFUSAL.search(cleaned.lower()) or re.search(r"\bn/a\b", cleaned.lower()):
         return True
     if isinstance(expected, Text):
         cleaned = READINGS.sub(" ", cleaned)
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
-    return any(_is_refusal(expected, clause) for clause in clauses_of(words))
+    return any(_is_refusal(expected, clause) for clause in split_clauses(words))
 
 
 def _is_refusal(expected: AnyExpected, clause: list[Word]) -> bool:
-    text = joined(clause)
-    if _ABANDONED.search(text):
+    text = join_words(clause)
+    if _ABANDONMENT.search(text):
         return True
     match = _REFUSAL.search(text)
-    if match is None or _RETRIED.search(text):
+    if match is None or _RETRY.search(text):
         return False
-    first = text[: match.start()].count(" ")
-    last = text[: match.end()].count(" ")
-    rest = clause[last + 1 :]
+    first_word = text[: match.start()].count(" ")
+    last_word = text[: match.end()].count(" ")
+    rest = clause[last_word + 1 :]
     after_but = next((rest[at + 1 :] for at, word in enumerate(rest) if word.text == "but"), None)
-    if after_but is not None and not _SPECULATION.search(joined(after_but)):
+    if after_but is not None and not _SPECULATION.search(join_words(after_but)):
         return False
-    if not match.group().startswith("no ") and _is_absence_given_as_reason(clause, first, rest):
+    if not match.group().startswith("no ") and _is_absence_given_as_reason(clause, first_word, rest):
         return False
     if _NOT_SEEN.search(match.group()):  # "I could not find any" is an answer to "is there a van?"
-        return expected.kind in _KINDS_OF_SEEN_THINGS
-    segment = [word for word in clause if clause[first].segment <= word.segment <= clause[last].segment]
-    return _is_about(expected, [word.text for word in segment])
+        return expected.kind in _KINDS_REQUIRING_SIGHT
+    segment = [word for word in clause if clause[first_word].segment <= word.segment <= clause[last_word].segment]
+    return _concerns_question(expected, [word.text for word in segment])
 
 
-def _is_absence_given_as_reason(clause: list[Word], first: int, rest: list[Word]) -> bool:
-    """Return whether an absence is the reason of a refusal: "no kite, so I cannot tell", "I cannot tell: I see no kite"."""
-    segment = [word for word in clause if word.segment == clause[first].segment]
+def _is_absence_given_as_reason(clause: list[Word], first_word: int, rest: list[Word]) -> bool:
+    """Return whether an absence is the reason for a refusal, as in "no kite, so I cannot tell"."""
+    segment = [word for word in clause if word.segment == clause[first_word].segment]
     before = clause[: clause.index(segment[0])]
-    if before and segment[0].text in ("so", "therefore", "thus", "hence") and _ABSENCE.search(joined(before)):
+    if before and segment[0].text in ("so", "therefore", "thus", "hence") and _ABSENCE.search(join_words(before)):
         return True
     for at, word in enumerate(rest):
         if ":" in word.gap or _BECAUSE.match(word.text):
-            return _ABSENCE.search(joined(rest[at:])) is not None and not any(w.text[0].isdigit() for w in rest[at:])
+            return _ABSENCE.search(join_words(rest[at:])) is not None and not any(w.text[0].isdigit() for w in rest[at:])
     return False
 
 
-def _is_about(expected: AnyExpected, words: list[str]) -> bool:
-    """Return whether a refusal has no subject of its own, other than what the question asks."""
+def _concerns_question(expected: AnyExpected, words: list[str]) -> bool:
+    """Return whether a refusal concerns the subject of the question rather than another subject."""
     known = COMMON_WORDS | WORDS_OF_KIND.get(expected.kind, frozenset())
     named = [part for wording in _wordings(expected) for part in plain_words(wording)]
     match = _REFUSAL.search(" ".join(words))
     phrase = set(match.group().split()) if match else set[str]()
-    own = [word for word in words if not (word in known or word in phrase or any(same_word(word, name) for name in named))]
+    subject_words = [
+        word for word in words if not (word in known or word in phrase or any(same_word(word, name) for name in named))
+    ]
     asks_whether = isinstance(expected, YesNo) and "whether" in words and any(same_word(words[-1], name) for name in named)
-    return not own or asks_whether
+    return not subject_words or asks_whether
 
 
 def _wordings(expected: AnyExpected) -> Iterable[str]:
@@ -172,14 +174,14 @@ def _wordings(expected: AnyExpected) -> Iterable[str]:
             return ()
 
 
-def clauses_of(words: list[Word]) -> list[list[Word]]:
-    """Return the words of each clause."""
+def split_clauses(words: list[Word]) -> list[list[Word]]:
+    """Return the words, grouped by clause."""
     clauses: dict[int, list[Word]] = {}
     for word in words:
         clauses.setdefault(word.clause, []).append(word)
     return list(clauses.values())
 
 
-def joined(words: Iterable[Word]) -> str:
+def join_words(words: Iterable[Word]) -> str:
     """Return words joined by spaces."""
     return " ".join(word.text for word in words)

@@ -1,6 +1,6 @@
-"""The words of an answer that state something, and the things that they name or deny.
+"""Extract the statements from an answer, and find the things that they name or deny.
 
-Questions, guesses and clauses that decline to answer are left out.
+Questions, guesses and clauses that decline to answer are excluded.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from scope_ptz.bench.answers.claims import Claim, claim_of
 from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
-"""Words that deny the things that are named after them."""
+"""Words that deny the things named after them."""
 _CONTRAST_PHRASES = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
     ("except",), ("except", "for"), ("besides",), ("excluding",), ("anything", "but"),
 )  # fmt: skip
-"""Phrases that name something only as a contrast."""
-_A_OR_THE = frozenset({"a", "an", "the"})
+"""Phrases that name something only for contrast."""
+_INTERCHANGEABLE_ARTICLES = frozenset({"a", "an", "the"})
 """Articles that are interchangeable inside a name."""
 
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
-"""Words that may stand between a phrase of contrast and a name. After "and", they begin a new statement."""
+"""Words that may occur between a contrast phrase and a name. After "and", they begin a new statement."""
 _SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
 """Words that begin a new statement after "and". An earlier negation does not apply to it."""
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
-"""Words that end the effect of a negation before them."""
+"""Words that end the scope of a negation before them."""
 
 _HEDGES = re.compile(
     r"\b((yes|no) if|maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
     r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
 )
-"""Words that make a clause a guess."""
-_DECLINES = re.compile(
+"""Words that mark a clause as a guess."""
+_REFUSAL_PHRASES = re.compile(
     r"\bnot (?:\w+ )?(tell|say|determine|determined|make|know|known|read|readable|compare|compared|rank|count|counted|judge|judged|"
     r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|"
     r"see (anything|clearly|enough))\b"
@@ -46,7 +46,7 @@ _DECLINES = re.compile(
 )
 """Phrases that decline to answer, such as "cannot tell" and "too dark to see"."""
 
-_CORRECTED = re.compile(
+_CORRECTION = re.compile(
     r"\b(?:correction|i mean|i meant|or rather(?! than)|(?:scratch|strike) that|make (?:that|it)(?= \w+\W*$)|i stand corrected|"
     r"on second thoughts?|my mistake|oops|at first (?:it|they|there|i)\b[^.;!?\n]*?,? but)\b|"
     r"(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
@@ -54,20 +54,21 @@ _CORRECTED = re.compile(
 )
 """Phrases that withdraw everything before them."""
 
-_ABSENT = r"(is |are |was |were )?((now|currently|completely|entirely) )?(absent|missing|nowhere)\b"
-"""Phrases after a name that say that the thing is absent."""
-_NOT_NO = re.compile(
+_ABSENCE_PREDICATE = r"(is |are |was |were )?((now|currently|completely|entirely) )?(absent|missing|nowhere)\b"
+"""Phrases after a name which state that the thing is absent."""
+_DOUBLE_NEGATION = re.compile(
     r"\b(not|never) (no|without|zero|0|none)$|\bnot (true|the case|correct|right)( that)?( there (is|are|was|were))? no$"
     r"|\b(no|not|without|zero) (\w+ )?(shortage|lack|lacks|absence|want)( of)?$"
 )
 """Double negations, such as "not without" and "no lack of"."""
 
 _BEFORE_VERB_CAN = frozenset({"i", "we", "you", "they", "it", "that", "who", "nobody", "one"})
+"""Words before "can" which show that it is the verb rather than a drinks can."""
 _AFTER_VERB_CAN = frozenset({
     "not", "see", "be", "find", "only", "also", "make", "tell", "count", "spot", "confirm", "say", "identify", "read", "clearly",
     "just", "still", "barely", "definitely", "hardly", "detect", "recognise", "notice", "determine",
 })  # fmt: skip
-"""Words before and after "can" that show that it is the verb rather than a drinks can."""
+"""Words after "can" which show that it is the verb rather than a drinks can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +76,11 @@ class NameMention:
     """A mention of something in an answer.
 
     Attributes:
-        name: The name that the words stand for.
+        name: The key of the thing that the words name.
         start: Position of the first word.
         end: Position after the last word.
-        denied: Whether the answer denies it or says that it is absent.
-        contrast: Whether it is named only as a contrast ("unlike the van").
+        denied: Whether the answer denies the thing or states that it is absent.
+        contrast: Whether the thing is named only for contrast ("unlike the van").
     """
 
     name: str
@@ -91,12 +92,12 @@ class NameMention:
 
 @dataclass(frozen=True, slots=True)
 class AnswerText:
-    """The words of an answer that state something.
+    """The statements in an answer.
 
     Attributes:
-        words: The words, without questions and without clauses that decline to answer or hedge.
+        words: The words of the statements. Questions, guesses and clauses that decline to answer are excluded.
         declined: Whether a clause declined to answer, as in "I cannot tell".
-        hedged: Whether a clause was only a guess.
+        hedged: Whether a clause was a guess.
     """
 
     words: tuple[Word, ...]
@@ -104,22 +105,22 @@ class AnswerText:
     hedged: bool
 
     def mentions(self, names: Mapping[str, Sequence[str]]) -> list[NameMention]:
-        """Return the mentions of things.
+        """Return the mentions of the given names.
 
-        If wordings overlap, the longest one counts. Mentions that claim nothing are left out: "no cone is missing" and "I looked
-        for cones" say nothing about cones.
+        If wordings overlap, the longest one counts. Mentions without a claim are excluded: "no cone is missing" and "I looked for
+        cones" claim nothing about cones.
 
         Args:
             names: The wordings of each name.
         """
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
-        mentions, taken = list[NameMention](), set[int]()
+        mentions, used = list[NameMention](), set[int]()
         for start in range(len(self.words)):
             for phrase, name in phrases:
                 end = start + len(phrase)
-                if phrase and self._is_at(phrase, start) and not taken & set(range(start, end)):
-                    taken |= set(range(start, end))
+                if phrase and self._is_at(phrase, start) and not used & set(range(start, end)):
+                    used |= set(range(start, end))
                     claim = claim_of(self.words, start, end)
                     if claim is Claim.NOTHING or self._is_denied_twice(start, end):
                         break
@@ -139,7 +140,7 @@ class AnswerText:
             len(words) == len(phrase)
             and not (phrase == ("can",) and self._is_verb(start))
             and words[0].clause == words[-1].clause
-            and all(same_word(w.text, p) or {w.text, p} <= _A_OR_THE for w, p in zip(words, phrase, strict=True))
+            and all(same_word(w.text, p) or {w.text, p} <= _INTERCHANGEABLE_ARTICLES for w, p in zip(words, phrase, strict=True))
         )
 
     def _is_verb(self, at: int) -> bool:
@@ -175,9 +176,9 @@ class AnswerText:
         """Return whether the words are part of a double negation, as in "no cone is missing"."""
         segment, clause = self.words[start].segment, self.words[end - 1].clause
         before = [w.text for w in self.words[max(0, start - 9) : start] if w.segment == segment]
-        ends = [at for at in range(len(before) + 1) if before[at - 1 : at] and _NOT_NO.search(" ".join(before[:at]))]
+        negations = [at for at in range(len(before) + 1) if before[at - 1 : at] and _DOUBLE_NEGATION.search(" ".join(before[:at]))]
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
-        return bool(ends) or (self._is_denied_before(start) and re.match(_ABSENT, after) is not None)
+        return bool(negations) or (self._is_denied_before(start) and re.match(_ABSENCE_PREDICATE, after) is not None)
 
     def _continues_list(self, segment: int) -> bool:
         """Return whether a segment continues a denied list, as in "no cars, vans or buses"."""
@@ -187,11 +188,11 @@ class AnswerText:
         return ("or" in rest or "nor" in rest) and not (set(segment_words) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
 
     def _opens_denied_list(self, at: int) -> bool:
-        """Return whether the segment that ends at position ``at`` contains a negation and is more than a bare "no"."""
+        """Return whether the segment that ends at position ``at`` contains a negation and other words after it."""
         return at > 0 and self.words[at].text not in NEGATORS and self._is_denied_before(at)
 
     def is_denied_after(self, end: int) -> bool:
-        """Return whether the words that follow ``end`` deny what ends there ("is not visible")."""
+        """Return whether the words from position ``end`` deny the thing named directly before them, as in "is not visible"."""
         clause = self.words[end - 1].clause
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
         return (
@@ -200,7 +201,7 @@ class AnswerText:
                     r"(\w+ ){0,2}?(is|are|was|were|can|could) not ((currently|actually|now|yet|even|be|been|\w+ly) )?"
                     r"(visible|present|there|seen|found|shown|here|anywhere|be (seen|found)|"
                     r"in( \w+){0,3} (view|sight|picture|image|frame|photo|scene|preset)s?)\b"
-                    rf"|{_ABSENT}|(is |are |was |were )?(none|no|0|zero)$|(can|is|are|does|do) not$",
+                    rf"|{_ABSENCE_PREDICATE}|(is |are |was |were )?(none|no|0|zero)$|(can|is|are|does|do) not$",
                     after,
                 )
             )
@@ -209,26 +210,26 @@ class AnswerText:
         )
 
     def is_marked(self, end: int, marks: Sequence[str]) -> bool:
-        """Return whether one of the marks follows ``end`` on its own, as in "drum (no)" and "drum: no"."""
+        """Return whether the word at position ``end`` is one of the marks and stands alone, as in "drum (no)" and "drum: no"."""
         if end >= len(self.words) or self.words[end].text not in marks or not REMARK_SEPARATOR.search(self.words[end].gap):
             return False
         alone = end + 1 == len(self.words) or self.words[end + 1].segment != self.words[end].segment
         return alone or self.words[end + 1].gap.lstrip()[:1] in (")", "(", "|")
 
-    def joined(self) -> str:
+    def plain_text(self) -> str:
         """Return the words joined by spaces."""
         return " ".join(w.text for w in self.words)
 
     def segments(self) -> list[list[int]]:
         """Return the word positions of each segment."""
-        return _grouped([w.segment for w in self.words])
+        return _positions_by_label([w.segment for w in self.words])
 
     def clauses(self) -> list[list[int]]:
         """Return the word positions of each clause."""
-        return _grouped([w.clause for w in self.words])
+        return _positions_by_label([w.clause for w in self.words])
 
 
-def _grouped(labels: Sequence[int]) -> list[list[int]]:
+def _positions_by_label(labels: Sequence[int]) -> list[list[int]]:
     groups: dict[int, list[int]] = {}
     for position, label in enumerate(labels):
         groups.setdefault(label, []).append(position)
@@ -236,18 +237,18 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
 
 
 def answer_text(text: str) -> AnswerText:
-    """Return the words of an answer that state something.
+    """Extract the statements from an answer.
 
-    Questions, withdrawn statements, guesses and clauses that decline to answer are left out.
+    Questions, withdrawn statements, guesses and clauses that decline to answer are excluded.
     """
     cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" is white
-    cleaned = without_withdrawn(cleaned)
+    cleaned = remove_withdrawn(cleaned)
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     stating_words, declined, hedged = list[Word](), False, False
-    for positions in _grouped([w.clause for w in words]):
+    for positions in _positions_by_label([w.clause for w in words]):
         clause = " ".join(words[i].text for i in positions)
         clause_words = [words[i] for i in positions]
-        ends_of_refusals = [m.end() for m in _DECLINES.finditer(clause)]
+        ends_of_refusals = [m.end() for m in _REFUSAL_PHRASES.finditer(clause)]
         if ends_of_refusals and not re.search(r"\bbut\b", clause[ends_of_refusals[-1] :]):
             declined = True
             last_word = clause[: ends_of_refusals[-1]].count(" ")
@@ -260,19 +261,19 @@ def answer_text(text: str) -> AnswerText:
     return AnswerText(tuple(stating_words), declined, hedged)
 
 
-def without_withdrawn(cleaned: str) -> str:
-    """Return a cleaned text from its last correction on ("scratch that", "I mean")."""
-    return cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
+def remove_withdrawn(cleaned: str) -> str:
+    """Remove everything up to the last correction ("scratch that", "I mean") from a cleaned text."""
+    return cleaned[max((match.end() for match in _CORRECTION.finditer(cleaned)), default=0) :]
 
 
 def _premise(words: Sequence[Word], refusal: int) -> Sequence[Word]:
-    """Return the words before ", so I cannot tell"; none if the refusal does not follow from them."""
+    """Return the words before ", so I cannot tell", or no words if the refusal is not a conclusion."""
     segment = words[refusal].segment
     start = next(at for at, word in enumerate(words) if word.segment == segment)
     return words[:start] if words[start].text in ("so", "therefore", "thus", "hence") else ()
 
 
 def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
-    """Return the words after "I cannot tell:" or "because"; none if no reason is given."""
+    """Return the words after "I cannot tell:" or "because", or no words if no reason is given."""
     reasons = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
     return words[next(reasons, len(words)) :]

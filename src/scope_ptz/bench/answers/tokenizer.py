@@ -1,4 +1,4 @@
-"""Split a text into normalised words: markup is removed, and every word has one spelling."""
+"""Split a text into normalised words, without markup and with consistent spelling."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SPELLINGS = {
 }  # fmt: skip
 """British spellings of American words."""
 _MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
-"""Names of the units that may follow a number as signs or abbreviations."""
+"""Unit names by the signs and abbreviations that may follow a number."""
 _IRREGULAR = {
     "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
     "loaves": "loaf", "shelves": "shelf", "leaves": "leaf", "knives": "knife",
@@ -24,7 +24,7 @@ _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
     "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
 )  # fmt: skip
-"""Phrases that are removed, because the parser would misread their words, such as the "no" in "no doubt"."""
+"""Phrases that are removed because they contain words that the parser would misread, such as "no" in "no doubt"."""
 
 _CONTRACTIONS = (
     (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
@@ -49,8 +49,8 @@ class Word:
     Attributes:
         text: The word in lower case and British spelling.
         gap: The characters between the previous word and this one.
-        clause: Number of its clause. A clause ends at a full stop, a dash, a semicolon or a new line.
-        segment: Number of its segment. A segment also ends at a comma, at a colon and before "but".
+        clause: Index of its clause. A clause ends at a full stop, a dash, a semicolon or a new line.
+        segment: Index of its segment. A segment also ends at a comma or a colon, and before words such as "but".
     """
 
     text: str
@@ -60,9 +60,9 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Return a text without markup, and with plain quotation marks, dashes and spaces. Its case is preserved.
+    """Remove markup from a text, and normalise quotation marks, dashes and spaces. Case is preserved.
 
-    Notes about the source, such as "(seen by ...)", are removed too.
+    Notes about the source, such as "(seen by ...)", are also removed.
     """
     text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
@@ -76,9 +76,9 @@ def clean(text: str) -> str:
 
 
 def _plain_letter(letter: str) -> str:
-    """Return a character without formatting.
+    """Return the plain form of a character.
 
-    Digits of any script become 0 to 9. A superscript gets a "^" before it and a fraction a space, so that they do not join the
+    Digits in any script become 0 to 9. Superscripts are preceded by "^" and fractions by a space, so that they do not join the
     digits before them.
     """
     kind = unicodedata.category(letter)
@@ -101,7 +101,7 @@ def _plain_words(text: str) -> tuple[str, ...]:
     return tuple(w.text for w in words_of(clean(text)))
 
 
-def _british(word: str) -> str:
+def _british_spelling(word: str) -> str:
     if word.endswith("s") and word[:-1] in _SPELLINGS:
         return _SPELLINGS[word[:-1]] + "s"
     return _SPELLINGS.get(word, word)
@@ -109,15 +109,15 @@ def _british(word: str) -> str:
 
 def words_of(text: str) -> list[Word]:
     """Return the words of a cleaned text in order, with their clauses and segments."""
-    low = text.lower()
+    lowered = text.lower()
     for pattern, plain in _CONTRACTIONS:
-        low = pattern.sub(plain, low)
+        lowered = pattern.sub(plain, lowered)
     for idiom in _IDIOMS:
-        if idiom in low:
-            low = re.sub(rf"\b{idiom}\b", " ", low)
+        if idiom in lowered:
+            lowered = re.sub(rf"\b{idiom}\b", " ", lowered)
     words, end, clause, segment = list[Word](), 0, 0, 0
-    for match in _WORD.finditer(low):
-        gap, word = low[end : match.start()], match.group()
+    for match in _WORD.finditer(lowered):
+        gap, word = lowered[end : match.start()], match.group()
         if words and words[-1].text[0].isdigit() and not gap.strip():
             word = _MEASURES.get(word, word)
         end = match.end()
@@ -125,7 +125,7 @@ def words_of(text: str) -> list[Word]:
             clause += 1
         if words and (_CLAUSE_END.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
             segment += 1
-        words.append(Word(_british(word), gap, clause, segment))
+        words.append(Word(_british_spelling(word), gap, clause, segment))
     return words
 
 
@@ -140,7 +140,7 @@ def names_any(text: str, wordings: Iterable[str]) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _forms(word: str) -> frozenset[str]:
+def _singular_forms(word: str) -> frozenset[str]:
     forms = {word, _IRREGULAR.get(word, word)}
     if len(word) > 3 and word.endswith("s") and not word.endswith("ss"):
         forms.add(word[:-1])
@@ -153,9 +153,9 @@ def _forms(word: str) -> frozenset[str]:
 
 def same_word(one: str, other: str) -> bool:
     """Return whether two words are equal, ignoring the difference between singular and plural."""
-    return one == other or one in _forms(other) or other in _forms(one)
+    return one == other or one in _singular_forms(other) or other in _singular_forms(one)
 
 
 def all_wordings(name: str, other_wordings: Iterable[str]) -> tuple[str, ...]:
-    """Return all wordings of an option: its name and its other wordings."""
+    """Return the name of an option followed by its other wordings."""
     return name, *other_wordings

@@ -1,4 +1,4 @@
-"""The evaluation engine: it uses Inspect AI to run the agent loop on tasks.
+"""The evaluation engine, which runs the agent loop on tasks with Inspect AI.
 
-Only the modules of this package and the Inspect plug-in import ``inspect_ai``.
+Only this package and the Inspect plug-in import ``inspect_ai``.
 """

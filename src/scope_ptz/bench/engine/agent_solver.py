@@ -1,4 +1,4 @@
-"""The Inspect solver that runs the agent loop on a sample and stores the run in the sample."""
+"""The Inspect solver that runs the agent loop on a sample, and stores the run in the sample."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ def agent_solver(
 
     Args:
         context: The resources of the evaluation: scenes, models and the watcher.
-        agent: "scope" for the built-in loop with its planner, or the name of an external agent, which the context starts. If the
-            context does not, the name must be ``module:Class``.
-        pictures: Whether frames are rendered and logged. Without frames, only ground-truth perception works.
-        max_steps: Planner steps after which a run ends (T_max).
+        agent: "scope" for the built-in loop with its planner, or the name of an external agent. If the context does not start the
+            agent, the name must have the form ``module:Class``.
+        pictures: Whether to render and log frames. Without frames, only ground-truth perception works.
+        max_steps: Number of planner steps after which a run ends (T_max).
         time_s: Wall-clock seconds after which a run ends.
         seed: Seed for every random choice.
     """
@@ -111,7 +111,7 @@ class _SampleRun:
         self._records: list[Record] = []
 
     async def run(self, budgets: Budgets) -> RunResult:
-        """Run the agent loop from the task's preset until it ends."""
+        """Run the agent loop, starting at the task's preset."""
         model = get_model(role="eyes", required=True)
         perception = await LoggedPerception.of(model, self.context, pictures=self.pictures is not None)
         with self.clock.hold():
@@ -129,7 +129,7 @@ class _SampleRun:
         return await loop.run(self.entry.facts.instruction, listener=self._records.append)
 
     async def store(self, state: TaskState) -> None:
-        """Store the data that checks and judges need in the sample, even if the run was interrupted."""
+        """Store the data for checks and judges in the sample, even if the run was interrupted."""
         urls = dict[str, str]()
         if self.pictures is not None:
             await self.pictures.encode_pending()

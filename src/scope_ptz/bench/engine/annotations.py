@@ -1,4 +1,4 @@
-"""Archive logs whose runs have been carried over to another log, together with their human labels and judgement journals."""
+"""Archive logs whose runs have been carried over to a new log, together with their human labels and judgement journals."""
 
 from __future__ import annotations
 
@@ -14,44 +14,44 @@ from scope_ptz.bench.judging.json_lines import append_line, complete_lines
 
 
 def check_labels(logs: Sequence[Path]) -> None:
-    """Check that the human labels of logs can be read.
+    """Check that the labels files of logs can be read.
 
     Raises:
-        InputError: A file of labels cannot be read or is damaged.
+        InputError: A labels file cannot be read or is damaged.
     """
     for log in logs:
         read_labels(labels_file(log))
 
 
 def archive_logs(logs: Sequence[Path], new: Path, folder: Path) -> None:
-    """Move logs that ``new`` supersedes into a folder, with their labels and journals, so that reports count no run twice.
+    """Move logs that have been replaced by ``new`` into a folder, so that no run is counted twice in reports.
 
-    The labels and judgements of runs that were carried over to ``new`` are copied to the files of ``new``. Those of runs that were
-    repeated remain with the old log.
+    Labels files and journals are moved together with their logs. Labels and judgements of runs that were carried over to ``new``
+    are also copied to its files. Those of repeated runs remain only with the old log.
     """
     logs = [log for log in logs if log.is_file()]
     _copy_labels(logs, new)
     _copy_journals(logs, new)
     for log in logs:
         folder.mkdir(exist_ok=True)
-        # The log is moved last. An interrupted move is therefore repeated.
+        # The log is moved last, so that an interrupted move is repeated.
         for path in (labels_file(log), journal_file(log), log):
             if path.is_file():
                 path.replace(folder / path.name)
 
 
 def _sample_uuids(log: Path) -> Mapping[str, str | None]:
-    """Return the unique id of each run of a log by the name of its sample."""
+    """Return the unique id of each run in a log, by sample name."""
     return {sample_name(*run): uuid for run, uuid in uuids_in(log).items()}
 
 
 def _carried_over_samples(log: Path, new_uuids: Mapping[str, str | None]) -> set[str]:
-    """Return the names of the samples of a log that were carried over to the new log unchanged."""
+    """Return the names of the samples that were carried over unchanged from a log to the new log."""
     return {name for name, uuid in _sample_uuids(log).items() if uuid is not None and new_uuids.get(name) == uuid}
 
 
 def _copy_labels(logs: Sequence[Path], new: Path) -> None:
-    """Copy the newest label by each person for each run that was carried over."""
+    """Copy each person's newest label for each run that was carried over."""
     if not any(labels_file(log).is_file() for log in logs):
         return
     new_uuids, target = _sample_uuids(new), labels_file(new)
@@ -69,7 +69,7 @@ def _copy_labels(logs: Sequence[Path], new: Path) -> None:
 
 
 def _copy_journals(logs: Sequence[Path], new: Path) -> None:
-    """Copy the judgements that interrupted rescorings left in journals and that the logs do not contain yet."""
+    """Copy the judgements that interrupted rescorings left in journals."""
     if not any(journal_file(log).is_file() for log in logs):
         return
     new_uuids, target = _sample_uuids(new), journal_file(new)

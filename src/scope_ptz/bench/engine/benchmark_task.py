@@ -1,4 +1,4 @@
-"""Define the benchmark as an Inspect task."""
+"""The benchmark as an Inspect task."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.agents.start import local_agent
 from scope_ptz.bench.engine.agent_solver import BUILT_IN_AGENT, agent_solver
 from scope_ptz.bench.engine.checks_scorer import checks_scorer
 from scope_ptz.bench.engine.context import EvalContext
-from scope_ptz.bench.engine.entries import Entry, datasets, digest, select
+from scope_ptz.bench.engine.entries import Entry, datasets, digest, select_entries
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE
 from scope_ptz.bench.engine.samples import dataset_of, viewpoint_order
@@ -22,14 +22,15 @@ from scope_ptz.version import __version__
 __all__ = ["Task", "benchmark_task"]
 
 MAX_BROKEN_FRACTION = 0.1
-"""Maximum fraction of runs that may have an infrastructure failure. If more runs fail, the whole evaluation fails."""
+"""Maximum fraction of runs with an infrastructure failure. If more runs fail, the whole evaluation fails."""
 
 
 def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..., Task]:
     """Return the function that creates the Inspect task ``bench``.
 
     Args:
-        provide_context: Returns the context of an evaluation for the given seed. It is called when Inspect creates the task.
+        provide_context: Function that returns the context of an evaluation with the given seed. It is called when Inspect creates
+            the task.
     """
 
     @task
@@ -62,7 +63,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             judgements: Number of judgements of each run by the model in the role "judge".
         """
         context = provide_context(seed)
-        entries = select(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
+        entries = select_entries(context.load_tasks(split), _name_list(category), _name_list(scene), limit)
         ordered = context.order(entries) if context.order is not None else viewpoint_order(entries, context.open_scene)
         return Task(
             dataset=dataset_of(ordered, name=f"{datasets(entries)} {Path(split).name}"),
@@ -73,7 +74,7 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
             continue_on_fail=True,
             score_on_error=True,
             version=datasets(entries),
-            metadata=_log_metadata(entries, split, max_steps=max_steps, seed=seed, **_agent_facts(context, agent)),
+            metadata=_log_metadata(entries, split, max_steps=max_steps, seed=seed, **_agent_metadata(context, agent)),
         )
 
     return bench
@@ -85,8 +86,8 @@ def _name_list(names: str | list[str] | None) -> list[str]:
     return names or []
 
 
-def _agent_facts(context: EvalContext, agent: str) -> dict[str, Any]:
-    """Return the facts about the agent. Only an agent that the caller of the evaluation starts is described by a run card."""
+def _agent_metadata(context: EvalContext, agent: str) -> dict[str, Any]:
+    """Return the log metadata about the agent. If the caller starts the agent, the run card contains the other details."""
     if agent == BUILT_IN_AGENT or context.open_agent is not None:
         return {"agent": agent}
     external = local_agent(agent, AgentOptions())
@@ -94,7 +95,7 @@ def _agent_facts(context: EvalContext, agent: str) -> dict[str, Any]:
 
 
 def _log_metadata(entries: Sequence[Entry], split: str, **facts: Any) -> dict[str, Any]:
-    """Return the metadata that a log records about its tasks and the agent loop."""
+    """Return the log metadata about the tasks and the agent loop."""
     return {
         "scope": {
             "package_version": __version__,

@@ -1,4 +1,4 @@
-"""An Inspect scorer that applies the executable checks.
+"""The Inspect scorer that runs the executable checks.
 
 It uses only the stored data of a run, so scoring can be repeated offline.
 """
@@ -30,21 +30,21 @@ from inspect_ai.solver import TaskState
 from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
-from scope_ptz.bench.engine.traces.scored_trials import published_entry, published_run, scored_trial
+from scope_ptz.bench.engine.traces.scored_trials import published_entry, scored_trial, with_packaged_presets
 from scope_ptz.bench.engine.traces.traced_trials import TRIAL
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
-"""Name of the scorer in a log."""
+"""Name of the scorer in logs."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
-"""Inspect's score value for each headline. A run with an infrastructure failure has no value."""
+"""Inspect's score value for each headline. Runs with an infrastructure failure have no value."""
 
 
 @metric(scores="unreduced")
 def error_modes() -> Metric:
-    """Count the failed runs by error mode."""
+    """Count failed runs by error mode."""
 
     def count(scores: list[SampleScore]) -> Any:
         modes = [(score.score.metadata or {}).get("error_mode") for score in scores]
@@ -62,13 +62,13 @@ METRICS = (
 
 
 def checks_scorer(context: EvalContext | None = None) -> Scorer:
-    """Return the scorer that applies the executable checks of a task.
+    """Return the scorer that runs the executable checks of a task.
 
-    A run that failed because of infrastructure gets a score without a value, which metrics ignore.
+    A run with an infrastructure failure gets a score without a value, which metrics ignore.
 
     Args:
-        context: Its watcher is notified of each trial, and its ground truth distinguishes miscounts from wrong conclusions. If
-            None, the checks use only the contents of the log.
+        context: Resources of the evaluation: the watcher is notified of each trial, and the ground truth is used to distinguish
+            miscounts from wrong conclusions. If None, the checks use only the contents of the log.
     """
 
     @scorer(metrics=list(METRICS), name=CHECKS)
@@ -82,11 +82,11 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
 
 
 async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
-    """Return the trial of a sample. For an incorrect run, the true counts are computed once and stored in the sample."""
+    """Return the trial of a sample. If the run is incorrect, the true counts are computed once and stored in the sample."""
     entry, _ = published_entry(Entry.of_metadata(state.metadata))
     folder = Path(entry.facts.scene)
     stored = state.store.get(STORE)
-    stored_run = published_run(StoredRun.from_store(stored) if stored else StoredRun("", {}, ""), entry.world)
+    stored_run = with_packaged_presets(StoredRun.from_store(stored) if stored else StoredRun("", {}, ""), entry.world)
     trial, fault = scored_trial(entry, stored_run, state.epoch, folder, failed=True)
     needs_truths = trial.headline == "incorrect" and fault is None and not stored_run.truths
     if needs_truths and context is not None and context.true_count is not None:
@@ -100,20 +100,20 @@ async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
 
 
 async def _with_truths(entry: Entry, stored_run: StoredRun, true_count: TrueCount) -> StoredRun:
-    """Return the data of a run with the true count for every counting call."""
+    """Add the true count for every counting call to the data of a run."""
     trace = trace_of(stored_run.trace, Path(entry.facts.scene))
     if trace is None:
         return stored_run
     truths = dict[str, int | None]()
     for number, call in enumerate(stored_run.episode(trace).calls):
         for observation in call.observations:
-            if observation.how == "count":
+            if observation.kind == "count":
                 truths[str(number)] = await true_count(entry.world, observation)
     return replace(stored_run, truths=truths)
 
 
 def score_of(trial: Trial) -> Score:
-    """Convert a trial to an Inspect score, with the whole trial in its metadata."""
+    """Convert a trial to an Inspect score whose metadata contains the trial."""
     metadata = {
         "headline": trial.headline,
         "error_mode": trial.error_mode.value if trial.error_mode else None,

@@ -1,6 +1,6 @@
-"""The context that the caller of an evaluation passes to the engine: scenes, models, true counts and a watcher.
+"""The context that the caller of an evaluation provides: scenes, models, true counts and a watcher.
 
-Inspect creates solvers and scorers from names. The context provides the objects that cannot be created from a name.
+Inspect creates solvers and scorers from their names. The context provides the objects that cannot be created in this way.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModelRequest:
-    """A model requested by name.
+    """A request for a model by name.
 
     Attributes:
         name: Name of the model.
         url: Base URL of its server; None for the default.
-        options: Options of the model from Inspect's command line.
+        options: Model options from Inspect's command line.
     """
 
     name: str
@@ -36,41 +36,41 @@ class ModelRequest:
 
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
-"""Returns the true count for a perception call in the scene with the given name; None if the ground truth does not define it."""
+"""Function that returns the true count for a perception call in the named scene, or None if the ground truth does not define it."""
 Order = Callable[[Sequence[Entry]], list[Entry]]
-"""Returns entries in the order in which they are run."""
+"""Function that returns entries in the order in which to run them."""
 OpenAgent = Callable[[], Awaitable[ChannelPlanner]]
-"""Starts or connects an external agent for one run."""
+"""Function that starts or connects an external agent for one run."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
-"""Returns the entries of a split, given by its name, or of a task file, given by its path."""
+"""Function that returns the entries of a split, given by name, or of a task file, given by path."""
 
 
 class Watcher:
-    """Observer of an evaluation, notified when a run begins or ends. The default does nothing."""
+    """An observer that is notified when a run begins or ends. This base class does nothing."""
 
     def run_began(self, sample: str, entry: Entry) -> None:
-        """Called when a run begins."""
+        """Handle the beginning of a run."""
 
     def run_ended(self, sample: str, trial: Trial) -> None:
-        """Called when a run has ended and been scored by the checks."""
+        """Handle the end of a run, after the checks have scored it."""
 
 
 @dataclass(frozen=True, slots=True)
 class EvalContext:
-    """The resources that solvers and scorers of an evaluation use.
+    """The resources that the solvers and scorers of an evaluation use.
 
     Attributes:
         open_scene: Opens a scene, or a variation of one, by name.
         make_planner: Creates a planner by name.
         make_perception: Creates a perception backend by name.
-        make_judge: Connects to a judge. Its second argument is the index of the judgement, from 0.
+        make_judge: Connects to a judge by name. The second argument is the index of the judgement, from 0.
         load_tasks: Loads the entries of a split or a task file.
         true_count: Returns the true counts for perception calls; None if there is no ground truth.
-        watcher: Notified when a run begins or ends.
-        order: Orders the entries; None for the order that needs the least memory.
-        open_agent: Starts or connects the external agent for a run; None to start the agent that the task names.
-        perception_note: Note for the trace about the origin of the perception backend.
-        perception: A perception backend that was created in advance, if any. Its creator closes it.
+        watcher: Observer that is notified when a run begins or ends.
+        order: Puts entries in the order in which to run them; None for the order that needs the least memory.
+        open_agent: Starts or connects the external agent for a run; None to use the agent named in the task options.
+        perception_note: Note about the origin of the perception backend, for the trace.
+        perception: A perception backend created by the caller, who also closes it; None to create one with ``make_perception``.
     """
 
     open_scene: OpenScene

@@ -1,6 +1,6 @@
-"""The entries of an evaluation: instructions to run, each with its scene, its preset and the facts by which reports group runs.
+"""The entries of an evaluation: instructions to run, each with a scene, a start preset and properties for grouping runs.
 
-Most entries have a task with executable checks. Imported entries have no check of the answer, so only a judge can score them.
+Most entries have a task with executable checks. Imported entries have no answer check, so only a judge can score them.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from scope_ptz.errors import InputError, TraceError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
 
 OpenScene = Callable[[str], Scene]
-"""Opens a scene, or a variation of one, by name."""
+"""Function that opens a scene or a scene variation by name."""
 DIGEST_CHARS = 16
-"""Length of digests in logs, in hexadecimal characters."""
+"""Length of the digests in logs, in hexadecimal characters."""
 
 
 class Entry(BaseModel):
     """One instruction to run.
 
     Attributes:
-        facts: The facts about the task, by which reports group runs.
-        world: Name of the scene to open, or of its variation.
+        facts: The task's properties, by which reports group runs.
+        world: Name of the scene or scene variation to open.
         time_s: Scene time at the start, in seconds.
         task: The task with its checks; None if only a judge can score the run.
         imported: The imported task, if it comes from a file of another format.
@@ -46,7 +46,7 @@ class Entry(BaseModel):
     imported: ImportedTask | None = None
 
     def metadata(self) -> dict[str, Any]:
-        """Return the entry as the metadata of a sample. Metrics and the log viewer group by its facts."""
+        """Return the entry as sample metadata. Metrics and the log viewer group samples by its fields."""
         facts = self.facts.model_dump(mode="json")
         return {
             **facts,
@@ -59,7 +59,7 @@ class Entry(BaseModel):
 
     @classmethod
     def of_metadata(cls, metadata: dict[str, Any]) -> Entry:
-        """Return the entry that the metadata of a sample contains.
+        """Return the entry in a sample's metadata.
 
         Raises:
             TraceError: The metadata contains no entry.
@@ -74,10 +74,10 @@ class Entry(BaseModel):
 
 
 def entry_of(task: Task, scene: Scene) -> Entry:
-    """Return the entry of a benchmark task.
+    """Create the entry for a benchmark task.
 
     Raises:
-        UnknownNameError: The scene has no preset with the name in the task.
+        UnknownNameError: The scene does not have the task's preset.
     """
     presets = {preset.name: preset.viewpoint for preset in scene.file.presets}
     if task.preset not in presets:
@@ -86,22 +86,22 @@ def entry_of(task: Task, scene: Scene) -> Entry:
 
 
 def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...]:
-    """Return the entries of benchmark tasks."""
+    """Create the entries for benchmark tasks."""
     return tuple(entry_of(task, open_scene(task.world)) for task in tasks)
 
 
 def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
-    """Return the entries of imported tasks. A judge scores their answers; the only check is that the expected calls were made."""
+    """Create the entries for imported tasks. A judge scores their answers, and the only check is that expected calls were made."""
     return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 
-def select(
+def select_entries(
     entries: Sequence[Entry], categories: Sequence[str] = (), scenes: Sequence[str] = (), limit: int | None = None
 ) -> tuple[Entry, ...]:
-    """Return the entries of the given categories and scenes. No categories means all categories; no scenes means all scenes.
+    """Return the entries in the given categories and scenes. An empty sequence includes all categories or scenes.
 
-    If there are more than ``limit`` entries, they are sampled evenly across categories, scenes, scopes and answers. Both
-    tasks of a pair of an absence and a presence are sampled together. The sampling is deterministic.
+    If there are more than ``limit`` entries, they are sampled evenly across categories, scenes, scopes and answers. The two tasks
+    of a contrast pair are sampled together. Sampling is deterministic.
 
     Raises:
         UnknownNameError: One of the categories or scenes matches no entry.
@@ -125,7 +125,7 @@ def select(
 
 
 def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
-    """Sample entries evenly over categories, scenes, scopes and answers, and return them in their original order."""
+    """Sample entries evenly across categories, scenes, scopes and answers, and return them in their original order."""
     index_of = {entry.facts.id: f"{index:09}" for index, entry in enumerate(entries)}
     chosen = balanced_sample(
         [
@@ -149,5 +149,5 @@ def digest(entries: Iterable[Entry]) -> str:
 
 
 def datasets(entries: Iterable[Entry]) -> str:
-    """Return the dataset versions of entries, joined by "+"."""
+    """Return the dataset versions of entries, separated by "+"."""
     return "+".join(sorted({entry.facts.dataset for entry in entries}))

@@ -1,4 +1,4 @@
-"""Estimate the calls, duration and cost of an evaluation from its tasks and from earlier runs of the same models."""
+"""Estimate the calls, duration and cost of an evaluation from its tasks and earlier runs of the same models."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scope_ptz.tools.registry import TOOLS
 
 _PERCEPTION_TOOLS = frozenset(TOOLS.perceiving)
 TYPICAL_CALLS = 2.0
-"""Assumed number of tool calls of a task without a reference program."""
+"""Assumed number of tool calls for a task without a reference program."""
 CHARS_PER_TOKEN = 4.0
-"""Assumed characters per token of a prompt, if there are no measurements."""
+"""Assumed number of prompt characters per token, if there are no measurements."""
 STEP_TOKENS = 100
-"""Assumed tokens of a call and its result in the history, if there are no measurements."""
+"""Assumed number of tokens for a call and its result in the history, if there are no measurements."""
 REPLY_TOKENS = 40
-"""Assumed tokens of a planner's reply, if there are no measurements."""
+"""Assumed number of tokens in a planner's reply, if there are no measurements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Price:
     output_usd: float
 
     def cost_usd(self, input_tokens: float, output_tokens: float) -> float:
-        """Return the cost of tokens in US dollars."""
+        """Return the cost of input and output tokens in US dollars."""
         return (input_tokens * self.input_usd + output_tokens * self.output_usd) / 1e6
 
 
@@ -39,14 +39,14 @@ class Estimate:
 
     Attributes:
         runs: Number of runs.
-        planner_calls: Number of planner calls, from the reference programs.
-        perception_calls: Number of perception calls, from the reference programs.
+        planner_calls: Number of planner calls, derived from the reference programs.
+        perception_calls: Number of perception calls, derived from the reference programs.
         seconds: Duration at the requested concurrency, in seconds.
         input_tokens: Input tokens of the planner.
         output_tokens: Output tokens of the planner.
         cost_usd: Cost of these tokens in US dollars.
-        measured_on: Number of earlier runs on which the estimate is based; 0 if there are none.
-        guessed: Whether the token counts are guessed from the length of the prompt, because there are no earlier runs.
+        measured_on: Number of earlier runs on which the estimate is based; 0 for none.
+        guessed: Whether the token counts are guessed from the prompt length because there are no earlier runs.
     """
 
     runs: int
@@ -70,7 +70,7 @@ def estimate(
 ) -> Estimate:
     """Estimate the calls, duration, tokens and cost of an evaluation.
 
-    Calls are estimated from the reference programs. Duration and tokens are those of earlier runs, scaled by the number of calls.
+    Calls are estimated from the reference programs. Duration and tokens are extrapolated from earlier runs by the number of calls.
 
     Args:
         entries: The entries to run.
@@ -78,7 +78,7 @@ def estimate(
         concurrency: Number of concurrent runs.
         earlier: Earlier evaluations of the same pair.
         price: Price of the planner's tokens.
-        prompt_chars: Length of the system prompt and the tool schemas in characters; None if tokens cannot be guessed.
+        prompt_chars: Total length of the system prompt and the tool schemas in characters; None if unknown.
     """
     calls = [_tool_calls(entry) for entry in entries]
     runs, planner_calls = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
@@ -93,7 +93,7 @@ def estimate(
     steps = sum(trial.steps for trial in trials) or 1
     scale = planner_calls / steps
     tokens_in, tokens_out = (round(scale * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
-    # Concurrent runs slow each other down roughly in proportion to their number, so the throughput does not change.
+    # Concurrent runs slow each other down roughly in proportion to their number, so throughput stays the same.
     measured_concurrency = fmean(evaluation.card.concurrency for evaluation in earlier)
     seconds = scale * sum(t.timings.total_s for t in trials) / min(measured_concurrency, concurrency)
     return Estimate(
@@ -103,7 +103,7 @@ def estimate(
 
 
 def _guess_tokens(calls: Sequence[float], prompt_chars: int) -> tuple[float, float]:
-    """Guess the input and output tokens of runs. The input of each step is the prompt, the tools and all earlier steps."""
+    """Guess the number of input and output tokens. The input of each step contains the prompt, the tools and all earlier steps."""
     steps = [count + 1 for count in calls]
     input_tokens = sum(s * prompt_chars / CHARS_PER_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
     return input_tokens, REPLY_TOKENS * sum(steps)

@@ -18,7 +18,7 @@ def estimate_lines(
     isolation: Isolation | None = None,
     planner_is_free: bool,
 ) -> Iterator[str]:
-    """Yield the lines of the estimate: runs, calls, duration and cost.
+    """Yield lines with the estimated runs, calls, duration and cost.
 
     Args:
         estimate: The estimate.
@@ -61,14 +61,14 @@ def estimate_lines(
 
 
 def tokens_text(tokens: int) -> str:
-    """Format a number of tokens: 340, 12 thousand, 3.4 million."""
+    """Format a number of tokens, as in "340", "12 thousand" and "3.4 million"."""
     if tokens < 1000:
         return str(tokens)
     return f"{tokens / 1e3:.0f} thousand" if tokens < 999_500 else f"{tokens / 1e6:.1f} million"
 
 
 def duration_text(seconds: float) -> str:
-    """Format a duration: 40 s, 12 min, 3 h 05 min."""
+    """Format a duration, as in "40 s", "12 min" and "3 h 05 min"."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)

@@ -1,15 +1,15 @@
-"""What an external agent imports from SCOPE. Such an agent replaces the built-in loop.
+"""The interface for external agents, which replace the built-in agent loop.
 
-It runs on the same tasks, with the same tools, traces and checks. A minimal agent:
+An external agent runs on the same tasks, with the same tools, traces and checks. This is a minimal agent:
 
     class Agent:
         sees = False
 
         async def run(self, session: AgentSession) -> str:
-            seen = await session.call("count_objects", {"description": "cars", "view": "full"})
-            return f"I count {seen['count']} cars."
+            result = await session.call("count_objects", {"description": "cars", "view": "full"})
+            return f"I count {result['count']} cars."
 
-Each run creates a new instance of the class, in a new process. ``run`` returns the answer, or an ``AgentReply`` for a clarifying
+Every run creates a new instance of the class in a new process. ``run`` returns the answer, or an ``AgentReply`` for a clarifying
 question or a refusal.
 """
 
@@ -24,6 +24,6 @@ __all__ = ["AgentReply", "AgentSession", "ExternalAgent"]
 
 
 class ExternalAgent(Protocol):
-    """An external agent. Set its optional attribute ``sees`` to True if it needs frames."""
+    """The interface of an external agent. Set the optional class attribute ``sees`` to True if the agent needs frames."""
 
     async def run(self, session: AgentSession) -> str | AgentReply: ...

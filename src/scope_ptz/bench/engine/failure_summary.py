@@ -1,4 +1,4 @@
-"""Summarize the infrastructure failures, the agent's failures and the failed perception calls of an evaluation, with remedies."""
+"""Summarize the infrastructure failures, agent failures and failed perception calls of an evaluation, with remedies."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 
 def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
-    """Return one line per cause of infrastructure failures, and lines on failures of the agent and of perception in scored runs."""
+    """Return one line per cause of infrastructure failures, and lines about agent and perception failures in scored runs."""
     broken = [trial for trial in trials if trial.headline == "infrastructure"]
     lines = []
-    for reason in dict.fromkeys(_without_kind(trial.reason) for trial in broken):
-        group = [trial for trial in broken if _without_kind(trial.reason) == reason]
+    for reason in dict.fromkeys(_remove_kind(trial.reason) for trial in broken):
+        group = [trial for trial in broken if _remove_kind(trial.reason) == reason]
         counts = Counter(kind.value for trial in group if (kind := _kind_at_end(trial.reason)) is not None)
         model = card.planner if any(trial.outcome == "planner_error" for trial in group) else card.perception
         kinds = f" ({counts_text(counts)})" if counts else ""
@@ -36,7 +36,7 @@ def failure_summary(trials: Sequence[Trial], card: RunCard) -> list[str]:
 
 
 def server_events(trials: Sequence[Trial]) -> Counter[str]:
-    """Count the failures of model servers by kind, including those that a retry recovered from."""
+    """Count model server failures by kind, including those after which a retry succeeded."""
     events = Counter[str]()
     for trial in trials:
         events.update(trial.server_events)
@@ -44,21 +44,21 @@ def server_events(trials: Sequence[Trial]) -> Counter[str]:
 
 
 def counts_text(events: Counter[str]) -> str:
-    """Return kinds of failures with their counts, the most frequent first."""
+    """Format the counts of failures by kind, the most frequent first."""
     return ", ".join(f"{kind} {number}" for kind, number in events.most_common())
 
 
 def _most_frequent(events: Counter[str]) -> FailureKind | None:
     """Return the most frequent kind of failure.
 
-    An open circuit is returned only if there is no other kind, because other failures cause it.
+    An open circuit breaker is a consequence of other failures, so it is returned only if there is no other kind.
     """
     kinds = [kind for name, _ in events.most_common() if (kind := _kind(name)) is not None]
     return next((kind for kind in kinds if kind is not FailureKind.CIRCUIT_OPEN), kinds[0] if kinds else None)
 
 
-def _without_kind(reason: str) -> str:
-    """Return a reason without the kind of failure at its end."""
+def _remove_kind(reason: str) -> str:
+    """Remove the kind of failure from the end of a reason."""
     return reason.rpartition(": ")[0] if _kind_at_end(reason) is not None else reason
 
 
@@ -74,7 +74,7 @@ def _kind(name: str) -> FailureKind | None:
 
 
 def _advice(model: ModelCard, kind: FailureKind | None) -> str:
-    """Return a sentence about the server's failure and its remedy; empty if the model has no server or the kind is unknown."""
+    """Return a sentence about the server failure and its remedy, or an empty string if the server or the kind is unknown."""
     address = model.provider if "://" in model.provider else ""
     return f" {ServerFailure(kind, where=address)}" if kind is not None and address else ""
 

@@ -1,4 +1,4 @@
-"""Lock a file on any operating system. The lock is released when the file is closed or the process ends."""
+"""Lock files on any operating system. A lock is released when the file is closed or the process ends."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ except ImportError:  # Windows
 
 
 def lock_file(file: IO[str] | IO[bytes]) -> bool:
-    """Try to get an exclusive lock on an open file, without waiting.
+    """Try to acquire an exclusive lock on an open file, without waiting.
 
     Returns:
-        Whether the file is now locked. False if another process holds the lock.
+        True if the lock was acquired; False if another process holds it.
     """
     try:
         if fcntl is not None:

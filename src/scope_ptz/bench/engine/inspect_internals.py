@@ -1,15 +1,15 @@
-"""Wrappers for the private functions of Inspect AI that this package uses.
+"""Wrappers for the private Inspect AI functions that this package uses.
 
-The version of Inspect AI is pinned exactly. Before upgrading it, check whether the reason for each wrapper still applies:
+The version of Inspect AI is pinned exactly. Before an upgrade, check whether the reason for each wrapper still applies:
 
-- ``silence_display``: ``eval_async`` has no argument that turns off its display, and SCOPE draws its own table.
-- ``header_context``: without it, pydantic gives new ids to the messages of a stored header. The public log readers cannot be used,
-  because they patch asyncio for the whole program when an event loop runs.
+- ``silence_display``: SCOPE shows its own table, and ``eval_async`` has no argument that turns off Inspect's display.
+- ``header_context``: without it, pydantic assigns new ids to the messages in a stored header. The public log readers cannot be
+  used, because they patch asyncio for the whole program if an event loop is running.
 - ``attachment_reference``: a sample stores each picture once, under the hash of its data URL.
 - ``recover_log``: the public ``recover_eval_log`` starts its own event loop.
-- ``resumed_task``: ``eval_async`` reuses samples of an earlier log only through a ``PreviousTask``. ``eval_retry`` would create
+- ``resumed_task``: ``eval_async`` reuses samples from an earlier log only through a ``PreviousTask``. ``eval_retry`` would create
   the task and the models from their names, without the evaluation context.
-- ``recorder``: the public functions load a whole log into memory; the recorder reads and writes one sample at a time.
+- ``recorder``: the public functions load the whole log into memory, whereas the recorder handles one sample at a time.
 """
 
 from __future__ import annotations
@@ -42,28 +42,28 @@ def silence_display() -> None:
 
 
 def header_context() -> dict[str, Any]:
-    """Return the pydantic validation context for reading a stored header."""
+    """Return the pydantic validation context for convert_read_errors a stored header."""
     return get_deserializing_context()
 
 
 def attachment_reference(content: str) -> str:
-    """Return the reference by which a sample's messages refer to a text or picture that the sample stores only once."""
+    """Return the reference to a text or picture that is stored once as an attachment of the sample."""
     return ATTACHMENT_PROTOCOL + mm3_hash(content)
 
 
 async def recover_log(path: Path) -> None:
-    """Write the finished samples of a killed evaluation, if any, to a new log in the same folder."""
+    """Write the finished samples of a killed evaluation to a new log in the same folder, if there are any."""
     with suppress(RecoveryNotAvailable):
         await recover_eval_log_async(str(path), cleanup=True)
 
 
 def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> PreviousTask:
-    """Return a task that reuses the samples of an earlier log.
+    """Return a task that reuses the samples from an earlier log.
 
     Args:
         task: The task to run.
-        header: The earlier log, with or without its samples.
-        info: Location of the earlier log; needed if ``header`` does not contain the samples.
+        header: The earlier log, with or without samples.
+        info: Location of the earlier log; required if ``header`` does not contain the samples.
     """
     return PreviousTask(
         id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,

@@ -1,4 +1,4 @@
-"""An Inspect scorer that asks a judge for a verdict on a run, an error mode and a reason."""
+"""The Inspect scorer that asks a judge for a verdict on a run, with an error mode and a reason."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoRep
 from scope_ptz.errors import TraceError
 
 FIRST_SEED = 1
-"""Seed of the first judgement by a judge of another Inspect provider than SCOPE's. Each further judgement uses the next integer."""
+"""Seed for the first judgement by a judge from another Inspect provider. Each further judgement uses the next integer."""
 
 _ROLES: dict[str, Callable[..., ChatMessage]] = {
     "system": ChatMessageSystem,
@@ -46,9 +46,9 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
     """Return the scorer that asks the model in the role "judge" for a verdict.
 
     Args:
-        context: The resources of the evaluation, which include the connection to the judge.
+        context: The resources of the evaluation, including the connection to the judge.
         repeat: Index of the judgement, from 0, if each run is judged several times.
-        journal: Journal that contains earlier judgements and to which new ones are added; None for a journal in memory.
+        journal: Journal with earlier judgements, to which new ones are added; None for a journal in memory.
     """
     used_journal = journal or Journal()
 
@@ -63,7 +63,7 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
 
 
 async def _judgement(state: TaskState, context: EvalContext, repeat: int, journal: Journal) -> Score:
-    """Return the judgement of a run as a score. A run with an infrastructure failure gets a score without a value."""
+    """Return the judgement of a run as a score. For a run with an infrastructure failure, the score has no value."""
     stored = state.store.get(STORE)
     entry, _ = published_entry(Entry.of_metadata(state.metadata))
     stored_run = StoredRun.from_store(stored) if stored else StoredRun("", {}, "")
@@ -85,7 +85,7 @@ async def _judgement(state: TaskState, context: EvalContext, repeat: int, journa
 
 
 class LoggedJudge:
-    """A connection to a judge whose requests go through an Inspect model."""
+    """A connection to a judge that sends its requests through an Inspect model, so that they are logged."""
 
     def __init__(self, model: Model, context: EvalContext, repeat: int) -> None:
         self._model, self._context, self._repeat = model, context, repeat
@@ -98,7 +98,7 @@ class LoggedJudge:
         return await self._model.api.logged_call(self._model, chat, lambda: complete(messages, schema))
 
     async def _ask_other_provider(self, chat: list[ChatMessage], schema: dict[str, Any]) -> Completion:
-        """Ask a model that another Inspect provider serves."""
+        """Send the messages to a model from another Inspect provider."""
         response_schema = ResponseSchema(name="verdict", json_schema=JSONSchema.model_validate(schema))
         config = GenerateConfig(response_schema=response_schema, temperature=0.0, seed=FIRST_SEED + self._repeat)
         try:

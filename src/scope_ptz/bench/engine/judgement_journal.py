@@ -1,6 +1,6 @@
-"""The judgement journal of a log: a file in the same folder that stores new judgements until they are written to the log.
+"""The judgement journal of a log: a file next to the log that stores new judgements until they are written to the log.
 
-An interrupted rescoring therefore loses no judgement.
+Thanks to the journal, an interrupted rescoring does not lose judgements.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ def journal_file(log: Path) -> Path:
 
 
 class Journal:
-    """The judgements of the runs of a log, by sample, judge and repeat.
+    """The judgements of the runs in a log, by sample, judge and repeat.
 
     Attributes:
-        path: File of the journal; None for a journal in memory.
-        added: The judgements that were added to this object.
+        path: Path of the journal file; None for a journal in memory.
+        added: The judgements that were added since this object was created.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -47,13 +47,13 @@ class Journal:
 
     @classmethod
     def of_log(cls, log: Path) -> Journal:
-        """Return the journal of a log."""
+        """Open the journal of a log."""
         return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
-        """Return a judgement made with the current prompt; None if there is none or if it failed.
+        """Return the judgement with the current prompt; None if there is no such judgement or it failed.
 
-        The caller writes the returned judgement to the log, so ``remove_logged`` later removes it from the file.
+        The caller must write the returned judgement to the log, because ``remove_logged`` removes it from the file.
         """
         judgement = self._judgements.get((sample, judge, repeat))
         if judgement is None or judgement.prompt != prompt_version() or judgement.verdict == "failed":
@@ -69,7 +69,7 @@ class Journal:
             del self._unlogged[key]
 
     def add(self, sample: str, judgement: Judgement) -> None:
-        """Add a new judgement, and write it to the file."""
+        """Add a new judgement, and append it to the file."""
         key = (sample, judgement.judge, judgement.repeat)
         self._judgements[key] = judgement
         self._unlogged.pop(key, None)
@@ -78,7 +78,7 @@ class Journal:
             append_line(self.path, _line(sample, judgement))
 
     def remove_logged(self) -> None:
-        """Remove from the file the judgements that the log now contains. Judgements of other interrupted rescorings remain."""
+        """Remove the judgements that the log now contains from the file. Judgements from other interrupted rescorings remain."""
         if self.path is None:
             return
         lines = [_line(sample, judgement) for (sample, _, _), judgement in self._unlogged.items() if judgement.verdict != "failed"]

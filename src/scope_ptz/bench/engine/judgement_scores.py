@@ -1,4 +1,4 @@
-"""Convert judgements to the scores of a sample and back. Each judgement is stored as a separate score."""
+"""Convert judgements to Inspect scores and back. Each judgement is stored as a separate score of the sample."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.errors import TraceError
 
 JUDGE = "judge"
-"""Name of the scorer in a log."""
+"""Name of the scorer in logs."""
 JUDGEMENT = "judgement"
-"""Metadata key under which a score stores the judgement."""
+"""Key for the judgement in a score's metadata."""
 
 
 def score_of_judgement(judgement: Judgement) -> Score:
@@ -29,7 +29,7 @@ def score_of_judgement(judgement: Judgement) -> Score:
 def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
     """Return the judgements among the scores of a sample, in the order in which they were made.
 
-    A failed judgement and its retry have the same index. Only the retry is returned.
+    If a failed judgement was retried, only the retry is returned. Both have the same index.
 
     Raises:
         TraceError: A judgement is damaged.

@@ -12,36 +12,36 @@ from pydantic_core import from_json
 
 from scope_ptz.bench.engine.inspect_internals import header_context
 from scope_ptz.bench.engine.run_cards import CARD, card_of
-from scope_ptz.bench.engine.sample_files import reading, sample_count, samples, stored_run_in
+from scope_ptz.bench.engine.sample_files import convert_read_errors, sample_count, samples, stored_run_in
 from scope_ptz.bench.engine.stored_run import trace_of
 from scope_ptz.bench.engine.token_costs import cost_usd
-from scope_ptz.bench.engine.traces.log_completeness import completed
+from scope_ptz.bench.engine.traces.log_completeness import check_completeness
 from scope_ptz.bench.engine.traces.traced_trials import traced_trial
-from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge
+from scope_ptz.bench.judging.deciding_judge import with_deciding_verdicts
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
-DECIDES = "decides"
-"""Metadata key for the name of the judge whose verdicts count for the runs that only a judge can score."""
+DECIDING_JUDGE_KEY = "decides"
+"""Metadata key for the name of the deciding judge, whose verdicts count for the runs that only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, SUMMARY_PARTS = "summaries.json", "_journal/summaries/"
-"""Files in a log, which is a ZIP archive. The log of an unfinished evaluation contains only the ``_journal`` files of each pair."""
+"""Files in a log, which is a ZIP archive. The second name of each pair is used in the log of an unfinished evaluation."""
 
 
 def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = None) -> Evaluation:
-    """Read an evaluation from a log, and compute its verdicts from the traces. The trials are sorted by task and epoch.
+    """Read an evaluation from a log, and compute the verdicts from the traces. The trials are sorted by task and epoch.
 
-    The scores in the log are not used. If they differ from the recomputed ones, ``Evaluation.findings`` names them. Judgements
-    cannot be recomputed. If several judges judged the runs that only a judge can score, one judge decides all these runs.
+    The scores in the log are not used. Differences from the recomputed scores are reported in ``Evaluation.findings``. Judgements
+    cannot be recomputed. If several judges have judged the runs that only a judge can score, one judge decides all of them.
 
     Args:
         path: The log.
-        progress: Called after each sample with the number of scored samples and the total number of samples.
+        progress: Called after each sample with the number of finished samples and the total number of samples.
 
     Raises:
         TraceError: The log does not exist, is damaged, or is not from this benchmark.
     """
-    with reading(path):
+    with convert_read_errors(path):
         header, total = read_header(path), sample_count(path)
         split = str(((header.eval.metadata or {}).get(CARD) or {}).get("split", ""))
         traced, first = [], None
@@ -53,8 +53,8 @@ def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = No
         card = card_of(
             header, trace_of(first.trace, path) if first is not None and CARD not in (header.eval.metadata or {}) else None
         )
-        scored, findings = completed(traced, header, card)
-        trials = decided_by_one_judge(scored, (header.eval.metadata or {}).get(DECIDES, ""))
+        scored, findings = check_completeness(traced, header, card)
+        trials = with_deciding_verdicts(scored, (header.eval.metadata or {}).get(DECIDING_JUDGE_KEY, ""))
         expected_trials = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
     order = {str(name): index for index, name in enumerate(header.eval.dataset.sample_ids or ())}
     trials.sort(key=lambda trial: (order.get(trial.task.id, len(order)), trial.task.id, trial.epoch))
@@ -70,21 +70,21 @@ def read_evaluation(path: Path, progress: Callable[[int, int], None] | None = No
 
 
 def _failure(header: EvalLog) -> str:
-    """Return the error that ended an evaluation; empty if none did."""
+    """Return the error that ended an evaluation, or an empty string if it did not end in an error."""
     if header.status != "error":
         return ""
     return header.error.message if header.error is not None else "some of its runs failed"
 
 
 def trials_by_sample(path: Path) -> dict[str, Trial]:
-    """Return the trials of a log by the names of their samples. Raises ``TraceError``."""
+    """Return the trials of a log by sample name. Raises ``TraceError``."""
     return {trial.sample: trial for trial in read_evaluation(path).trials}
 
 
 def read_header(path: Path) -> EvalLog:
-    """Return the header of a log. For an interrupted evaluation, return the header written at its start. Raises ``TraceError``."""
-    with reading(path):
-        # Inspect's reader is not used, because it patches asyncio for the whole program when an event loop runs.
+    """Return the header of a log. For an interrupted evaluation, this is the header written at the start. Raises ``TraceError``."""
+    with convert_read_errors(path):
+        # Inspect's reader is not used, because it patches asyncio for the whole program if an event loop is running.
         with ZipFile(path) as archive:
             is_complete = HEADER in archive.namelist()
             header_data = from_json(archive.read(HEADER if is_complete else START))
@@ -98,12 +98,12 @@ def read_header(path: Path) -> EvalLog:
 
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
-    """Return whether each run of a log, by task and epoch, completed without an error. Raises ``TraceError``."""
+    """Return, for each run in a log by task and epoch, whether it completed without an error. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 
 
 def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
-    """Return the unique ids of the runs of a log, by task and epoch. Raises ``TraceError``.
+    """Return the unique ids of the runs in a log, by task and epoch. Raises ``TraceError``.
 
     A run keeps its id when it is carried over to another log.
     """
@@ -111,7 +111,7 @@ def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
 
 
 def _summaries(path: Path) -> dict[tuple[str, int], dict[str, Any]]:
-    with reading(path), ZipFile(path) as archive:
+    with convert_read_errors(path), ZipFile(path) as archive:
         names = archive.namelist()
         parts = [SUMMARIES] if SUMMARIES in names else sorted((n for n in names if n.startswith(SUMMARY_PARTS)), key=_number)
         rows = [row for part in parts for row in from_json(archive.read(part))]

@@ -19,8 +19,8 @@ from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.inspect_internals import recorder, silence_display
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.judgement_journal import Journal
-from scope_ptz.bench.engine.logs import DECIDES, HEADER, read_evaluation, read_header, trials_by_sample
-from scope_ptz.bench.engine.sample_files import reading, stored_run_in
+from scope_ptz.bench.engine.logs import DECIDING_JUDGE_KEY, HEADER, read_evaluation, read_header, trials_by_sample
+from scope_ptz.bench.engine.sample_files import convert_read_errors, stored_run_in
 from scope_ptz.bench.engine.stored_run import STORE
 from scope_ptz.bench.judging.deciding_judge import check_can_decide
 from scope_ptz.bench.judging.judgement_tally import JudgementTally
@@ -31,10 +31,10 @@ from scope_ptz.errors import InputError, OutputError
 CONCURRENCY = 8
 """Default number of samples that are scored concurrently."""
 SAMPLES_PER_FLUSH = 50
-"""Number of samples that are held in memory between two writes. Each write copies the whole new log."""
+"""Number of samples kept in memory between writes. Each write copies the whole new log."""
 
-Report = Callable[[int, int], None]
-"""Called with the number of written samples and the total number of samples."""
+ReportProgress = Callable[[int, int], None]
+"""Function that is called with the number of written samples and the total number of samples."""
 
 
 async def rescore(
@@ -46,18 +46,18 @@ async def rescore(
     additional: bool = True,
     with_checks: bool = False,
     concurrency: int = CONCURRENCY,
-    report: Report,
+    report: ReportProgress,
 ) -> JudgementTally:
-    """Append scores to a log, and return the counts of the new judgements by result. The log is replaced atomically at the end.
+    """Append scores to a log, and return a tally of the new judgements. The log is replaced atomically at the end.
 
     Args:
         log: Log of a finished evaluation.
-        context: The resources of the evaluation, which include the judge and ground truth.
-        judge_model: The judge; None to apply only the checks.
+        context: The resources of the evaluation, including the judge and the ground truth.
+        judge_model: The judge; None to run only the checks.
         repeats: Number of judgements of each run.
-        additional: Whether to add ``repeats`` judgements to those in the log. If False, only those of the first ``repeats``
-            judgements that the log lacks are made.
-        with_checks: Whether to apply the executable checks again.
+        additional: Whether to add ``repeats`` judgements to those in the log. If False, only the first ``repeats`` judgements are
+            completed.
+        with_checks: Whether to run the executable checks again.
         concurrency: Number of samples that are scored concurrently.
         report: Called after each sample.
 
@@ -82,7 +82,7 @@ async def rescore(
     new_log = log.with_name(f".{log.stem}.rescored.eval")
     new_log.unlink(missing_ok=True)
     try:
-        with reading(log):
+        with convert_read_errors(log):
             await _write_rescored(log, new_log, scorers, judge_model, concurrency, report)
         new_log.replace(log)
     except OSError as error:
@@ -94,11 +94,11 @@ async def rescore(
 
 
 def set_deciding_judge(log: Path, judge: str) -> None:
-    """Record in a log which judge's verdicts count for the runs that only a judge can score.
+    """Record the deciding judge, whose verdicts count for the runs that only a judge can score, in a log.
 
     Raises:
         TraceError: The log does not exist or is damaged.
-        InputError: The judge has given no verdict on such a run, or the evaluation is not finished.
+        InputError: The judge has given no verdict on one of these runs, or the evaluation is not finished.
         OutputError: The log cannot be replaced.
     """
     check_can_decide(read_evaluation(log).trials, judge)
@@ -106,12 +106,12 @@ def set_deciding_judge(log: Path, judge: str) -> None:
         raise InputError(f"The evaluation in {log} is not finished. Resume it with the command that started it.")
     new_log = log.with_name(f".{log.stem}.decided.eval")
     try:
-        with reading(log), ZipFile(log) as source, ZipFile(new_log, "w", ZIP_DEFLATED) as target:
+        with convert_read_errors(log), ZipFile(log) as source, ZipFile(new_log, "w", ZIP_DEFLATED) as target:
             for info in source.infolist():
                 content = source.read(info)
                 if info.filename == HEADER:
                     header = json.loads(content)
-                    header["eval"]["metadata"] = {**(header["eval"].get("metadata") or {}), DECIDES: judge}
+                    header["eval"]["metadata"] = {**(header["eval"].get("metadata") or {}), DECIDING_JUDGE_KEY: judge}
                     content = json.dumps(header).encode()
                 target.writestr(info, content)
         new_log.replace(log)
@@ -124,7 +124,7 @@ def set_deciding_judge(log: Path, judge: str) -> None:
 def _additional_indices(trials: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
     """Return the indices of ``repeats`` new judgements.
 
-    They begin at the first failed judgement by this judge and prompt. If none failed, they begin after the last judgement.
+    The indices begin at the first failed judgement by this judge with the current prompt or, if none failed, after the last one.
     """
     judgements = [j for t in trials.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
     failed = [j.repeat for j in judgements if j.verdict == "failed"]
@@ -133,9 +133,9 @@ def _additional_indices(trials: Mapping[str, Trial], judge_name: str, repeats: i
 
 
 async def _write_rescored(
-    log: Path, new_log: Path, scorers: Sequence[Scorer], model: Model | None, concurrency: int, report: Report
+    log: Path, new_log: Path, scorers: Sequence[Scorer], model: Model | None, concurrency: int, report: ReportProgress
 ) -> None:
-    """Write a copy of a log with additional scores, one sample at a time."""
+    """Write a copy of a log with additional scores, sample by sample."""
     header, reader = read_header(log), recorder(log, log.parent)
     writer = recorder(new_log, log.parent)
     names = await reader.read_log_sample_ids(str(log))

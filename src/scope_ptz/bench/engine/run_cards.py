@@ -1,4 +1,4 @@
-"""Read the run card of a log, which records the conditions of the runs."""
+"""Read the run card of a log, which records the conditions of an evaluation."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import TraceError
 
 ENGINE = "inspect-ai"
-"""Name of the package that runs evaluations."""
+"""Name of the Python package that runs evaluations."""
 CARD = "card"
-"""Key in a log's metadata for the run card. Logs that Inspect's own command wrote do not have it."""
-SCOPE = "scope"
-"""Key in a log's metadata for the facts about the tasks and the agent loop."""
+"""Key for the run card in a log's metadata. Logs written by Inspect's own command do not have this key."""
+METADATA_KEY = "scope"
+"""Key for data about the tasks and the agent loop in a log's metadata."""
 AGENT_SOURCE = "agent_source"
-"""Key in a card's ``sampling`` for the digest of an external agent's source."""
+"""Key for the digest of an external agent's source in a card's ``sampling``."""
 
 
 def engine_version() -> str:
@@ -30,11 +30,11 @@ def engine_version() -> str:
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """Return the run card of a log. If Inspect's own command wrote the log, it has no card, so the card is derived from the header.
+    """Return the run card of a log. For a log written by Inspect's own command, derive the card from the header.
 
     Args:
         header: The header of the log.
-        trace: The trace of any run of the log, from which the details of the planner are read; None if there is none.
+        trace: The trace of any run in the log, which contains the details of the planner; None if there is no trace.
 
     Raises:
         TraceError: The card is damaged.
@@ -43,12 +43,12 @@ def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
     try:
         if CARD in metadata:
             return RunCard.model_validate(metadata[CARD])
-        return _derived_card(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
+        return _derive_card(header, metadata[METADATA_KEY], trace.started.planner_details if trace is not None else {})
     except (ValidationError, KeyError) as error:
         raise TraceError(f"The run card in the log {header.location} is damaged: {error}.") from error
 
 
-def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
+def _derive_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
     config = header.eval.config
     fields = {name: value for name, value in facts.items() if name != AGENT_SOURCE}
     source = {AGENT_SOURCE: facts[AGENT_SOURCE]} if AGENT_SOURCE in facts else {}
@@ -56,8 +56,8 @@ def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[st
         run_id=header.eval.run_id,
         started=str(header.eval.created),
         engine_version=f"{ENGINE} {header.eval.packages.get('inspect_ai', '')}".strip(),
-        planner=_model(header, "planner"),
-        perception=_model(header, "eyes"),
+        planner=_model_card(header, "planner"),
+        perception=_model_card(header, "eyes"),
         epochs=config.epochs or 1,
         prompt_digest=planner.get("prompt_sha256", ""),
         sampling={**planner, **source},
@@ -67,13 +67,13 @@ def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[st
     )
 
 
-def _model(header: EvalLog, role: str) -> ModelCard:
+def _model_card(header: EvalLog, role: str) -> ModelCard:
     config = (header.eval.model_roles or {}).get(role)
     config = config[0] if isinstance(config, list) else config
     if config is None:
         return ModelCard(name="none")
     provider, _, name = config.model.partition("/")
-    is_scope_model = provider == SCOPE + "_ptz"
+    is_scope_model = provider == METADATA_KEY + "_ptz"
     deterministic = is_scope_model and name in DETERMINISTIC
     return ModelCard(
         name=name or provider,

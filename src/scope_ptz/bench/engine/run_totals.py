@@ -1,4 +1,4 @@
-"""Compute fractions of correct runs, and summarize an evaluation as JSON data."""
+"""Compute accuracies, and summarize evaluations as JSON data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import get_args
 
 from scope_ptz.bench.engine.failure_summary import failure_summary, server_events
-from scope_ptz.bench.judging.judgement_tally import needs_judgement, without_verdict
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict, needs_judgement
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Category
 
@@ -18,19 +18,19 @@ def accuracy(trials: Sequence[Trial]) -> float | None:
 
     Runs with an infrastructure failure and runs without a judge's verdict are excluded.
     """
-    scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
+    scored = [t for t in trials if t.headline != "infrastructure" and not lacks_verdict(t)]
     return sum(t.headline == "correct" for t in scored) / len(scored) if scored else None
 
 
 def macro_accuracy(trials: Sequence[Trial]) -> float | None:
-    """Return the unweighted mean of the categories' accuracies; None if no run is scored."""
+    """Return the unweighted mean of the accuracies in all categories; None if no run is scored."""
     groups = [[t for t in trials if t.task.category == category] for category in CATEGORIES]
     shares = [share for share in (accuracy(group) for group in groups if group) if share is not None]
     return sum(shares) / len(shares) if shares else None
 
 
 def evaluation_summary(evaluation: Evaluation) -> dict[str, object]:
-    """Return the summary of an evaluation that ``--json`` prints."""
+    """Return the summary of an evaluation that the option ``--json`` prints."""
     trials = evaluation.trials
     groups = {name: [t for t in trials if t.task.category == name] for name in CATEGORIES}
     return {

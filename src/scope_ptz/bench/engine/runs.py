@@ -1,7 +1,7 @@
-"""Run an evaluation, and resume it after interruptions.
+"""Run evaluations, and resume them after interruptions.
 
-An interrupted evaluation is resumed from its log. The log is found by the identity of the evaluation, which is a digest of
-everything that affects the results. The complete runs of the log are reused, and only the other runs are executed.
+An interrupted evaluation is resumed from its log. The log is found by the identity of the evaluation, a digest of everything that
+affects its results. Complete runs in the log are reused, and only the other runs are executed.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from inspect_ai.model import Model
 from scope_ptz.bench.engine.annotations import archive_logs, check_labels
 from scope_ptz.bench.engine.file_lock import lock_file
 from scope_ptz.bench.engine.inspect_internals import PreviousTask, recover_log, resumed_task, silence_display
-from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
+from scope_ptz.bench.engine.logs import DECIDING_JUDGE_KEY, read_evaluation, read_header, runs_in, uuids_in
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, CARD, card_of
 from scope_ptz.bench.engine.stored_run import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
 IDENTITY = "identity"
-"""Key in a log's metadata for the identity of the evaluation."""
-SUPERSEDED = "superseded"
-"""Folder for logs whose runs have been carried over to another log."""
+"""Key for the identity of the evaluation in a log's metadata."""
+SUPERSEDED_FOLDER = "superseded"
+"""Name of the folder for logs whose runs have been carried over to another log."""
 
 LOG_LEVEL = "error"
 """Minimum level of Inspect's own log messages."""
@@ -38,12 +38,12 @@ LOG_LEVEL = "error"
 
 @dataclass(frozen=True, slots=True)
 class StoredLog:
-    """A log, with the state of its runs.
+    """A log and the state of its runs.
 
     Attributes:
         path: Path of the log.
         header: Header of the log.
-        runs: Whether each run, by task and epoch, is complete.
+        runs: Whether each run is complete, by task and epoch.
     """
 
     path: Path
@@ -57,7 +57,7 @@ class StoredLog:
 
     @property
     def finished(self) -> bool:
-        """Whether every run is complete. A log with the status "success" may nevertheless contain broken runs."""
+        """Whether every run is complete. Even a log with the status "success" may contain broken runs."""
         return self.header.status == "success" and all(self.runs.values())
 
 
@@ -69,12 +69,12 @@ class EngineSetup:
         log_dir: Folder for the log.
         planner: Inspect model of the planner; None for external agents.
         perception: Inspect model of the perception backend.
-        judge: Inspect model of the judge; None to apply only the checks.
+        judge: Inspect model of the judge; None to run only the checks.
         concurrency: Number of concurrent runs.
         identity: The identity of the evaluation.
         card: Run card for the log.
-        realtime: Whether events are recorded while a run is in progress, so that a killed evaluation loses no finished run. This
-            slows runs down, so it is worthwhile only for expensive runs.
+        realtime: Whether to write events while a run is in progress, so that finished runs are not lost if the evaluation is
+            killed. This slows runs down, so it is worthwhile only for expensive runs.
     """
 
     log_dir: Path
@@ -95,7 +95,7 @@ def identity_of(*parts: Any) -> str:
 async def find_logs(log_dir: Path, identity: str) -> list[StoredLog]:
     """Return the logs of an evaluation in a folder, the most complete first.
 
-    If a program was killed, the runs that it had finished but not written to its log are first recovered into a separate log.
+    If the program was killed, the runs that had finished but were missing from the log are first recovered into a separate log.
     """
     for log in _logs_of(log_dir, identity):
         if log.header.status == "started":
@@ -107,7 +107,7 @@ def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
     logs = []
     for path in sorted(log_dir.glob("*.eval")):
         try:
-            log = stored_log(path)
+            log = read_stored_log(path)
         except TraceError:
             continue  # A damaged log cannot be resumed.
         if (log.header.eval.metadata or {}).get(IDENTITY) == identity:
@@ -115,13 +115,13 @@ def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
     return logs
 
 
-def stored_log(path: Path) -> StoredLog:
-    """Return the log at a path. Raises ``TraceError``."""
+def read_stored_log(path: Path) -> StoredLog:
+    """Read the log at a path. Raises ``TraceError``."""
     return StoredLog(path, read_header(path), runs_in(path))
 
 
 def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Evaluation]:
-    """Return the evaluations of a pair in a folder. A run that is in several logs is returned only once."""
+    """Read the evaluations of a pair from the logs in a folder. A run that is in several logs is returned only once."""
     evaluations, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
@@ -140,7 +140,7 @@ def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Ev
 
 
 def log_with_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
-    """Return the newest log of the same tasks and agent whose agent source differs; None if there is none.
+    """Return the newest log of the same tasks and agent with another agent source; None if there is none.
 
     Args:
         log_dir: Folder of the logs.
@@ -159,28 +159,28 @@ def log_with_other_source(log_dir: Path, agent: str, source: str, tasks: str) ->
 
 
 @contextmanager
-def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
-    """Lock an evaluation, so that a second program cannot run it at the same time.
+def evaluation_lock(log_dir: Path, identity: str) -> Iterator[None]:
+    """Lock an evaluation, so that no other program can run it at the same time.
 
     Raises:
         InputError: Another program is running the evaluation.
-        OutputError: The log folder cannot be written.
+        OutputError: The log folder cannot be written to.
     """
     try:
         log_dir.mkdir(parents=True, exist_ok=True)
         lock = (log_dir / f".{identity}.lock").open("w")
     except OSError as error:
         raise OutputError(
-            f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another folder with --out."
+            f"The log folder {log_dir} cannot be written to: {error.strerror}. Choose another folder with --out."
         ) from error
     with lock:
         if not lock_file(lock):
-            raise InputError(f"This evaluation is already running and writes to {log_dir}. Wait for it, or stop it first.")
+            raise InputError(f"This evaluation is already running and writing to {log_dir}. Wait until it ends, or stop it.")
         yield
 
 
 async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> Path:
-    """Run a task, reusing the complete runs of earlier logs, and return the path of the log.
+    """Run a task, reusing the complete runs in earlier logs, and return the path of the log.
 
     If the evaluation is cancelled, return the path of its partial log.
 
@@ -190,21 +190,21 @@ async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> P
         earlier: Logs of the same evaluation, the most complete first.
 
     Raises:
-        OutputError: The evaluation was stopped before it wrote a log.
+        OutputError: The evaluation was cancelled before it wrote a log.
         TraceError: The evaluation failed without completing a run.
     """
     check_labels([log.path for log in earlier])
     silence_display()
     stored_card = (earlier[0].header.eval.metadata or {}).get(CARD) if earlier else None
     card = RunCard.model_validate(stored_card) if stored_card else setup.card
-    deciding_judge = (earlier[0].header.eval.metadata or {}).get(DECIDES) if earlier else None
+    deciding_judge = (earlier[0].header.eval.metadata or {}).get(DECIDING_JUDGE_KEY) if earlier else None
     metadata = {CARD: card.model_dump(mode="json"), IDENTITY: setup.identity}
     if deciding_judge:
-        metadata[DECIDES] = deciding_judge
+        metadata[DECIDING_JUDGE_KEY] = deciding_judge
     logs = await eval_async(
-        await _resumed(task, earlier) if earlier else task,
+        await _resume_task(task, earlier) if earlier else task,
         model=setup.planner or setup.perception,
-        model_roles=_roles(setup),
+        model_roles=_model_roles(setup),
         metadata=metadata,
         log_dir=str(setup.log_dir),
         log_format="eval",
@@ -224,21 +224,21 @@ async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> P
     (log,) = logs
     if log.error is not None and not (log.results and log.results.completed_samples):
         raise TraceError(f"The evaluation failed: {log.error.message}")
-    written = Path(log.location)
+    log_path = Path(log.location)
     if log.status in ("success", "error"):
-        archive_logs([old.path for old in earlier if old.path.name != written.name], written, written.parent / SUPERSEDED)
-    return written
+        archive_logs([old.path for old in earlier if old.path.name != log_path.name], log_path, log_path.parent / SUPERSEDED_FOLDER)
+    return log_path
 
 
-async def _resumed(task: Task, earlier: Sequence[StoredLog]) -> PreviousTask:
-    """Return a task that reuses the complete runs of earlier logs.
+async def _resume_task(task: Task, earlier: Sequence[StoredLog]) -> PreviousTask:
+    """Return a task that reuses the complete runs in earlier logs.
 
-    If the runs are in several logs, their samples are read into memory.
+    If these runs are in several logs, their samples are read into memory.
     """
     best, *others = earlier
     best_runs = {run for run, complete in best.runs.items() if complete}
     other_runs = [(log, run) for log in others for run, complete in log.runs.items() if complete and run not in best_runs]
-    header, info = best.header, _info(best.path, best.header)
+    header, info = best.header, _log_info(best.path, best.header)
     if other_runs:
         sources = dict([*((run, best) for run in best_runs), *((run, log) for log, run in other_runs)])
         samples = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in sources.items()]
@@ -246,12 +246,12 @@ async def _resumed(task: Task, earlier: Sequence[StoredLog]) -> PreviousTask:
     return resumed_task(task, header, None if other_runs else info)
 
 
-def _roles(setup: EngineSetup) -> Mapping[str, Model | list[Model] | str | list[str]]:
+def _model_roles(setup: EngineSetup) -> Mapping[str, Model | list[Model] | str | list[str]]:
     roles = {"planner": setup.planner, "eyes": setup.perception, "judge": setup.judge}
     return {role: model for role, model in roles.items() if model is not None}
 
 
-def _info(path: Path, header: EvalLog) -> EvalLogInfo:
+def _log_info(path: Path, header: EvalLog) -> EvalLogInfo:
     return EvalLogInfo(
         name=str(path), type="file", size=path.stat().st_size, mtime=path.stat().st_mtime, task=header.eval.task,
         task_id=header.eval.task_id, suffix=None,

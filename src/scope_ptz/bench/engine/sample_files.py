@@ -1,4 +1,4 @@
-"""Read the traces and pictures of individual runs from logs, without importing Inspect AI, because its import takes seconds."""
+"""Read the traces and pictures of individual runs from logs. Inspect AI is not imported, because the import takes seconds."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if sys.version_info < (3, 14):
     import zipfile_zstd  # type: ignore[import-untyped,unused-ignore]  # noqa: F401 - lets zipfile read logs, which use Zstandard
 
 ATTACHMENT = "attachment://"
-"""Prefix of a reference to an attachment of the same sample."""
+"""Prefix of references to attachments of the same sample."""
 _SAMPLES = "samples/"
 
 
 @dataclass(frozen=True, slots=True)
 class SampleFiles:
-    """The trace and the pictures of one run in a log.
+    """The trace and pictures of a run in a log.
 
     Attributes:
         trace: The trace of the run.
         places: The viewpoints of the scene's presets.
-        references: References to the pictures, by their names in the trace.
-        attachments: The contents of the sample's attachments, by their references.
+        references: References to the pictures, by the picture names in the trace.
+        attachments: The sample's attachments by reference.
     """
 
     trace: Trace
@@ -45,23 +45,23 @@ class SampleFiles:
     attachments: Mapping[str, str]
 
     def picture(self, name: str) -> bytes | None:
-        """Return a picture as JPEG by its name in the trace; None if it was not stored."""
+        """Return the JPEG data of a picture by its name in the trace; None if the picture was not stored."""
         data = self.attachments.get(self.references.get(name, "").removeprefix(ATTACHMENT))
         return jpeg_of(data) if data is not None else None
 
 
 def open_sample(path: Path, sample: str) -> SampleFiles:
-    """Return the trace and the pictures of one run in a log.
+    """Return the trace and pictures of a run in a log.
 
     Args:
         path: The log.
-        sample: The name of the run's sample, as in ``Trial.sample``.
+        sample: Name of the run's sample, as in ``Trial.sample``.
 
     Raises:
         TraceError: The log cannot be read, or it does not contain the run.
     """
     task, _, epoch = sample.rpartition("#")
-    with reading(path):
+    with convert_read_errors(path):
         content = next(
             (row for row in samples(path, f"{task}_epoch_{epoch}") if sample_name(row["id"], row["epoch"]) == sample), None
         )
@@ -75,8 +75,8 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[None]:
-    """Return a context manager that turns an error while a log is read into a ``TraceError`` with the path of the log."""
+def convert_read_errors(path: Path) -> Iterator[None]:
+    """Convert errors that occur while a log is read to ``TraceError``, with the path of the log."""
     try:
         check_regular_file(path)
         yield
@@ -93,9 +93,9 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
-    """Iterate over the samples of a log as JSON data. With ``name``, yield only the sample in ``samples/NAME.json``.
+    """Yield the samples in a log as JSON data. With ``name``, yield only the sample in ``samples/NAME.json``.
 
-    A log is a ZIP archive. If it contains several files of the same name, the last one is read.
+    A log is a ZIP archive. If it contains several files with the same name, the last one is read.
     """
     with ZipFile(path) as archive:
         requested = f"{_SAMPLES}{name}.json" if name else None
@@ -114,9 +114,9 @@ def sample_count(path: Path) -> int:
 
 
 def stored_run_in(sample: Mapping[str, Any]) -> StoredRun | None:
-    """Return the run that a sample stores; None if it stores none.
+    """Return the run stored in a sample; None if no run is stored.
 
-    If the process was killed during the run, the data are read from the last event that changed the sample's store.
+    If the process was killed during the run, the data is taken from the last event that changed the sample's store.
     """
     attachments = sample.get("attachments", {})
     stored = (sample.get("store") or {}).get(STORE)

@@ -1,4 +1,4 @@
-"""The data that a run stores in its sample for checks and judges."""
+"""The data of a run that is stored in its sample for checks and judges."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_o
 from scope_ptz.errors import TraceError
 
 STORE = "scope"
-"""Key of SCOPE's data in the store of a sample."""
+"""Key for SCOPE's data in a sample's store."""
 FRAME_WIDTH_PX, FRAME_HEIGHT_PX = 1280, 720
-"""Size of the frames of every evaluation. How large things must be in a frame is defined for this size."""
+"""Size of the frames in every evaluation, in pixels. The minimum object sizes in tasks are defined for this frame size."""
 
 
 def sample_name(task: str, epoch: int) -> str:
-    """Return the name of the sample of a run. ``task`` is the task's id."""
+    """Return the name of a run's sample. ``task`` is the task's id."""
     return f"{task}#{epoch}"
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """The data of a run, as its sample stores them.
+    """The data of a run that is stored in its sample.
 
     Attributes:
         trace: The trace as JSON lines; empty if the run never began.
-        presets: The viewpoint of each preset.
+        presets: The viewpoints of the presets, by name.
         home: The viewpoint of the home preset.
         sees: Whether the planner received frames.
-        pictures: References to the pictures in the sample's attachments, by their names in the trace.
-        truths: The true count for each counting call, by the index of the call; empty if they have not been computed.
+        pictures: References to the pictures in the sample's attachments, by the picture names in the trace.
+        truths: The true count for each counting call, by the call's index; empty if not computed.
     """
 
     trace: str
@@ -47,7 +47,7 @@ class StoredRun:
     truths: Mapping[str, int | None] = field(default_factory=dict)
 
     def to_store(self) -> dict[str, Any]:
-        """Convert the data to the form in which a sample stores them."""
+        """Convert the data to the JSON form in which a sample stores it."""
         return {
             "trace": self.trace, "presets": dict(self.presets), "home": self.home, "sees": self.sees,
             "pictures": dict(self.pictures), "truths": dict(self.truths),
@@ -55,21 +55,21 @@ class StoredRun:
 
     @classmethod
     def from_store(cls, store: Any) -> StoredRun:
-        """Read the data from a sample's store. Raises ``TraceError`` if it does not contain them."""
+        """Read the data from a sample's store. Raises ``TraceError`` if the store does not contain it."""
         try:
             return cls(**{name: store[name] for name in ("trace", "presets", "home", "sees", "pictures", "truths")})
         except (KeyError, TypeError) as error:
             raise TraceError(
-                "A sample of this log contains no run, so the log is not from this benchmark. Use a log of `scope bench run`."
+                "A sample of this log contains no run, so the log is not from this benchmark. Use a log from `scope bench run`."
             ) from error
 
     @property
     def places(self) -> PresetViewpoints:
-        """The viewpoints of the presets and of home."""
+        """The viewpoints of the presets and the home position."""
         return PresetViewpoints(self.presets, self.home)
 
     def episode(self, trace: Trace) -> Episode:
-        """Return the run as an episode, which is the input of the checks."""
+        """Build the episode of the run, which is the input for the checks."""
         return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
 
 
@@ -78,7 +78,7 @@ def trace_of(text: str, folder: Path) -> Trace | None:
 
     Args:
         text: The JSON lines.
-        folder: The folder of the trace. Error messages name it.
+        folder: The folder of the trace, for error messages.
 
     Raises:
         TraceError: The trace is damaged.

@@ -1,4 +1,4 @@
-"""Build trials from the stored data of runs."""
+"""Build trial records from the stored data of runs."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from scope_ptz.bench.scoring.verdict import AGENT_FAILURES, score_episode
 from scope_ptz.builtin_names import EXACT_PERCEPTION
 
 _TIMED_TOOLS = ("count_objects", "query_answer")
-"""Tools whose calls are reported as perception calls with their times."""
+"""Tools whose calls are reported, with their times, as perception calls."""
 
 
 def trial_of(entry: Entry, stored_run: StoredRun, epoch: int, folder: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """Return the trial of a run, scored by the checks of its task. If the task has no checks, the first verdict of a judge decides.
+    """Return the trial of a run, scored by the checks of its task. For a task without checks, the first verdict by a judge decides.
 
-    If a log has several judges, ``judging.deciding_judge`` later selects the one that decides.
+    If a log contains verdicts by several judges, ``judging.deciding_judge`` selects the deciding judge later.
 
     Args:
         entry: The entry that was run.
         stored_run: The stored data of the run.
         epoch: Number of the run of this entry, from 1.
-        folder: Folder to record in the trace, which error messages name.
+        folder: Folder of the trace, for error messages.
         judgements: The judgements of the run.
     """
     name = sample_name(entry.facts.id, epoch)
@@ -73,14 +73,14 @@ def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dic
 
 
 def _with_fault(ended: Ended | None, reason: str) -> str:
-    """Return the reason for a verdict, preceded by the failure of an external agent that ended the run."""
+    """Return the reason for a verdict. If the failure of an external agent ended the run, add the failure before the reason."""
     if ended is None or ended.kind not in AGENT_FAULTS:
         return reason
     return f"{fault_reason(ended.kind, ended.text)} {reason}"
 
 
 class _TrueCounts:
-    """Returns the true count for an observation of a run, from the stored counts of its calls."""
+    """A function that looks up the stored true count for an observation."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
         self._counts = [
@@ -99,7 +99,7 @@ def _verdict_of_judges(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[
 
 
 def failure_at_end(ended: Ended | None) -> str | None:
-    """Return the failure of the infrastructure that ended a run, from the last record of its trace; None if there is none."""
+    """Return the infrastructure failure that ended a run, given the last record of its trace; None if there was none."""
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):
@@ -110,7 +110,7 @@ def failure_at_end(ended: Ended | None) -> str | None:
 
 
 def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
-    """Return how long perception, the camera and the whole call took, for each successful call of a timed tool."""
+    """Return, for each successful call to a timed tool, the times of perception, the camera and the whole call."""
     calls = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
     return tuple(
         ObservationTime(
@@ -124,7 +124,7 @@ def _observation_times(trace: Trace) -> tuple[ObservationTime, ...]:
 
 
 def _trace_fields(trace: Trace) -> dict[str, Any]:
-    """Return the fields of a trial that come from its trace."""
+    """Return the trial fields that come from the trace."""
     ended = trace.ended
     return {
         "outcome": ended.outcome if ended else None,

@@ -1,1 +1,1 @@
-"""Judge runs with language models and human labels, and measure the agreement of all raters."""
+"""Judge runs with language models, store human labels, and measure the agreement between raters."""

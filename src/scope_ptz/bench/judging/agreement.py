@@ -1,7 +1,7 @@
-"""Measure the agreement of the raters of runs.
+"""Measure the agreement between raters.
 
-Raters are the executable checks, the judges (each repeat is a rater), and people. For gold runs, which have a known fault or none,
-the known verdict counts as a rater.
+The raters are the executable checks, the judges (each repeat is a separate rater) and people. The known verdicts on gold runs count
+as another rater.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any, Literal
 
-from scope_ptz.bench.judging.kappa import KappaResult, cohen, fleiss
+from scope_ptz.bench.judging.kappa import KappaResult, cohen_agreement, fleiss_agreement
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 
@@ -22,7 +22,7 @@ RaterKind = Literal["checks", "judge", "person", "gold"]
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """A rating of a run. ``mode`` is the error mode of an incorrect run; None if the rater did not assign one."""
+    """A rater's verdict on a run. ``mode`` is the error mode of an incorrect run; None if the rater did not assign one."""
 
     correct: bool
     mode: ErrorMode | None = None
@@ -35,7 +35,7 @@ class Rating:
 
 @dataclass(frozen=True, slots=True)
 class RatedRun:
-    """A run that raters rate. ``cluster`` is its task, because runs of one task are not independent."""
+    """The key of a rated run. ``cluster`` is the task, because runs of the same task are not independent."""
 
     log: str
     sample: str
@@ -48,10 +48,10 @@ class Rater:
 
     Attributes:
         name: Name of the rater.
-        kind: Kind of rater.
-        group: Name of the rater's group. The repeats of one judge form a group.
-        ratings: The rating of each run.
-        other_verdicts: Counts of verdicts that are not ratings, by verdict ("unscored", "failed", ...).
+        kind: Whether the rater is the checks, a judge, a person or the gold verdict.
+        group: Name of the rater's group. The repeats of a judge form a group.
+        ratings: The ratings by run.
+        other_verdicts: Number of runs with another verdict ("unscored", "failed", ...), by verdict.
     """
 
     name: str
@@ -63,9 +63,9 @@ class Rater:
 
 @dataclass(frozen=True)
 class RaterPair:
-    """The agreement of two raters on the runs that both rated.
+    """The agreement between two raters on the runs that both rated.
 
-    ``modes`` is their agreement on error modes, on the runs to which both assigned one.
+    ``modes`` is their agreement on the error modes of the runs to which both assigned one.
     """
 
     first: str
@@ -76,20 +76,20 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of a group of raters on the runs that all of them rated.
+    """The agreement within a group of raters on the runs that all of them rated.
 
-    ``title`` describes the group, such as "people". ``left_out`` is the number of runs that only some of the raters rated.
+    ``title`` describes the group, such as "people". ``partly_rated`` is the number of runs that only some of the raters rated.
     """
 
     raters: tuple[str, ...]
     title: str
     verdicts: KappaResult
-    left_out: int
+    partly_rated: int
 
 
 @dataclass(frozen=True)
 class AgreementReport:
-    """The agreement of all raters, in pairs and in groups."""
+    """The agreement between all raters, in pairs and in groups."""
 
     raters: tuple[Rater, ...]
     pairs: tuple[RaterPair, ...]
@@ -113,27 +113,27 @@ class AgreementReport:
                 for p in self.pairs
             ],
             "groups": [
-                {"raters": list(g.raters), "what": g.title, "left_out": g.left_out, **g.verdicts.as_dict()} for g in self.groups
+                {"raters": list(g.raters), "what": g.title, "left_out": g.partly_rated, **g.verdicts.as_dict()} for g in self.groups
             ],
         }
 
 
 def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport:
-    """Measure the agreement of raters in pairs and in groups.
+    """Measure the agreement between raters, in pairs and in groups.
 
-    Only the first repeat of a judge is compared with other raters. The repeats of a judge are compared with each other.
+    Only the first repeat of a judge is compared with other raters. All repeats of a judge are compared with each other.
 
     Args:
         raters: The raters.
-        seed: Seed of the bootstrap intervals.
+        seed: Seed for the bootstrap intervals.
     """
     first_of_group = {rater.group: rater for rater in reversed(raters)}
     first_raters = [rater for rater in raters if first_of_group[rater.group] is rater]
     repeats: dict[str, list[Rater]] = {}
     for rater in raters:
         repeats.setdefault(rater.group, []).append(rater)
-    pairs = [_pair(one, two, seed) for one, two in combinations(first_raters, 2)]
-    pairs += [_pair(one, two, seed) for group in repeats.values() for one, two in combinations(group, 2)]
+    pairs = [_pair(first, second, seed) for first, second in combinations(first_raters, 2)]
+    pairs += [_pair(first, second, seed) for group in repeats.values() for first, second in combinations(group, 2)]
     groups = [_group(group, f"repeats of {group[0].name}", seed) for group in repeats.values() if len(group) > 1]
     for kind, title in (("judge", "judges"), ("person", "people")):
         same_kind = [rater for rater in first_raters if rater.kind == kind]
@@ -142,15 +142,19 @@ def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport
     return AgreementReport(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
 
 
-def _pair(one: Rater, two: Rater, seed: int) -> RaterPair:
-    shared = [item for item in one.ratings if item in two.ratings]
-    both = [(item, one.ratings[item], two.ratings[item]) for item in shared]
+def _pair(first: Rater, second: Rater, seed: int) -> RaterPair:
+    shared = [item for item in first.ratings if item in second.ratings]
+    both = [(item, first.ratings[item], second.ratings[item]) for item in shared]
     with_modes = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
     return RaterPair(
-        one.name,
-        two.name,
-        cohen([a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed),
-        cohen([a for _, a, _ in with_modes], [b for _, _, b in with_modes], [item.cluster for item, _, _ in with_modes], seed),
+        first.name,
+        second.name,
+        cohen_agreement(
+            [a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed
+        ),
+        cohen_agreement(
+            [a for _, a, _ in with_modes], [b for _, _, b in with_modes], [item.cluster for item, _, _ in with_modes], seed
+        ),
     )
 
 
@@ -158,12 +162,12 @@ def _group(raters: Sequence[Rater], title: str, seed: int) -> RaterGroup:
     rated_by_any = {item for rater in raters for item in rater.ratings}
     shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
     rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
-    agreement = fleiss(rows, [item.cluster for item in shared], seed)
+    agreement = fleiss_agreement(rows, [item.cluster for item in shared], seed)
     return RaterGroup(tuple(rater.name for rater in raters), title, agreement, len(rated_by_any) - len(shared))
 
 
-def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
-    """Return the raters of evaluations: the checks first, then judges, people and gold runs."""
+def collect_raters(evaluations: Iterable[Evaluation]) -> list[Rater]:
+    """Collect the raters of evaluations: the checks first, then judges, people and gold verdicts."""
     collector = _RaterCollector()
     for evaluation in evaluations:
         for trial in evaluation.trials:
@@ -173,7 +177,7 @@ def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
 
 
 class _RaterCollector:
-    """Collects the raters of trials and their ratings."""
+    """Collects the ratings of trials by rater."""
 
     def __init__(self) -> None:
         self.raters: dict[str, Rater] = {}
@@ -194,7 +198,7 @@ class _RaterCollector:
 
 
 def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
-    """Add a rating. Verdicts that are not ratings ("unscored", "unparseable", "failed", "unclear") are counted separately."""
+    """Add a verdict to a rater. Verdicts other than "correct" and "incorrect" are only counted."""
     if verdict in (CORRECT, INCORRECT):
         rater.ratings[item] = Rating(verdict == CORRECT, mode)
     else:
@@ -202,10 +206,10 @@ def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | Non
 
 
 def judgements_with_raters(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Yield the judgements of one run with the names of their raters. One model with two prompts counts as two judges.
+    """Yield the judgements of a run with the names of their raters. A model with two prompts counts as two judges.
 
     Yields:
-        The name of the rater, such as "gpt-oss-120b (judge-1) #2" for a second judgement; the name of the judge; the judgement.
+        The name of the rater, such as "gpt-oss-120b (judge-1) #2" for the second judgement; the name of the judge; the judgement.
     """
     times = Counter[str]()
     for judgement in judgements:

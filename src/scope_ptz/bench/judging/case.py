@@ -1,4 +1,4 @@
-"""The description of a run for a judge: the instruction, the calls with their results, and the final answer."""
+"""The parts of a run that a judge sees: the instruction, the calls with their results, and the final answer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.planner.base import ToolOutcome
 
 @dataclass(frozen=True, slots=True)
 class CaseCall:
-    """A tool call.
+    """A tool call in a run to be judged.
 
     Attributes:
         name: Name of the tool.
@@ -39,14 +39,14 @@ class JudgeCase:
 
     Attributes:
         instruction: The instruction to the agent.
-        start: Pose of the camera at the start.
-        viewpoint: Viewpoint of the camera at the start; None if unknown.
+        start: Pose of the camera at the start of the run.
+        viewpoint: Viewpoint of the camera at the start of the run; None if unknown.
         presets: Names of the presets.
         calls: The tool calls in order.
-        final: Pose of the camera at the end.
+        final: Pose of the camera at the end of the run.
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
-        sees: Whether the agent itself was shown pictures, so that it may answer from them without a perception call.
+        agent_saw_pictures: Whether the agent was shown pictures, so that it could answer without a perception call.
         preset_viewpoints: The viewpoints of the presets; None if unknown.
     """
 
@@ -58,7 +58,7 @@ class JudgeCase:
     final: Pose
     answer: str
     outcome: str | None
-    sees: bool = False
+    agent_saw_pictures: bool = False
     preset_viewpoints: PresetViewpoints | None = None
 
 
@@ -94,7 +94,7 @@ def case_of(trace: Trace, preset_viewpoints: PresetViewpoints | None = None) -> 
         final=ended.pose.pose() if ended else last,
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
-        sees=any(decided.view is not None for decided in trace.decisions),
+        agent_saw_pictures=any(decided.view is not None for decided in trace.decisions),
         preset_viewpoints=preset_viewpoints,
     )
 
@@ -110,7 +110,7 @@ def case_of_episode(episode: Episode, preset_viewpoints: PresetViewpoints) -> Ju
         final=episode.final.pose,
         answer=episode.answer,
         outcome=episode.outcome,
-        sees=bool(episode.planner_views),
+        agent_saw_pictures=bool(episode.planner_views),
         preset_viewpoints=preset_viewpoints,
     )
 

@@ -1,8 +1,8 @@
-"""Select the deciding judge: the judge whose verdicts count for the runs that only a judge can score.
+"""Select the deciding judge, whose verdicts count for the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge that was requested by name, if
-it has given a verdict on such a run. Otherwise it is the judge that gave the first verdict on the largest number of these runs.
-Later judgements by other judges do not change the choice.
+A single judge decides all these runs of a log, so that verdicts from different judges are never averaged. The deciding judge is the
+requested one, if it has given a verdict on one of these runs. Otherwise it is the judge that gave the first verdict on most of the
+runs. Later judgements by other judges do not change the selection.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scope_ptz.errors import InputError
 
 
 def judge_of(judgement: Judgement) -> str:
-    """Return the name of the judge. One model with two prompts counts as two judges."""
+    """Return the name of a judgement's judge. A model with two prompts counts as two judges."""
     return f"{judgement.judge} ({judgement.prompt})"
 
 
@@ -32,7 +32,7 @@ def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
 
     Args:
         trials: The trials of the log.
-        requested: The requested judge, with or without its prompt. If this judge has given no verdict, another judge decides.
+        requested: Name of the requested judge, with or without its prompt. If it has given no verdict, another judge decides.
 
     Returns:
         The name of the judge, or None if no judge has given a verdict on such a run.
@@ -49,7 +49,7 @@ def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
 
 
 def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dict[str, Any]:
-    """Return the headline, the reason and the error mode of a run that only a judge can score.
+    """Return the headline, reason and error mode of a run that only a judge can score.
 
     The first verdict counts, even if a later judgement by the same judge failed.
 
@@ -72,10 +72,10 @@ def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dic
     return {"headline": "unscored", "reason": reason, "error_mode": None}
 
 
-def decided_by_one_judge(trials: Sequence[Trial], requested: str = "") -> list[Trial]:
-    """Return the trials of a log. Those that only a judge can score have the verdict of the deciding judge.
+def with_deciding_verdicts(trials: Sequence[Trial], requested: str = "") -> list[Trial]:
+    """Return the trials of a log, with the verdicts of the deciding judge on the runs that only a judge can score.
 
-    In these trials, the judgements of the deciding judge come first.
+    In the trials of these runs, the judgements by the deciding judge come first.
     """
     judge = deciding_judge(trials, requested)
     if judge is None:
@@ -90,7 +90,7 @@ def _with_verdict_by(trial: Trial, judge: str) -> Trial:
 
 
 def check_can_decide(trials: Sequence[Trial], requested: str) -> None:
-    """Check that the requested judge can be the deciding judge.
+    """Check that a requested judge can be the deciding judge.
 
     Raises:
         InputError: The judge has given no verdict on a run that only a judge can score.

@@ -1,7 +1,7 @@
-"""Read and write the human labels of runs, which are stored as JSON lines in a file next to the log.
+"""Read and write human labels, which are stored as JSON lines in a file next to the log.
 
-A later label by the same person for the same run replaces an earlier one. Lines are only appended, so an interruption loses no
-label.
+A later label by the same person for the same run replaces the earlier one. Lines are only ever appended, so an interruption cannot
+lose labels.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError
 
 SUFFIX = ".labels.jsonl"
-"""Suffix that is added to the name of a log to get the name of its file of labels."""
+"""Suffix of a labels file. It is appended to the file name of the log."""
 
 
 class LabelRow(BaseModel):
-    """A label as stored in the file. ``sample`` is the name of the run's sample in the log; ``at`` is the time of the label."""
+    """A line of a labels file. ``sample`` is the name of the run's sample in the log; ``at`` is the time of labelling."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -36,12 +36,12 @@ class LabelRow(BaseModel):
     at: datetime
 
     def label(self) -> Label:
-        """Return the label without the run and the time."""
+        """Return the label itself, without the run and the time."""
         return Label(by=self.by, verdict=self.verdict, error_mode=self.error_mode, note=self.note)
 
 
 def labels_file(log: Path) -> Path:
-    """Return the path of the file with the labels of a log."""
+    """Return the path of a log's labels file."""
     return log.with_name(log.name + SUFFIX)
 
 
@@ -73,7 +73,7 @@ def _parse_row(line: str, path: Path, number: int) -> LabelRow:
 
 
 def add_label(path: Path, label: Label, sample: str) -> LabelRow:
-    """Append a label to a file, and return its row.
+    """Append a label to a labels file, and return the new row.
 
     Raises:
         OutputError: The file cannot be written.

@@ -1,4 +1,4 @@
-"""Read and append to files of JSON lines. A last line that an interruption left incomplete is ignored."""
+"""Read JSON Lines files and append to them. A last line that was not written completely is ignored."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scope_ptz.errors import InputError, OutputError
 
 
 def complete_lines(path: Path) -> list[tuple[int, str]]:
-    """Return the complete lines of a file with their numbers, without blank lines. A missing file has no lines.
+    """Return the complete, non-blank lines of a file with their line numbers. A missing file has no lines.
 
     Raises:
         InputError: The file cannot be read.
@@ -25,7 +25,7 @@ def complete_lines(path: Path) -> list[tuple[int, str]]:
 
 
 def append_line(path: Path, line: str) -> None:
-    """Append a line. An incomplete last line is removed first.
+    """Append a line to a file. An incomplete last line is removed first.
 
     Raises:
         OutputError: The file cannot be written.
@@ -33,14 +33,14 @@ def append_line(path: Path, line: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a+b") as file:
-            file.truncate(_complete_bytes(file.seek(0, 2), path))
+            file.truncate(_complete_size_bytes(file.seek(0, 2), path))
             file.write(line.encode("utf-8") + b"\n")
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
 
 
-def _complete_bytes(size: int, path: Path, step: int = 4096) -> int:
-    """Return the size of the complete lines of a file, in bytes."""
+def _complete_size_bytes(size: int, path: Path, step: int = 4096) -> int:
+    """Return the total size in bytes of the complete lines of a file."""
     with path.open("rb") as file:
         end = size
         while end > 0:

@@ -1,4 +1,4 @@
-"""Judge runs with a language model, through a completion function that the caller provides."""
+"""Judge runs with a language model. The caller provides the function that queries the model."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.judging.case import JudgeCase, case_of
 from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA, JudgeReply, parse_judge_reply
-from scope_ptz.bench.judging.quoting import cut
-from scope_ptz.bench.judging.rendering import MIN_CHARS, render
+from scope_ptz.bench.judging.quoting import shorten
+from scope_ptz.bench.judging.rendering import MIN_CHARS, describe_run
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Judgement
@@ -21,19 +21,19 @@ from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
 ATTEMPTS = 3
-"""Default number of invalid replies after which a judgement is unparseable."""
+"""Default maximum number of replies per judgement. If all of them are invalid, the judgement is unparseable."""
 
 BUDGET_CHARS = 60_000
-"""Default maximum length of the description of a run, in characters; about 15,000 tokens."""
+"""Default maximum length of a run's description, in characters (about 15,000 tokens)."""
 
 _ECHO_CHARS = 2_000
-"""Maximum length of an invalid reply that is sent back to the judge, in characters. Longer replies are shortened."""
+"""Maximum number of characters of an invalid reply that are sent back to the judge. Longer replies are shortened."""
 JudgeMessage = dict[str, Any]
-"""A chat message to a judge, in the OpenAI format."""
+"""A chat message to a judge in the OpenAI format."""
 
 
 class Completion(BaseModel):
-    """A reply of a judge's model, without its reasoning. ``cut_off`` is true if it reached the token limit."""
+    """A reply from a judge's model, without its reasoning. ``cut_off`` is true if the reply reached the token limit."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -44,7 +44,7 @@ class Completion(BaseModel):
 
 
 class NoReplyError(ScopeError):
-    """The server of a judge gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
+    """A judge's server gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
 
     def __init__(self, message: str, *, overflow: bool = False) -> None:
         self.overflow = overflow
@@ -52,17 +52,17 @@ class NoReplyError(ScopeError):
 
 
 Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
-"""Completes messages with a reply that follows a JSON schema. It raises only ``NoReplyError``."""
+"""Function that sends messages to a model and returns its reply, which follows a JSON schema. Raises only ``NoReplyError``."""
 
 
 class Judge:
-    """A judge. It keeps no state between judgements, so it can judge many runs concurrently.
+    """A language model that judges runs. It keeps no state between judgements, so it can judge several runs concurrently.
 
     Args:
-        name: Name of its model, as recorded in judgements.
+        name: Name of the model, as recorded in judgements.
         complete: Function that sends messages to the judge's model and returns the reply.
-        attempts: Maximum number of replies for one judgement.
-        budget_chars: Maximum length of the description of a run, in characters.
+        attempts: Maximum number of replies per judgement.
+        budget_chars: Maximum length of a run's description, in characters.
     """
 
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
@@ -71,12 +71,12 @@ class Judge:
     async def judge(
         self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, preset_viewpoints: PresetViewpoints | None = None
     ) -> Judgement:
-        """Judge a recorded run. Errors of models and servers are recorded in the judgement and not raised.
+        """Judge a recorded run. Model and server errors are recorded in the judgement instead of being raised.
 
         Args:
-            facts: The facts about the task.
+            facts: The task's properties and expected answer.
             trace: The recorded run.
-            repeat: Index of the judgement, from 0, if the judge judges the run several times.
+            repeat: Index of the judgement, from 0, if the run is judged several times.
             preset_viewpoints: The viewpoints of the presets. With them, the description states the camera's viewpoint after each
                 call.
         """
@@ -145,14 +145,14 @@ def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET
     """Return the messages that ask a judge for a verdict on a run."""
     return [
         {"role": "system", "content": system_prompt(facts.category)},
-        {"role": "user", "content": render(facts, case, budget_chars)},
+        {"role": "user", "content": describe_run(facts, case, budget_chars)},
     ]
 
 
 def _correction(reply: str, problem: str) -> list[JudgeMessage]:
-    """Return the invalid reply and a request for a valid one."""
+    """Return messages that repeat the invalid reply and ask for a valid one."""
     return [
-        {"role": "assistant", "content": cut(reply, _ECHO_CHARS) or "(nothing)"},
+        {"role": "assistant", "content": shorten(reply, _ECHO_CHARS) or "(nothing)"},
         {
             "role": "user",
             "content": f"This is no valid verdict: {problem}. Reply again with one JSON object in the given schema, nothing else.",

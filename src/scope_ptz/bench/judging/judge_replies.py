@@ -1,6 +1,6 @@
-"""The JSON schema of a judge's reply, and a strict parser of replies.
+"""The JSON schema for judge replies, and a strict parser.
 
-An invalid reply is rejected with an error message, which is sent to the judge.
+If a reply is invalid, the parser returns an error message, which is sent back to the judge.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 NO_MODE = "none"
 """Value of ``error_mode`` in the reply for a correct run."""
 MAX_REASON_CHARS = 1_000
-"""Maximum length of a reason in characters. Longer reasons are cut."""
+"""Maximum length of a reason in characters. Longer reasons are truncated."""
 _MAX_FAILED_BRACES = 100
-"""The parser gives up after this many opening braces that do not start a valid JSON object."""
+"""Number of opening braces without a valid JSON object after which the parser gives up."""
 
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -30,11 +30,11 @@ REPLY_SCHEMA: dict[str, Any] = {
     "required": ["reason", "verdict", "error_mode"],
     "additionalProperties": False,
 }
-"""Schema of a reply. The reason comes first, so that a model without a reasoning phase has to state it before its verdict."""
+"""Schema of a reply. The reason comes first, so that a model without a reasoning phase states it before the verdict."""
 
 
 class JudgeReply(BaseModel):
-    """A valid verdict. It has an error mode if and only if it is "incorrect". Other fields are ignored."""
+    """A valid reply. It has an error mode if and only if the verdict is "incorrect". Additional fields are ignored."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
@@ -70,13 +70,13 @@ class JudgeReply(BaseModel):
 
 
 def parse_judge_reply(text: str) -> JudgeReply | str:
-    """Parse the verdict in a judge's reply.
+    """Parse a judge's reply.
 
-    The reply must contain a JSON object, possibly surrounded by other text or a code fence. If it contains several objects with a
-    verdict, they must agree.
+    The reply must contain a JSON object with a verdict, possibly surrounded by other text or a code fence. If it contains several
+    such objects, they must agree.
 
     Returns:
-        The verdict, or a description of the error, which is sent to the judge.
+        The parsed reply, or an error message to send back to the judge.
     """
     objects = [content for content in _json_objects(text) if isinstance(content, dict) and "verdict" in content]
     if not objects:
@@ -95,7 +95,7 @@ def parse_judge_reply(text: str) -> JudgeReply | str:
 
 
 def _json_objects(text: str) -> Iterator[Any]:
-    """Yield every outermost JSON object in a text. Objects with duplicate names are invalid."""
+    """Yield every top-level JSON object in a text. Objects with duplicate names are invalid."""
     decoder, start, failed = json.JSONDecoder(object_pairs_hook=_object_with_unique_names), text.find("{"), 0
     while start != -1 and failed < _MAX_FAILED_BRACES:
         try:

@@ -1,4 +1,4 @@
-"""Count judgements by result, and find the runs that still need a judgement."""
+"""Count judgements by result, and find runs that still need a judgement."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 VERDICTS = ("correct", "incorrect")
-"""The results of a judgement that are verdicts. The others are "unparseable" and "failed"."""
+"""The results of judgements that are verdicts. The other results are "unparseable" and "failed"."""
 _MAX_FAILURE_CHARS = 300
-"""Maximum length of the reason for a failure, in characters."""
+"""Maximum length of a failure reason in characters."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgementTally:
-    """The counts of judgements by result. ``failure`` is the reason for the first failure, on one line."""
+    """The number of judgements with each result. ``failure`` is the reason for the first failure, as one line."""
 
     verdicts: int = 0
     unparseable: int = 0
@@ -25,7 +25,7 @@ class JudgementTally:
 
     @classmethod
     def of(cls, judgements: Iterable[Judgement]) -> JudgementTally:
-        """Count judgements."""
+        """Count judgements by result."""
         rows = list(judgements)
         failed = [judgement.reason for judgement in rows if judgement.verdict == "failed"]
         return cls(
@@ -52,21 +52,22 @@ class JudgementTally:
         return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
 
 
-def without_verdict(trial: Trial) -> bool:
-    """Return whether only a judge can score a run and no judge has given a verdict. Such a run is excluded from accuracies."""
+def lacks_verdict(trial: Trial) -> bool:
+    """Return whether only a judge can score a run, but no judge has given a verdict. Such runs are excluded from accuracies."""
     return trial.scored_by == "judge" and trial.headline == "unscored"
 
 
 def needs_judgement(trial: Trial) -> bool:
     """Return whether a run without a verdict still needs a judgement.
 
-    It does if it was not judged, if the judge's server failed, or if only judges other than the deciding judge have judged it.
+    A run needs a judgement if it was not judged, if the judge's server failed, or if only judges other than the deciding one have
+    judged it.
     """
-    return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
+    return lacks_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 
 
 def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
-    """Return the requested judgements of every run by a judge with the current prompt.
+    """Return the requested judgements of every run by one judge with the current prompt.
 
     Runs with an infrastructure failure are not judged.
 
@@ -86,12 +87,12 @@ def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> l
     return judgements
 
 
-def judged_by(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
-    """Return the name of a judge that has judged every run ``repeats`` times without a failure; None if there is none.
+def judge_of_every_run(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
+    """Return the name of a judge that has judged every run ``repeats`` times without failure; None if there is none.
 
     Args:
         trials: The runs.
-        judge: Name of the only judge to consider; empty to consider all judges.
+        judge: Name of the judge to consider; empty to consider all judges.
         repeats: Number of judgements per run.
     """
     rows = list(trials)

@@ -1,8 +1,8 @@
-"""Measure the agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971).
+"""Measure agreement between raters beyond chance: Cohen's kappa (1960) for two raters, Fleiss' kappa (1971) for more.
 
-Point estimates are computed by statsmodels. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section
-13.3). Whole tasks are drawn, because ratings of runs of one task are not independent. kappa = (p_o - p_e) / (1 - p_e) is undefined
-if all ratings are the same (p_e = 1).
+Point estimates are computed by statsmodels. Intervals are percentile intervals from a cluster bootstrap (Efron and Tibshirani 1993,
+section 13.3), which resamples whole tasks, because ratings of runs of the same task are not independent.
+kappa = (p_o - p_e) / (1 - p_e) is undefined if all ratings are the same (p_e = 1).
 """
 
 from __future__ import annotations
@@ -15,27 +15,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-LEVEL = 0.95
+CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals."""
 DRAWS = 2000
 """Number of bootstrap draws."""
 _MIN_DEFINED_FRACTION = 0.5
-"""Minimum fraction of draws in which kappa must be defined. If fewer are defined, there is no interval."""
+"""Minimum fraction of draws in which kappa must be defined. Otherwise, no interval is reported."""
 
 Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class KappaResult:
-    """The agreement of raters.
+    """The measured agreement between raters.
 
     Attributes:
-        runs: Number of runs.
+        runs: Number of rated runs.
         raters: Number of raters.
-        raw: Fraction of runs on which two raters agree. For more raters, fraction of agreeing pairs of ratings of the same run.
-        kappa: Agreement beyond chance; None if undefined.
-        low: Lower limit of the 95% interval of kappa; None if unknown.
-        high: Upper limit of the 95% interval of kappa; None if unknown.
+        raw: Fraction of runs on which two raters agree. For more raters, mean fraction of rater pairs that agree on a run.
+        kappa: Kappa; None if undefined.
+        low: Lower limit of the 95% confidence interval for kappa; None if unknown.
+        high: Upper limit of the 95% confidence interval for kappa; None if unknown.
         confusion: For two raters, the number of runs with each combination of labels.
     """
 
@@ -49,13 +49,13 @@ class KappaResult:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
-        confusion = [{"first": one, "second": two, "runs": number} for one, two, number in self.confusion]
+        confusion = [{"first": first, "second": second, "runs": number} for first, second, number in self.confusion]
         figures = {name: getattr(self, name) for name in ("runs", "raters", "raw", "kappa", "low", "high")}
         return {**figures, **({"confusion": confusion} if confusion else {})}
 
 
-def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
-    """Measure the agreement of two raters by Cohen's kappa.
+def cohen_agreement(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
+    """Measure the agreement between two raters with Cohen's kappa.
 
     Args:
         first: The first rater's label of each run.
@@ -82,8 +82,8 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     )
 
 
-def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
-    """Measure the agreement of several raters by Fleiss' kappa.
+def fleiss_agreement(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
+    """Measure the agreement between several raters with Fleiss' kappa.
 
     Args:
         ratings: The labels of each run. Every run must have the same number of labels.
@@ -91,7 +91,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
         seed: Seed of the bootstrap.
 
     Raises:
-        ValueError: Runs have different numbers of labels, or fewer than two.
+        ValueError: The runs have different numbers of labels, or fewer than two labels each.
     """
     if not ratings:
         return KappaResult(0, 0, None, None)
@@ -115,16 +115,16 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
 
 
 def cohen_values(tables: Numbers) -> Numbers:
-    """Return Cohen's kappa of each table of counts, of shape ``(n, k, k)``; NaN if undefined."""
+    """Return Cohen's kappa for each contingency table in an array of shape ``(n, k, k)``; NaN if undefined."""
     total = tables.sum(axis=(1, 2))
     with np.errstate(invalid="ignore", divide="ignore"):
         observed = np.trace(tables, axis1=1, axis2=2) / total
         by_chance = (tables.sum(axis=2) * tables.sum(axis=1)).sum(axis=1) / total**2
-        return _beyond_chance(observed, by_chance)
+        return _kappa(observed, by_chance)
 
 
 def fleiss_values(sums: Numbers) -> Numbers:
-    """Return Fleiss' kappa of each row of sums.
+    """Return Fleiss' kappa for each row of sums.
 
     Args:
         sums: Array of shape ``(n, k + 2)``. Its columns are the counts of the k labels, the fraction of agreeing pairs, and the
@@ -132,16 +132,16 @@ def fleiss_values(sums: Numbers) -> Numbers:
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)
-        return _beyond_chance(sums[:, -2] / sums[:, -1], (shares**2).sum(axis=1))
+        return _kappa(sums[:, -2] / sums[:, -1], (shares**2).sum(axis=1))
 
 
-def _beyond_chance(observed: Numbers, by_chance: Numbers) -> Numbers:
+def _kappa(observed: Numbers, by_chance: Numbers) -> Numbers:
     above_chance = 1 - by_chance
     return np.where(above_chance > 1e-12, (observed - by_chance) / np.where(above_chance > 1e-12, above_chance, 1.0), np.nan)
 
 
 def _counts_by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
-    """Return the counts of cells by cluster, of shape ``(clusters, size)``."""
+    """Count how often each cell occurs in each cluster, as an array of shape ``(clusters, size)``."""
     indices: dict[Hashable, int] = {}
     rows = [indices.setdefault(cluster, len(indices)) for cluster in clusters]
     counts = np.zeros((len(indices), size))
@@ -150,22 +150,22 @@ def _counts_by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size:
 
 
 def _interval(sums_by_cluster: Numbers, statistic: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
-    """Return the percentile interval of a statistic by a cluster bootstrap; its limits are None if it cannot be computed.
+    """Return the percentile interval of a statistic from a cluster bootstrap. Its limits are None if it cannot be computed.
 
     Args:
         sums_by_cluster: The sums of each cluster, of shape ``(clusters, k)``.
-        statistic: Computes the statistic for each row of summed clusters.
-        seed: Seed of the draws.
+        statistic: Function that computes the statistic for each row of sums over clusters.
+        seed: Seed for the draws.
     """
     clusters = len(sums_by_cluster)
     if clusters < 2:
         return {"low": None, "high": None}
-    drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
-    values = statistic(drawn @ sums_by_cluster)
+    draws = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
+    values = statistic(draws @ sums_by_cluster)
     values = values[~np.isnan(values)]
     if len(values) < DRAWS * _MIN_DEFINED_FRACTION:
         return {"low": None, "high": None}
-    tail = (1 - LEVEL) / 2
+    tail = (1 - CONFIDENCE_LEVEL) / 2
     low, high = np.quantile(values, (tail, 1 - tail))
     return {"low": float(low), "high": float(high)}
 

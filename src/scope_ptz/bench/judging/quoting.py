@@ -1,7 +1,7 @@
 """Quote untrusted text in judge prompts, so that a judge cannot mistake it for its own instructions.
 
-Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are split,
-because many servers interpret them in any message.
+A bar is added before every line, so no text can end the quotation. Control tokens of chat templates are split, because many servers
+interpret them in any message.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ _MAX_FOUR_DIGIT_CODE = 0xFFFF
 """Largest character code that is escaped with four hexadecimal digits."""
 
 
-def quoted(text: str) -> str:
-    """Return a text with a bar before each line, and with unprintable characters escaped. An empty text becomes a single bar."""
+def quote(text: str) -> str:
+    """Add a bar before each line of a text, and escape unprintable characters. An empty text becomes a single bar."""
     return "\n".join(BAR + _neutralize(line) for line in _LINE_ENDS.split(text))
 
 
-def inline(text: str, max_chars: int) -> str:
-    """Return a name as one line of at most ``max_chars`` characters in double quotes. Double quotes in the name are replaced."""
+def quote_name(text: str, max_chars: int) -> str:
+    """Format a name as a single line of at most ``max_chars`` characters in double quotes. Double quotes in it are replaced."""
     line = _neutralize(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
     return f'"{line if len(line) <= max_chars else line[: max_chars - 1] + "…"}"'
 
 
-def cut(text: str, max_chars: int) -> str:
-    """Shorten a text to about ``max_chars`` characters by replacing its middle with a note."""
+def shorten(text: str, max_chars: int) -> str:
+    """Shorten a text to about ``max_chars`` characters. Its middle is replaced with a note."""
     if len(text) <= max_chars:
         return text
     head, tail = max_chars * 2 // 3, max_chars // 3

@@ -1,7 +1,7 @@
-"""Describe a run to a judge within a budget of characters.
+"""Describe a run to a judge within a character budget.
 
-The instruction, the expected answer and the final answer are always included. If a run is long, first its tool results are
-shortened. If that is not enough, the calls in the middle are replaced with the number of calls of each tool.
+The instruction, the expected answer and the final answer are always included. If the description is too long, first the tool
+results are shortened. If that is not enough, the calls in the middle are replaced with the number of calls to each tool.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from dataclasses import replace
 from typing import Any
 
 from scope_ptz.bench.judging.case import CaseCall, JudgeCase
-from scope_ptz.bench.judging.quoting import cut, inline, quoted
+from scope_ptz.bench.judging.quoting import quote, quote_name, shorten
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 MIN_CHARS = 6_000
-"""Minimum budget in characters, because a shorter description cannot be judged reliably."""
+"""Minimum budget in characters. A shorter description cannot be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 """Maximum lengths of the instruction, of the expected answer and of the final answer, in characters."""
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Maximum lengths of a tool result in characters, tried in this order until all calls fit in the budget."""
+"""Maximum lengths of a tool result in characters, tried in this order until all calls fit into the budget."""
 
 _NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
 """Maximum length of a name, maximum number of presets, and characters reserved for the note about omitted calls."""
 _OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
-"""Fields of results that are left out, because they do not help a judge or would reveal the perception model."""
+"""Result fields that are omitted because they do not help a judge or would reveal the perception model."""
 
 _PERCEPTION_NAME = re.compile(r" ?\(seen by [^()]*\)")
 """The note in a tool's message that names the perception model."""
 
-_ENDINGS = {
+_OUTCOME_TEXTS = {
     "answered": "the agent gave a final answer",
     "clarification": "the agent asked a question back",
     "refused": "the agent declined the request",
@@ -45,16 +45,16 @@ _ENDINGS = {
     "camera_error": "the camera failed",
     "cancelled": "the run was cancelled",
 }
-"""Descriptions of the outcomes of runs."""
+"""Descriptions of run outcomes."""
 
 
-def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
+def describe_run(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
     """Describe a task and a run.
 
     Args:
-        facts: The facts about the task.
+        facts: The task's properties and expected answer.
         case: The run.
-        budget: Maximum length in characters. A smaller budget than ``MIN_CHARS`` is raised to ``MIN_CHARS``.
+        budget: Maximum length in characters. Values below ``MIN_CHARS`` are raised to ``MIN_CHARS``.
     """
     head, tail = _task_part(facts, case), _end_part(case)
     budget_left = max(budget, MIN_CHARS) - len(head) - len(tail)
@@ -65,45 +65,45 @@ def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
     names = [_preset(name, case) for name in case.presets[:_MAX_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
-    where = f" at viewpoint {inline(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
+    where = f" at viewpoint {quote_name(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
     lines = [
         f"Category: {facts.category}",
         f"Observation scope that the task is about: {facts.scope}",
         "",
         "Instruction to the agent:",
-        quoted(cut(case.instruction, _INSTRUCTION_CHARS)),
+        quote(shorten(case.instruction, _INSTRUCTION_CHARS)),
         "",
         "Expected answer:",
-        quoted(cut(facts.expected, _EXPECTED_CHARS)),
+        quote(shorten(facts.expected, _EXPECTED_CHARS)),
     ]
     if facts.demands:
-        lines += ["", "What the run must have done:", quoted(cut("\n".join(facts.demands), _EXPECTED_CHARS))]
+        lines += ["", "What the run must have done:", quote(shorten("\n".join(facts.demands), _EXPECTED_CHARS))]
     lines += [
         "",
-        f"Start: preset {inline(facts.preset, _NAME_CHARS)}{where}, camera at {pose_text(case.start)}.",
+        f"Start: preset {quote_name(facts.preset, _NAME_CHARS)}{where}, camera at {pose_text(case.start)}.",
         f"Presets of the camera: {presets}.",
     ]
-    if case.sees:
+    if case.agent_saw_pictures:
         lines.append("The agent was shown the camera's picture before its steps and may answer from what it saw there.")
     return "\n".join(lines)
 
 
 def _preset(name: str, case: JudgeCase) -> str:
-    """Return the name of a preset, with its viewpoint if known."""
+    """Return a preset's name, followed by its viewpoint if known."""
     viewpoint = case.preset_viewpoints.presets.get(name) if case.preset_viewpoints is not None else None
-    return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(viewpoint, _NAME_CHARS)})" if viewpoint else "")
+    return quote_name(name, _NAME_CHARS) + (f" (viewpoint {quote_name(viewpoint, _NAME_CHARS)})" if viewpoint else "")
 
 
 def _end_part(case: JudgeCase) -> str:
     viewpoint = case.calls[-1].viewpoint if case.calls else case.viewpoint
-    ending = _ENDINGS.get(case.outcome or "", "the run was cut off before its end")
+    ending = _OUTCOME_TEXTS.get(case.outcome or "", "the run was cut off before its end")
     return "\n".join(
         (
             f"How the run ended: {ending}.",
-            f"Final camera pose:{_at(viewpoint)} {pose_text(case.final)}.",
+            f"Final camera pose:{_viewpoint_text(viewpoint)} {pose_text(case.final)}.",
             "",
             "What the agent said in the end:",
-            quoted(cut(case.answer, _ANSWER_CHARS) if case.answer.strip() else "(nothing)"),
+            quote(shorten(case.answer, _ANSWER_CHARS) if case.answer.strip() else "(nothing)"),
         )
     )
 
@@ -131,7 +131,7 @@ def _all_calls(calls: Sequence[CaseCall], max_chars: int, budget_left: int) -> l
 
 
 def _first_and_last_calls(calls: Sequence[CaseCall], budget_left: int) -> list[str]:
-    """Return the first and last calls, as many as fit, and a note about the calls in the middle."""
+    """Return as many of the first and last calls as fit, with a note about the calls between them."""
     front, back = list[str](), list[str]()
     budget_left -= _NOTE_CHARS
     while len(front) + len(back) < len(calls):
@@ -142,7 +142,7 @@ def _first_and_last_calls(calls: Sequence[CaseCall], budget_left: int) -> list[s
             break
         (front if len(front) <= len(back) else back).append(text)
     first, last = len(front), len(calls) - len(back)
-    tools = Counter(inline(call.name, 30) for call in calls[first:last])
+    tools = Counter(quote_name(call.name, 30) for call in calls[first:last])
     failed = sum(call.error is not None for call in calls[first:last])
     counts = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
     note = f"[Calls {first + 1} to {last} are left out because the run is long: {counts}; {failed} of them failed.]"
@@ -150,18 +150,18 @@ def _first_and_last_calls(calls: Sequence[CaseCall], budget_left: int) -> list[s
 
 
 def _call_text(number: int, call: CaseCall, max_chars: int) -> str:
-    arguments = cut(_json(call.arguments), max_chars)
+    arguments = shorten(_json(call.arguments), max_chars)
     result = (
-        f"error: {cut(call.error, max_chars)}"
+        f"error: {shorten(call.error, max_chars)}"
         if call.error is not None
-        else f"result: {cut(_json(_shown_fields(call.result or {})), max_chars)}"
+        else f"result: {shorten(_json(_shown_fields(call.result or {})), max_chars)}"
     )
-    body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
-    return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {pose_text(call.pose)}."
+    body = quote(f"{shorten(call.name, 80)} {arguments}\n{result}")
+    return f"Call {number}:\n{body}\nCamera afterwards:{_viewpoint_text(call.viewpoint)} {pose_text(call.pose)}."
 
 
-def _at(viewpoint: str | None) -> str:
-    return f" at viewpoint {inline(viewpoint, _NAME_CHARS)}," if viewpoint else ""
+def _viewpoint_text(viewpoint: str | None) -> str:
+    return f" at viewpoint {quote_name(viewpoint, _NAME_CHARS)}," if viewpoint else ""
 
 
 def _shown_fields(result: Mapping[str, Any]) -> dict[str, Any]:
@@ -176,14 +176,14 @@ def _json(content: Mapping[str, Any]) -> str:
 
 
 def pose_text(pose: Pose) -> str:
-    """Return a pose as text."""
+    """Format a pose as text."""
     return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f} degrees, zoom {pose.zoom:.2f}x"
 
 
 def layout_sample() -> str:
     """Return the description of an invented run that contains every part of the layout.
 
-    It is part of the digest in the prompt version, so a change of the layout changes the version.
+    The digest in the prompt version covers it, so a change to the layout changes the version.
     """
     pose = Pose(10.0, -5.0, 2.0)
     facts = TaskFacts(
@@ -195,4 +195,6 @@ def layout_sample() -> str:
     case = JudgeCase(
         "Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, PresetViewpoints({"gate": "mast"}, "mast")
     )
-    return "\n\n".join(render(facts, shown, MIN_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))
+    return "\n\n".join(
+        describe_run(facts, variant, MIN_CHARS) for variant in (case, replace(case, calls=(), outcome=None, answer=""))
+    )

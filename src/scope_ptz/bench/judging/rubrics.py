@@ -1,7 +1,7 @@
-"""Load the published prompt for judges from its file.
+"""Load the published judge prompt from its file.
 
-Store a changed prompt in a new file, because verdicts are comparable only if the judges had the same prompt. Every judgement
-records the name of the file and a digest of its text.
+Never change a published prompt; add a new file instead, because verdicts are comparable only if the judges had the same prompt.
+Every judgement records the name of the file and a digest of its text.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _HEADING = re.compile(r"^# (.+)\n", re.MULTILINE)
 
 
 def system_prompt(category: Category) -> str:
-    """Return the system prompt for runs of a category."""
+    """Return the system prompt for tasks in a category."""
     parts = _sections()
     rubric = f"For tasks of the category {category}:\n{parts[category]}"
     reply = parts["reply"].replace("{schema}", json.dumps(REPLY_SCHEMA))
@@ -36,7 +36,7 @@ def mode_lines() -> list[str]:
 
 @cache
 def prompt_version() -> str:
-    """Return the version that judgements record: the prompt's name, and a digest of its text, the reply schema and the layout."""
+    """Return the version that judgements record: the prompt's name and a digest of its text, the reply schema and the layout."""
     text = _text() + json.dumps(REPLY_SCHEMA) + layout_sample()
     return f"{PROMPT}:{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 

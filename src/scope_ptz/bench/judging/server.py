@@ -1,4 +1,4 @@
-"""Connect a judge to an OpenAI-compatible server. Replies are constrained to the JSON schema if the server supports it."""
+"""Connect a judge to an OpenAI-compatible server. If the server supports it, replies are constrained to the JSON schema."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ ResponseFormat = Literal["json_schema", "json_object", "free"]
 _RESPONSE_FORMATS: tuple[ResponseFormat, ...] = ("json_schema", "json_object", "free")
 """Response formats in the order in which they are tried."""
 _REJECTION_KINDS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
-"""Kinds of failures with which servers reject an unsupported response format."""
+"""Kinds of failures by which servers reject an unsupported response format."""
 _FORMAT_WORDS = re.compile(
     r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE
 )
-"""Words that show that an error message is about the response format."""
+"""Words which show that an error message concerns the response format."""
 _MAX_REQUESTS = 6
 """Maximum number of requests for one reply. Each retry leaves out an option that the server rejected."""
 
 
 class JudgeModelOptions(BaseModel):
-    """Options of requests to a judge's model. Temperature 0 and a seed make replies repeatable if the server supports it.
+    """Options for requests to a judge's model. Temperature 0 and a seed make replies reproducible if the server supports this.
 
     Attributes:
         temperature: Sampling temperature.
         seed: Sampling seed.
-        max_tokens: Maximum number of tokens of a reply, including reasoning.
+        max_tokens: Maximum number of tokens in a reply, including reasoning.
         reasoning_effort: Reasoning effort, for models that support it.
     """
 
@@ -50,7 +50,7 @@ class JudgeModelOptions(BaseModel):
 
 @dataclass
 class _ServerSupport:
-    """The options that a server accepts, as learned from its replies. Copies of a ``JudgeServer`` share it.
+    """The options that a server has been found to accept. Copies of a ``JudgeServer`` share this object.
 
     Attributes:
         dialect: The request fields and roles that the server accepts.
@@ -64,14 +64,14 @@ class _ServerSupport:
 class JudgeServer:
     """Sends a judge's messages to a server.
 
-    It can be used by concurrent judgements. It remembers which options the server rejects.
+    Several judgements can use it concurrently. It remembers the options that the server rejects.
     """
 
     def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
         self.options, self.client, self._support = options or JudgeModelOptions(), ChatClient(endpoint), _ServerSupport()
 
     def for_repeat(self, repeat: int) -> JudgeServer:
-        """Return a copy for the judgement with index ``repeat``, which has its own seed and shares the connections."""
+        """Return a copy with the seed for the judgement with index ``repeat``. The copy shares the connections."""
         server = copy(self)
         server.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
         return server
@@ -82,7 +82,7 @@ class JudgeServer:
         Raises:
             NoReplyError: The server failed, or it rejected every response format.
         """
-        format_index, after_empty, dialect = self._support.format_index, False, self._support.dialect
+        format_index, had_empty_reply, dialect = self._support.format_index, False, self._support.dialect
         for _ in range(_MAX_REQUESTS):
             fields = dialect.fields(self.options.model_dump())
             try:
@@ -94,12 +94,12 @@ class JudgeServer:
                     continue
                 is_empty = failure.kind is FailureKind.EMPTY
                 if format_index + 1 < len(_RESPONSE_FORMATS) and (is_empty or _rejects_format(failure)):
-                    format_index, after_empty = format_index + 1, after_empty or is_empty
+                    format_index, had_empty_reply = format_index + 1, had_empty_reply or is_empty
                     continue
                 if is_empty:
                     return Completion(text="")
                 raise NoReplyError(str(failure), overflow=failure.kind is FailureKind.CONTEXT_OVERFLOW) from None
-            if not after_empty:  # A rejection is permanent, but an empty reply may be temporary.
+            if not had_empty_reply:  # A rejection is permanent, but an empty reply may be temporary.
                 self._support.format_index = max(self._support.format_index, format_index)
             return _completion(reply)
         raise NoReplyError(
@@ -113,7 +113,7 @@ class JudgeServer:
 
 
 def _rejects_format(failure: ServerFailure) -> bool:
-    """Return whether a server may have rejected the response format: it mentions the format, or reports a bad request."""
+    """Return whether a failure may be a rejection of the response format: it mentions the format, or is a bad request."""
     is_about_format = failure.kind is FailureKind.BAD_REQUEST or _FORMAT_WORDS.search(failure.detail) is not None
     return failure.kind in _REJECTION_KINDS and is_about_format
 

@@ -1,1 +1,1 @@
-"""A static leaderboard page, made from a folder of submissions."""
+"""Create a static leaderboard page from a submission folder."""

@@ -1,4 +1,4 @@
-"""The entries of a leaderboard: checked submissions with their scores."""
+"""The entries of a leaderboard: validated submissions with their scores."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from scope_ptz.errors import InputError
 
 SUBMISSION_PATTERN = "*.jsonl"
 MAX_BROKEN_FRACTION = 0.02
-"""An entry is not ranked if infrastructure failed in a larger fraction of its trials."""
+"""Maximum fraction of trials with an infrastructure failure. Entries above it are not ranked."""
 
 
 @dataclass(frozen=True, slots=True)
 class TaskSet:
-    """The tasks that submissions may cover.
+    """A set of tasks that submissions may cover.
 
     Attributes:
-        name: Name of the split or of the task file.
+        name: Name of the split or the task file.
         tasks: The tasks.
-        facts: The facts about each task, by its id. Intervals are clustered by their viewpoints.
+        facts: The properties of the tasks, by id. They contain the viewpoint, by which intervals are clustered.
     """
 
     name: str
@@ -42,20 +42,20 @@ class TaskSet:
 
     @property
     def digest(self) -> str:
-        """The digest by which a submission names its tasks."""
+        """The digest by which submissions identify their tasks."""
         return tasks_digest(self.tasks)
 
 
 @dataclass(frozen=True)
 class LeaderboardEntry:
-    """One submission of a leaderboard.
+    """A submission on a leaderboard.
 
     Attributes:
-        file: Name of the file.
-        header: Its header.
-        lines: Its trials.
-        provenance: Who evaluated it.
-        task_set: The tasks that it covers.
+        file: File name of the submission.
+        header: The header.
+        lines: The trials.
+        provenance: Who evaluated the submission.
+        task_set: The tasks that the submission covers.
     """
 
     file: str
@@ -66,23 +66,23 @@ class LeaderboardEntry:
 
     @property
     def name(self) -> str:
-        """Name of the team, agent or planner."""
+        """Name of the agent or planner."""
         card = self.header.card
         return card.planner.name if card.agent == "scope" else card.agent
 
     @property
     def is_baseline(self) -> bool:
-        """Whether the built-in planner made the runs. It is a reference, not a competitor."""
+        """Whether the planner is built in, so that the entry is a reference rather than a competitor."""
         return self.header.card.planner.deterministic
 
     @property
     def uses_ground_truth(self) -> bool:
-        """Whether perception was the simulator's ground truth and not a model."""
+        """Whether perception was the simulator's ground truth rather than a model."""
         return self.header.card.perception.deterministic
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """How far the result can be trusted: "hosted" or "self-reported", and how the agent was kept from the answers."""
+        """The labels of the result: "hosted" or "self-reported", and the isolation of the agent."""
         isolation = str(getattr(self.header.card, "isolation", None) or "")
         if self.provenance.evaluated == "hosted":
             return ("hosted",)
@@ -91,7 +91,7 @@ class LeaderboardEntry:
 
     @property
     def broken(self) -> int:
-        """Number of trials in which infrastructure failed."""
+        """Number of trials with an infrastructure failure."""
         return sum(line.headline == "infrastructure" for line in self.lines)
 
     @property
@@ -101,12 +101,12 @@ class LeaderboardEntry:
 
     @cached_property
     def accuracy(self) -> IntervalEstimate | None:
-        """The macro average over categories, with its interval; None if every trial was broken."""
+        """Macro accuracy with its interval; None if every trial had an infrastructure failure."""
         scores = self._scores(None)
         return proportion(scores, macro_weights(scores)) if len(scores.values) else None
 
-    def in_category(self, category: str) -> IntervalEstimate | None:
-        """Return the accuracy in a category; None if the category has no trials."""
+    def accuracy_in_category(self, category: str) -> IntervalEstimate | None:
+        """Return the accuracy in a category; None if there are no trials in the category."""
         return proportion(self._scores(category))
 
     @property
@@ -129,8 +129,8 @@ class LeaderboardEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
-    """A submission that is not listed, and why."""
+class RefusedSubmission:
+    """A submission that is not listed, and the reason."""
 
     file: str
     reason: str
@@ -138,16 +138,16 @@ class Refused:
 
 def read_entries(
     folder: Path, task_sets: Sequence[TaskSet], trusted: Mapping[bytes, str]
-) -> tuple[list[LeaderboardEntry], list[Refused]]:
-    """Read and check the submissions of a folder.
+) -> tuple[list[LeaderboardEntry], list[RefusedSubmission]]:
+    """Read and validate the submissions in a folder.
 
     Args:
-        folder: The folder. Its files ``*.jsonl`` are submissions, with signatures beside them.
+        folder: The folder. The files ``*.jsonl`` in it are submissions, with signatures next to them.
         task_sets: The tasks that submissions may cover.
         trusted: The public keys of trusted hosts.
 
     Returns:
-        The valid entries, and the refused files. A file that repeats the evaluation of another one is refused.
+        The valid entries, and the refused submissions. A second submission of the same evaluation is refused.
 
     Raises:
         InputError: The folder cannot be read.
@@ -156,29 +156,29 @@ def read_entries(
         raise InputError(f"{folder} is not a folder. Give the folder that contains the submissions (*.jsonl).")
     by_digest = {tasks.digest: tasks for tasks in task_sets}
     entries: list[LeaderboardEntry] = []
-    refused: list[Refused] = []
-    # Signed files come first, so that an unsigned copy of one is refused and not the signed file.
+    refused: list[RefusedSubmission] = []
+    # Signed files come first, so that an unsigned copy is refused instead of the signed file.
     files = sorted(folder.glob(SUBMISSION_PATTERN), key=lambda file: (not signature_path(file).exists(), file.name))
     for file in files:
         try:
             entry = _read_entry(file, by_digest, trusted)
         except InputError as error:
-            refused.append(Refused(file.name, str(error).rstrip(".")))
+            refused.append(RefusedSubmission(file.name, str(error).rstrip(".")))
             continue
-        same = next((e.file for e in entries if e.header.card.run_id == entry.header.card.run_id), None)
-        if same is None:
+        earlier = next((e.file for e in entries if e.header.card.run_id == entry.header.card.run_id), None)
+        if earlier is None:
             entries.append(entry)
         else:
-            refused.append(Refused(file.name, f"it contains the same evaluation as {same}"))
+            refused.append(RefusedSubmission(file.name, f"it contains the same evaluation as {earlier}"))
     return entries, refused
 
 
 def _read_entry(file: Path, by_digest: Mapping[str, TaskSet], trusted: Mapping[bytes, str]) -> LeaderboardEntry:
-    """Return the entry of a submission. Raises ``InputError`` if the file is not valid."""
+    """Read the entry from a submission. Raises ``InputError`` if the submission is not valid."""
     header = _header(file)
     tasks = by_digest.get(header.tasks_digest)
     if tasks is None:
-        raise InputError("its tasks are unknown, name their file with --tasks")
+        raise InputError("its tasks are unknown; give the task file with --tasks")
     provenance, findings = provenance_of(file, trusted), check_submission(file, tasks.tasks, trusted)
     if findings.faults:
         more = f", and {len(findings.faults) - 1} more faults" if len(findings.faults) > 1 else ""
@@ -190,8 +190,8 @@ def _read_entry(file: Path, by_digest: Mapping[str, TaskSet], trusted: Mapping[b
 
 def _header(file: Path) -> Header:
     try:
-        with file.open(encoding="utf-8") as opened:
-            row = LINE.validate_json(opened.readline())
+        with file.open(encoding="utf-8") as stream:
+            row = LINE.validate_json(stream.readline())
     except (OSError, ValidationError, UnicodeDecodeError) as error:
         raise InputError("its first line is not the header of a submission") from error
     if not isinstance(row, Header):
@@ -200,6 +200,6 @@ def _header(file: Path) -> Header:
 
 
 def categories_of(entries: Sequence[LeaderboardEntry]) -> dict[str, str]:
-    """Return the categories that occur in entries, with their titles."""
+    """Return the titles of the categories that occur in entries, by category."""
     present = {line.category for entry in entries for line in entry.lines}
     return {name: title for name, title in CATEGORY_TITLES.items() if name in present}

@@ -1,1 +1,1 @@
-"""Create reports on evaluations, with tables, charts and pages of failed tasks."""
+"""Create reports on evaluations, with tables, charts and pages about failed tasks."""

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from scope_ptz.bench.reports.choice.problems import problems
+from scope_ptz.bench.reports.choice.problems import describe_problems
 from scope_ptz.bench.reports.choice.section import choice_section
-from scope_ptz.bench.reports.choice.ties import distinguish, leaders, listed
+from scope_ptz.bench.reports.choice.ties import compare_all, find_leaders, join_names
 from scope_ptz.bench.reports.details.accuracy import accuracy_section
 from scope_ptz.bench.reports.details.chance_section import chance_lines, chance_section, run_chance
 from scope_ptz.bench.reports.details.conditions import conditions_section
@@ -20,17 +20,17 @@ from scope_ptz.bench.reports.details.paper import paper_section
 from scope_ptz.bench.reports.details.recommendations import architecture_section, design_section, scope_section, spread_section
 from scope_ptz.bench.reports.details.review import audit_section, conduct_section, costs_section
 from scope_ptz.bench.reports.details.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
-from scope_ptz.bench.reports.display_names import served_instead
+from scope_ptz.bench.reports.display_names import unexpected_model
 from scope_ptz.bench.reports.log_findings import finding_lines, stored_verdict_lines
 from scope_ptz.bench.reports.paired_comparison import comparison_section
 from scope_ptz.bench.reports.report_runs import (
     CATEGORY_TITLES,
     ReportRun,
     main_task_set,
-    of_main_set,
-    on_the_same_tasks,
     pairs_of,
     report_runs,
+    runs_of_main_set,
+    runs_on_same_tasks,
 )
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable
@@ -47,13 +47,14 @@ class EvaluationReport:
     """A report on evaluations.
 
     Attributes:
-        runs: The runs in the order of the report.
-        contradictions: Logs that contradict their traces.
-        problems: Evaluations that ended in an error, are unfinished, or lost many trials to infrastructure, with bounds.
-        notice: A notice that applies to the whole report, such as that its runs are simulated; may be empty.
+        runs: The runs in report order.
+        contradictions: Descriptions of logs that contradict their traces.
+        problems: Descriptions of evaluations that ended in an error, are unfinished, or lost many trials to infrastructure
+            failures, with bounds on their accuracy.
+        notice: A notice about the whole report, for example that its runs are simulated; empty if there is none.
         summary: The main results.
         warnings: Limitations of the results.
-        sections: The sections. The first one shows which pair to choose.
+        sections: The sections. The first section shows which pair to choose.
     """
 
     runs: tuple[ReportRun, ...]
@@ -66,7 +67,7 @@ class EvaluationReport:
 
     @property
     def tables(self) -> tuple[ReportTable, ...]:
-        """The tables of all sections."""
+        """The tables in all sections."""
         return tuple(table for section in self.sections for table in section.tables)
 
 
@@ -80,9 +81,9 @@ def build_report(
 
     Args:
         evaluations: The evaluations.
-        registry: The registry that describes the models.
-        pages: Link to the page of each failed task, by the task's id.
-        tasks: The known tasks by id, for what constant answers win.
+        registry: The model registry.
+        pages: Links to the pages about failed tasks, by task id.
+        tasks: The known tasks by id, for the scores of constant answers.
 
     Raises:
         InputError: The evaluations contain no trials.
@@ -90,18 +91,23 @@ def build_report(
     runs = report_runs(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
         raise InputError("These logs contain no finished run of a task. Finish one with 'scope bench run' first.")
-    main = of_main_set(runs)
+    main = runs_of_main_set(runs)
     ranked = pairs_of(main)
-    comparable = on_the_same_tasks(ranked)
+    comparable = runs_on_same_tasks(ranked)
     exact = [run for run in main if run.is_exact_reference]
     ranked_and_reference = [*ranked, *(run for run in main if run.kind == "reference")]
     links = pages or {}
-    distinctions = distinguish(ranked)
-    best = leaders(comparable, distinctions)
+    distinctions = compare_all(ranked)
+    best = find_leaders(comparable, distinctions)
     baselines = [run for run in main if not run.ranked]
     sections: list[Section | None] = [
         choice_section(
-            comparable, [run for run in ranked if run not in comparable], baselines, runs, best, partial(_corrected, tasks or {})
+            comparable,
+            [run for run in ranked if run not in comparable],
+            baselines,
+            runs,
+            best,
+            partial(_corrected_accuracy, tasks or {}),
         ),
         accuracy_section(runs, best),
         chance_section(runs, tasks or {}),
@@ -128,16 +134,16 @@ def build_report(
     return EvaluationReport(
         runs,
         tuple(line for run in runs for line in finding_lines(run.evaluation)),
-        problems(runs),
+        describe_problems(runs),
         _notice(runs),
         (*_summary(runs, ranked, comparable), *chance_lines(runs, tasks or {})),
         _warnings(runs, ranked, comparable),
-        tuple(_without_empty_tables(s) for s in sections if s is not None),
+        tuple(_omit_empty_tables(s) for s in sections if s is not None),
     )
 
 
-def _without_empty_tables(section: Section) -> Section:
-    """Replace the empty tables of a section with a sentence that names them."""
+def _omit_empty_tables(section: Section) -> Section:
+    """Remove the empty tables from a section, and add a sentence that names them."""
     empty = [table.title for table in section.tables if not table.rows]
     if not empty:
         return section
@@ -147,9 +153,9 @@ def _without_empty_tables(section: Section) -> Section:
 
 def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     warnings = stored_verdict_lines([run.evaluation for run in runs])
-    if left_out := [run.label for run in ranked if run not in comparable]:
+    if excluded := [run.label for run in ranked if run not in comparable]:
         warnings.append(
-            f"These pairs were run on different tasks from most pairs: {'; '.join(left_out)}. Their averages are not comparable. "
+            f"These pairs were run on different tasks from most pairs: {'; '.join(excluded)}. Their averages are not comparable. "
             "They are left out of the oracle setting, the spreads and the recommendation of a pair. Paired comparisons use the "
             "shared tasks."
         )
@@ -179,7 +185,7 @@ def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     for run in runs:
         card = run.evaluation.card
         for requested, registered in ((card.planner, run.planner), (card.perception, run.perception)):
-            served = served_instead(requested, registered)
+            served = unexpected_model(requested, registered)
             if served is not None:
                 differing[f"{requested.name} (served: {served})"] = None
     if not differing:
@@ -190,14 +196,14 @@ def _served_models_warning(runs: Sequence[ReportRun]) -> list[str]:
     ]
 
 
-def _corrected(tasks: Mapping[str, Task], run: ReportRun) -> IntervalEstimate | None:
-    """Return the chance-corrected accuracy of a run; None if its tasks are not known."""
+def _corrected_accuracy(tasks: Mapping[str, Task], run: ReportRun) -> IntervalEstimate | None:
+    """Return the chance-corrected accuracy of a run; None if its tasks are unknown."""
     chance = run_chance(run, tasks)
     return chance.corrected.corrected if chance is not None and chance.corrected is not None else None
 
 
 def _notice(runs: Sequence[ReportRun]) -> str:
-    """Return the notice that runs are simulated; empty if none is."""
+    """Return the notice that runs are simulated, or an empty string if no run is."""
     simulated = sum(run.simulated for run in runs)
     if not simulated:
         return ""
@@ -208,10 +214,10 @@ def _notice(runs: Sequence[ReportRun]) -> str:
 def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable: Sequence[ReportRun]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     lines = [
-        f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
-        f"{_number(len(comparable), 'pair')} of models on the main task set"
-        + (f" ({_number(len(comparable[0].tasks), 'task')})" if comparable else "")
-        + (f"; {_number(len(ranked) - len(comparable), 'more pair')} on other tasks." if len(ranked) > len(comparable) else ".")
+        f"{_count_text(len(runs), 'run')} with {_count_text(trials, 'trial')} (a trial is one run of one task); "
+        f"{_count_text(len(comparable), 'pair')} of models on the main task set"
+        + (f" ({_count_text(len(comparable[0].tasks), 'task')})" if comparable else "")
+        + (f"; {_count_text(len(ranked) - len(comparable), 'more pair')} on other tasks." if len(ranked) > len(comparable) else ".")
     ]
     modes = sum((modes_by_rules(run) for run in comparable), start=Counter[ErrorMode]())
     if modes:
@@ -219,19 +225,19 @@ def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable:
         most = [MODE_TITLES[mode] for mode in MODE_TITLES if modes[mode] == number]
         unscored = sum(trial.headline == "unscored" for run in comparable for trial in run.scored_trials)
         lines.append(
-            f"Most frequent error mode{'s' if len(most) > 1 else ''} of model pairs: {listed(most)}, {number}"
-            f"{' each' if len(most) > 1 else ''} of {_number(modes.total(), 'incorrect trial')}"
-            + (f"; {_number(unscored, 'more is', 'more are')} unscored and have no error mode." if unscored else ".")
+            f"Most frequent error mode{'s' if len(most) > 1 else ''} of model pairs: {join_names(most)}, {number}"
+            f"{' each' if len(most) > 1 else ''} of {_count_text(modes.total(), 'incorrect trial')}"
+            + (f"; {_count_text(unscored, 'more is', 'more are')} unscored and have no error mode." if unscored else ".")
         )
     return tuple(lines)
 
 
-def _number(count: int, singular: str, plural: str = "") -> str:
+def _count_text(count: int, singular: str, plural: str = "") -> str:
     return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
-    """Return the section on the tasks that failed in at least one run, with links to their pages."""
+    """Return the section about the tasks that failed in at least one run, with links to their pages."""
     columns = (
         Column("task", "Task"),
         Column("category", "Category"),
@@ -266,7 +272,7 @@ def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Sectio
                 )
             )
     text = (
-        f"{_number(len(rows), 'task')} failed at least once. Incorrect and unscored trials count as failed."
+        f"{_count_text(len(rows), 'task')} failed at least once. Incorrect and unscored trials count as failed."
         + (" Each task has a page with its frames." if pages else ""),
     )
     table = ReportTable("failed_tasks", "Failed tasks", columns, tuple(rows))

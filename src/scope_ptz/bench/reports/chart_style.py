@@ -1,4 +1,4 @@
-"""The style of charts: colour-blind-safe colours, and inline SVG with the colours and fonts of the page."""
+"""Chart styling: a colour-blind-safe palette, and inline SVG with the colours and fonts of the page."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, FAINT, PAPER = "#010203", "#040506", "#070809"
-"""Placeholder colours, which ``_inline_svg`` replaces with the CSS colours of the page."""
+"""Placeholder colours, which ``_draw_inline_svg`` replaces with the CSS colours of the page."""
 HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
 """The colour-blind-safe palette of Okabe and Ito (2008)."""
 GREY = "#8a8f98"
 GREYS, HATCHES = ("#c9ccd1", "#9a9fa8", "#757b85", "#b3b7bd"), ("////", "....", "xxxx", "----", "\\\\\\\\")
-"""Fills and hatches of runs that are not ranked. Four greys and five hatches give twenty combinations."""
+"""Fills and hatches for unranked runs. Four greys and five hatches give twenty combinations."""
 PX = 96.0
 """Pixels per inch."""
 _SETTINGS: Any = {
@@ -39,14 +39,14 @@ _SETTINGS: Any = {
 
 @contextmanager
 def canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
-    """Open a figure with one set of axes."""
+    """Create a figure with one set of axes."""
     with panels(width_px, height_px, 1) as (figure, (axes,)):
         yield figure, axes
 
 
 @contextmanager
 def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure, Sequence[Axes]]]:
-    """Open a figure with several axes side by side, which share the y axis."""
+    """Create a figure with several sets of axes side by side, which share the y axis."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
@@ -58,7 +58,7 @@ def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure,
 
 @contextmanager
 def _style() -> Iterator[None]:
-    """Apply the style while a figure is created or drawn."""
+    """Apply the chart style while a figure is created or drawn."""
     import matplotlib as mpl
 
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
@@ -66,13 +66,13 @@ def _style() -> Iterator[None]:
         yield
 
 
-def as_chart(key: str, title: str, alt: str, figure: Figure, prepare: Callable[[], None] | None = None) -> Chart:
-    """Return a figure as a chart. ``prepare`` completes the figure before it is drawn, which is slow and often not needed."""
-    return Chart(key, title, alt, round(figure.get_figwidth() * PX), partial(_inline_svg, key, figure, prepare))
+def create_chart(key: str, title: str, alt: str, figure: Figure, prepare: Callable[[], None] | None = None) -> Chart:
+    """Create a chart from a figure. The figure is drawn on first use, after ``prepare`` has completed it."""
+    return Chart(key, title, alt, round(figure.get_figwidth() * PX), partial(_draw_inline_svg, key, figure, prepare))
 
 
-def _inline_svg(key: str, figure: Figure, prepare: Callable[[], None] | None) -> str:
-    """Draw a figure as inline SVG with unique ids and the page's colours and fonts."""
+def _draw_inline_svg(key: str, figure: Figure, prepare: Callable[[], None] | None) -> str:
+    """Draw a figure as inline SVG, with unique ids and the page's colours and fonts."""
     out = io.StringIO()
     with _style():
         if prepare is not None:
@@ -93,21 +93,21 @@ _FILE_STYLE = (
     "@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--line:#363c44;--paper:#14171b}svg>g{filter:brightness(1.3)}}"
     "svg{background:var(--paper)}</style>"
 )
-"""Style of a chart in a file of its own, with the colours of the page."""
+"""Style sheet for charts in separate files, with the colours of the page."""
 
 
 def standalone_svg(chart: Chart) -> str:
-    """Return a chart as the content of an SVG file, with its own colours for light and dark themes."""
+    """Return the content of an SVG file with a chart, including colours for light and dark themes."""
     start = chart.svg.index(">") + 1
     return chart.svg[:start] + _FILE_STYLE + chart.svg[start:]
 
 
-def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
-    """Return the colour of each run, by its label.
+def run_colours(runs: Sequence[ReportRun]) -> dict[str, str]:
+    """Return the colour of each run, by label.
 
-    Runs with the same perception model share a hue, in stronger shades for later runs. Runs that are not ranked are grey.
+    Runs with the same perception model share a hue, and later runs have stronger shades. Unranked runs are grey.
     """
-    ordered = sorted(runs, key=lambda run: run.number)  # So that a run has the same colour in each chart.
+    ordered = sorted(runs, key=lambda run: run.number)  # This gives a run the same colour in every chart.
     perception = list(dict.fromkeys(run.perception_name for run in ordered if run.ranked))
     colour_of_run = {}
     for run in ordered:
@@ -115,21 +115,21 @@ def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
             colour_of_run[run.label] = GREY
             continue
         name = run.perception_name
-        same = [r for r in ordered if r.ranked and r.perception_name == name]
-        rank = (same.index(run) + 1) / len(same)
-        colour_of_run[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * rank)
+        same_perception = [r for r in ordered if r.ranked and r.perception_name == name]
+        rank = (same_perception.index(run) + 1) / len(same_perception)
+        colour_of_run[run.label] = _mix_with_grey(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * rank)
     return colour_of_run
 
 
-def _mixed(colour: str, strength: float) -> str:
-    """Mix a colour with light grey, so that it is visible on white and on black. ``strength`` is the fraction of the colour."""
+def _mix_with_grey(colour: str, strength: float) -> str:
+    """Mix a colour with light grey, so that it is visible on both white and black. ``strength`` is the fraction of the colour."""
     parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
     return "#" + "".join(f"{round(part * strength + 205 * (1 - strength)):02x}" for part in parts)
 
 
 def bar_styles(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
-    """Return the fill and the hatch of each run's bars. Runs that are not ranked have a grey and a hatch instead of a hue."""
-    colour_of_run, others = colours(runs), [run for run in runs if not run.ranked]
+    """Return the fill and hatch for each run's bars. Unranked runs have a grey fill and a hatch instead of a hue."""
+    colour_of_run, others = run_colours(runs), [run for run in runs if not run.ranked]
     styles: list[tuple[str, str | None]] = []
     for run in runs:
         if run.ranked:
@@ -141,13 +141,13 @@ def bar_styles(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
 
 
 def shorten_label(label: str, max_chars: int = 46) -> str:
-    """Return a label shortened to ``max_chars`` characters, without unprintable characters."""
-    shown = "".join(mark if mark.isprintable() else " " for mark in label)
-    return shown if len(shown) <= max_chars else shown[: max_chars - 1] + "…"
+    """Shorten a label to ``max_chars`` characters, and replace unprintable characters with spaces."""
+    printable = "".join(character if character.isprintable() else " " for character in label)
+    return printable if len(printable) <= max_chars else printable[: max_chars - 1] + "…"
 
 
 def wrap_label(label: str, max_chars: int = 46) -> str:
-    """Return a label wrapped to at most three lines."""
+    """Wrap a label to at most three lines."""
     return "\n".join(wrap(shorten_label(label, 3 * max_chars - 8), max_chars, break_on_hyphens=False) or [""])
 
 
@@ -156,18 +156,18 @@ def legend_columns(labels: Sequence[str], max_chars: int = 58) -> int:
     return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 
 
-def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
-    """Draw a legend below the axes. ``keys`` are the legend's handles; without them, the labelled artists are used."""
+def draw_legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
+    """Draw a legend below the axes. ``keys`` are the legend's handles. Without them, the labelled artists are used."""
     columns = legend_columns(labels)
     loc: Any = "outside lower center" if columns == 2 else "outside lower left"
     figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
 
 
-def legend_px(labels: Sequence[str]) -> int:
+def legend_height_px(labels: Sequence[str]) -> int:
     """Return the height of the legend in pixels."""
     return 20 * -(-len(labels) // legend_columns(labels))
 
 
-def row_px(labels: Sequence[str], min_px: int = 26) -> int:
-    """Return the height of a row in pixels, so that every label fits."""
+def row_height_px(labels: Sequence[str], min_px: int = 26) -> int:
+    """Return the row height in pixels at which every label fits."""
     return max([min_px, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

@@ -1,4 +1,4 @@
-"""The comparison section: paired comparisons of model pairs on their shared tasks, and the smallest detectable differences."""
+"""The comparison section: paired comparisons between model pairs on shared tasks, and the smallest detectable differences."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from scope_ptz.bench.statistics.clustered import (
 from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
 
 ALPHA = 0.05
-"""Significance level of the tests."""
+"""Significance level of all tests."""
 SEED = 0
-"""Seed of the bootstrap."""
+"""Seed for the bootstrap."""
 
 
 @dataclass(frozen=True, slots=True)
 class PairedComparison:
-    """The comparison of two runs on their shared tasks.
+    """The comparison between two runs on their shared tasks.
 
     Attributes:
         first: Label of the first run.
         second: Label of the second run.
         shared: Number of shared tasks.
         macro: Macro accuracy of the first run minus that of the second.
-        bootstrap: Bootstrap interval of the difference; None with fewer than two viewpoints.
-        only_first: Number of tasks on which the first run is better.
-        only_second: Number of tasks on which the second run is better.
+        bootstrap: Bootstrap interval for the difference; None with fewer than two viewpoints.
+        first_wins: Number of tasks on which the first run is better.
+        second_wins: Number of tasks on which the second run is better.
         p_mcnemar: P value of McNemar's exact test.
         p_clustered: P value of the t test with clustered standard errors; None if unknown.
         smallest_detectable: The smallest true difference that the clustered test detects with 80% power; None if unknown.
@@ -50,20 +50,20 @@ class PairedComparison:
     shared: int
     macro: IntervalEstimate
     bootstrap: tuple[float, float] | None
-    only_first: int
-    only_second: int
+    first_wins: int
+    second_wins: int
     p_mcnemar: float
     p_clustered: float | None
     smallest_detectable: float | None
 
 
 def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
-    """Compare two runs of the same dataset on their shared tasks; return None if they share no tasks."""
+    """Compare two runs on their shared tasks; return None if there are no shared tasks."""
     return compare_scores(first.label, second.label, _task_means(first), _task_means(second))
 
 
 TaskMeans = dict[str, tuple[str, str, float]]
-"""Category, viewpoint and mean outcome of each task, by its id."""
+"""The category, viewpoint and mean outcome of each task, by task id."""
 
 
 def _task_means(run: ReportRun) -> TaskMeans:
@@ -75,28 +75,29 @@ def _task_means(run: ReportRun) -> TaskMeans:
     return {task: (*groups[task], sum(values) / len(values)) for task, values in outcomes.items()}
 
 
-def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
-    """Compare two runs on their shared tasks; return None if they share no tasks.
+def compare_scores(first: str, second: str, first_means: TaskMeans, second_means: TaskMeans) -> PairedComparison | None:
+    """Compare two runs, given their task means, on the shared tasks; return None if there are no shared tasks.
 
     Args:
         first: Label of the first run.
         second: Label of the second run.
-        one: Task means of the first run.
-        other: Task means of the second run.
+        first_means: Task means of the first run.
+        second_means: Task means of the second run.
     """
-    shared = sorted(one.keys() & other.keys())
+    shared = sorted(first_means.keys() & second_means.keys())
     if not shared:
         return None
-    values = np.array([one[task][2] - other[task][2] for task in shared])
-    scores = Scores(values, tuple(one[task][0] for task in shared), tuple(one[task][1] for task in shared))
+    values = np.array([first_means[task][2] - second_means[task][2] for task in shared])
+    categories, viewpoints = (tuple(first_means[task][index] for task in shared) for index in (0, 1))
+    scores = Scores(values, categories, viewpoints)
     estimate = difference(scores, macro_weights(scores))
     if estimate is None:
         return None
-    better, worse = int(np.sum(values > 0)), int(np.sum(values < 0))
+    first_wins, second_wins = int(np.sum(values > 0)), int(np.sum(values < 0))
     least = None if not estimate.se else detectable_difference(estimate.se, estimate.clusters)
     bootstrap = cluster_bootstrap(scores, seed=SEED)
-    p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(estimate)
-    return PairedComparison(first, second, len(shared), estimate, bootstrap, better, worse, p_mcnemar, p_clustered, least)
+    p_mcnemar, p_clustered = mcnemar_exact(first_wins, second_wins), two_sided_p(estimate)
+    return PairedComparison(first, second, len(shared), estimate, bootstrap, first_wins, second_wins, p_mcnemar, p_clustered, least)
 
 
 def comparison_table(key: str, title: str, comparisons: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
@@ -110,29 +111,29 @@ def comparison_table(key: str, title: str, comparisons: Sequence[PairedCompariso
         Column("p_clustered", "Clustered p", "p"), Column("p_clustered_holm", "Holm", "p"),
         Column("differ", "Differ"), Column("least", "Smallest detectable difference (points)", "width"),
     )  # fmt: skip
-    mcnemar, clustered = _adjusted(comparisons)
+    mcnemar, clustered = _adjusted_p_values(comparisons)
     rows = tuple(
         (
             c.first,
-            c.second, c.shared, c.macro, _interval(c.bootstrap), c.only_first, c.only_second,
-            c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], differ(mcnemar[n], clustered[n]), c.smallest_detectable,
+            c.second, c.shared, c.macro, _interval(c.bootstrap), c.first_wins, c.second_wins,
+            c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], difference_text(mcnemar[n], clustered[n]), c.smallest_detectable,
         )
         for n, c in enumerate(comparisons)
     )  # fmt: skip
     return ReportTable(key, title, columns, rows, notes)
 
 
-def shown_differences(comparisons: Sequence[PairedComparison]) -> list[bool]:
-    """Return whether each comparison shows a difference, after adjustment for the number of comparisons."""
-    return [differ(*p_values) == "yes" for p_values in zip(*_adjusted(comparisons), strict=True)]
+def are_differences_shown(comparisons: Sequence[PairedComparison]) -> list[bool]:
+    """Return, for each comparison, whether it shows a difference after adjustment for the number of comparisons."""
+    return [difference_text(*p_values) == "yes" for p_values in zip(*_adjusted_p_values(comparisons), strict=True)]
 
 
-def _adjusted(comparisons: Sequence[PairedComparison]) -> tuple[list[float | None], list[float | None]]:
+def _adjusted_p_values(comparisons: Sequence[PairedComparison]) -> tuple[list[float | None], list[float | None]]:
     """Return the adjusted p values of McNemar's test and of the clustered test."""
     return holm([c.p_mcnemar for c in comparisons]), holm([c.p_clustered for c in comparisons])
 
 
-def differ(*adjusted: float | None) -> str:
+def difference_text(*adjusted: float | None) -> str:
     """Return "yes" if every adjusted p value is below 0.05, otherwise "not shown"."""
     return "yes" if all(p is not None and p < ALPHA for p in adjusted) else "not shown"
 
@@ -146,7 +147,7 @@ def comparison_section(runs: Sequence[ReportRun], comparisons: Sequence[PairedCo
 
     Args:
         runs: The runs of the model pairs.
-        comparisons: The comparison of each run with each other run.
+        comparisons: The comparisons between all pairs of runs.
     """
     text = [
         "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test "
@@ -163,7 +164,7 @@ def comparison_section(runs: Sequence[ReportRun], comparisons: Sequence[PairedCo
             (),
             (unpaired,),
         )
-    number = sum(shown_differences(comparisons))
+    number = sum(are_differences_shown(comparisons))
     smallest = [c.smallest_detectable for c in comparisons if c.smallest_detectable is not None]
     power = (
         f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."
@@ -183,7 +184,7 @@ def comparison_section(runs: Sequence[ReportRun], comparisons: Sequence[PairedCo
 
 
 def _unpaired_table(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table of the smallest difference that each run can show in an unpaired comparison with an equally precise run."""
+    """Return a table with the smallest difference that each run can show in an unpaired comparison with an equally precise run."""
     columns = (
         Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
         Column("viewpoints", "Viewpoints", "count"), Column("least", "Smallest detectable difference, unpaired (points)", "width"),

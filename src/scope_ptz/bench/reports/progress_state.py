@@ -1,4 +1,4 @@
-"""The progress of an evaluation, as its progress files store it: counts, the score so far, and the running tasks."""
+"""The progress of an evaluation as stored in its progress files: counts, current scores and running tasks."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from datetime import datetime
 from pydantic import BaseModel, ConfigDict
 
 STATE_FILE = "progress.json"
-"""The file with the current ``ProgressState``."""
+"""Name of the file with the current ``ProgressState``."""
 TRIALS_FILE = "trials.jsonl"
-"""The file with the finished runs, one ``Trial`` per line."""
+"""Name of the file with the finished runs, one ``Trial`` per line."""
 LOCK_FILE = "progress.lock"
-"""The file that an evaluation keeps locked while it runs."""
+"""Name of the file that an evaluation keeps locked while it is running."""
 
 
 class _State(BaseModel):
@@ -19,7 +19,7 @@ class _State(BaseModel):
 
 
 class Score(_State):
-    """A fraction of correct runs with its 95% interval, clustered by viewpoint. The limits are None if they are unknown."""
+    """A fraction of correct runs with its 95% interval, clustered by viewpoint. Unknown limits are None."""
 
     value: float
     low: float | None
@@ -27,7 +27,7 @@ class Score(_State):
 
 
 class CategoryProgress(_State):
-    """The finished runs of one category. ``accuracy`` excludes infrastructure failures; None if no run is scored."""
+    """The finished runs in a category. ``accuracy`` excludes infrastructure failures, and is None if no run is scored."""
 
     category: str
     runs: int
@@ -36,7 +36,7 @@ class CategoryProgress(_State):
 
 
 class RunningTask(_State):
-    """A task in progress: its id, its instruction, and the time at which it began."""
+    """A task in progress: the id, the instruction and the start time."""
 
     task: str
     instruction: str
@@ -47,21 +47,21 @@ class ProgressState(_State):
     """The progress of an evaluation.
 
     Attributes:
-        pid: The id of the process that runs it.
+        pid: Id of the process that runs the evaluation.
         runs: Total number of runs, including finished ones.
         done: Number of finished runs.
         correct: Number of correct runs.
         incorrect: Number of incorrect runs.
         unscored: Number of runs whose answer could not be parsed.
         broken: Number of runs with an infrastructure failure.
-        micro: Fraction of correct runs.
-        macro: Mean of the fractions of the categories.
+        micro: Micro accuracy: the fraction of correct runs.
+        macro: Macro accuracy: the mean of the accuracies in the categories.
         categories: The finished runs by category.
         running: The tasks in progress.
         seconds_left: Estimated remaining time in seconds; None until the first run has finished.
-        notes: Messages that the evaluation reported.
+        notes: Messages from the evaluation.
         log: Name of the log in the log folder; empty until the evaluation has ended.
-        finished: Whether the evaluation completed, without being cancelled.
+        finished: Whether the evaluation was completed rather than cancelled.
     """
 
     pid: int

@@ -1,4 +1,4 @@
-"""Select the judge whose verdicts a report shows."""
+"""Select the judge whose verdicts are shown in a report."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 
-def judge_name(runs: Sequence[ReportRun]) -> str | None:
-    """Return the judge whose verdicts a report shows; None if no run was judged.
+def select_judge(runs: Sequence[ReportRun]) -> str | None:
+    """Select the judge whose verdicts are shown in a report; return None if no run was judged.
 
-    This is the judge that decides the largest number of the trials that only a judge can score. Ties, and reports without such
-    trials, are resolved by the number of trials with a verdict by the judge, then by the number of trials that it judged, then by
-    name. A judge without any verdict is selected only if no judge has given a verdict.
+    This is the judge that decides most of the trials that only a judge can score. Ties are resolved by the number of trials on
+    which the judge gave a verdict, then by the number of trials that it judged, then by name. A judge without verdicts is selected
+    only if no judge has given a verdict.
     """
     deciding, with_verdict, judged = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):
@@ -28,10 +28,10 @@ def judge_name(runs: Sequence[ReportRun]) -> str | None:
     return min(judged, key=lambda name: (-deciding[name], -with_verdict[name], -judged[name], name), default=None)
 
 
-def verdicts(trials: Sequence[Trial], judge: str) -> list[tuple[Trial, Judgement]]:
-    """Return the trials that a judge judged, each with one judgement.
+def trials_judged_by(trials: Sequence[Trial], judge: str) -> list[tuple[Trial, Judgement]]:
+    """Return the trials that a judge has judged, each with a single judgement.
 
-    This is the first judgement with a verdict. If no judgement has a verdict, it is the first judgement.
+    This is the first judgement with a verdict or, if there is none, the first judgement.
     """
     rows = []
     for trial in trials:

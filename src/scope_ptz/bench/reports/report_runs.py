@@ -1,4 +1,4 @@
-"""The runs of a report. Each has a label, a set of tasks, and its models as the registry describes them."""
+"""The runs in a report, with their labels, task sets and registered models."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from scope_ptz.bench.judging.judgement_tally import without_verdict
-from scope_ptz.bench.reports.display_names import served_instead, split_name
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict
+from scope_ptz.bench.reports.display_names import split_name, unexpected_model
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, proportion
 from scope_ptz.builtin_names import GRAMMAR, GROUND_TRUTH
@@ -21,36 +21,36 @@ from scope_ptz.registry import Model, Registry
 RunKind = Literal["models", "reference", "blind", "person"]
 """Kinds of runs.
 
-"models": by a pair of models; "reference": with the grammar planner or ground-truth perception; "blind": without perception;
-"person": by a person.
+"models": a pair of models; "reference": the grammar planner or ground-truth perception; "blind": no perception; "person": a human
+baseline.
 """
-PERSON = "person"
-"""Provider of the planner in the run card of a human run."""
-SIMULATED = "simulated"
-"""Provider of the planner in the run card of a simulated run, whose outcomes were drawn at random."""
+PERSON_PROVIDER = "person"
+"""The planner's provider on the run card of a human baseline."""
+SIMULATED_PROVIDER = "simulated"
+"""The planner's provider on the run card of a simulated run, whose outcomes were drawn at random."""
 MAIN_STRATA = ("core", "imported")
-"""Strata whose tasks are included in accuracy."""
+"""Strata whose tasks count towards accuracy."""
 FULL_PRECISION = ("fp32", "fp16", "bf16")
-"""Precisions of models that are not quantised."""
+"""Precisions of unquantised models."""
 CATEGORY_TITLES = {
     "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
     "multi_step_command": "Multi-step command", "multi_step_reasoning": "Multi-step reasoning", "ocr": "OCR",
     "single_call": "Single call",
 }  # fmt: skip
-"""Titles of the categories, in the order of the paper's table."""
+"""Titles of the categories, in the order used in the paper's table."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReportRun:
-    """One evaluation in a report.
+    """An evaluation in a report.
 
     Attributes:
         number: Position in the report, from 1.
         evaluation: The evaluation.
-        label: Unique name in the report. It states how the run differs from other runs.
+        label: Unique name in the report, which states how the run differs from other runs.
         planner: The planner's model; None if it is not in the registry.
         perception: The perception model; None if it is not in the registry.
-        other_tasks: Description of how its tasks differ from those of most pairs of the main task set; empty if they do not differ.
+        other_tasks: A text that states how its tasks differ from those of most pairs on the main task set; empty if they do not.
     """
 
     number: int
@@ -64,7 +64,7 @@ class ReportRun:
     def kind(self) -> RunKind:
         """The kind of this run."""
         card = self.evaluation.card
-        if card.planner.provider == PERSON:
+        if card.planner.provider == PERSON_PROVIDER:
             return "person"
         if "blind" in (card.perception.name, card.variant):
             return "blind"
@@ -72,23 +72,23 @@ class ReportRun:
 
     @property
     def ranked(self) -> bool:
-        """Whether the run is by a pair of models, so that rankings include it."""
+        """Whether the run uses a pair of models, so that it is included in rankings."""
         return self.kind == "models"
 
     @property
     def simulated(self) -> bool:
         """Whether the outcomes were drawn at random and no model was run."""
-        return self.evaluation.card.planner.provider == SIMULATED
+        return self.evaluation.card.planner.provider == SIMULATED_PROVIDER
 
     @property
     def uses_exact_ground_truth(self) -> bool:
-        """Whether its perception is the exact ground truth."""
+        """Whether perception is the exact ground truth."""
         perception = self.evaluation.card.perception
         return perception.deterministic and perception.name == GROUND_TRUTH
 
     @property
     def built_in(self) -> bool:
-        """Whether both planner and perception are built in and not models."""
+        """Whether both planner and perception are built in rather than models."""
         card = self.evaluation.card
         return self.kind == "reference" and card.planner.deterministic and card.perception.deterministic
 
@@ -100,13 +100,13 @@ class ReportRun:
 
     @property
     def planner_name(self) -> str:
-        """Name of the planner. If its server served another model, the name of that model is added."""
-        return _name_with_served(self.evaluation.card.planner, self.planner)
+        """Name of the planner, followed by the name of the served model if it differs."""
+        return _display_name(self.evaluation.card.planner, self.planner)
 
     @property
     def perception_name(self) -> str:
-        """Name of the perception model. If its server served another model, the name of that model is added."""
-        return _name_with_served(self.evaluation.card.perception, self.perception)
+        """Name of the perception model, followed by the name of the served model if it differs."""
+        return _display_name(self.evaluation.card.perception, self.perception)
 
     @property
     def system(self) -> tuple[str, str, str, str]:
@@ -116,14 +116,14 @@ class ReportRun:
 
     @property
     def task_set(self) -> tuple[str, str]:
-        """The dataset and the split. Only runs of the same task set are compared."""
+        """The dataset and the split. Only runs on the same task set are compared."""
         return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
 
     @property
     def memory_gb(self) -> float | None:
-        """Computed memory in GB to serve both models at the registry's precision. A model in both roles counts once.
+        """Memory in GB for serving both models, computed from the registry; None if a model is not in the registry.
 
-        The grammar planner and ground-truth perception need none. None if a model is not in the registry.
+        A model in both roles counts once. The grammar planner and ground-truth perception need no memory.
         """
         card = self.evaluation.card
         models = ((card.planner, self.planner), (card.perception, self.perception))
@@ -133,20 +133,20 @@ class ReportRun:
 
     @cached_property
     def main_trials(self) -> tuple[Trial, ...]:
-        """Trials of core tasks or imported tasks. Accuracy covers these."""
+        """Trials of core and imported tasks, which count towards accuracy."""
         return tuple(t for t in self.evaluation.trials if t.task.stratum in MAIN_STRATA)
 
     @cached_property
     def scored_trials(self) -> tuple[Trial, ...]:
-        """Main trials without those that infrastructure broke or that lack a judge's verdict.
+        """Main trials, except those with an infrastructure failure or a missing verdict of a judge.
 
-        Unscored trials count as not correct.
+        They include unscored trials, which do not count as correct.
         """
-        return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
+        return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not lacks_verdict(t))
 
     @cached_property
     def tasks(self) -> frozenset[str]:
-        """Ids of the tasks that are included in its accuracy."""
+        """Ids of the tasks that count towards accuracy."""
         return frozenset(t.task.id for t in self.main_trials)
 
     @cached_property
@@ -166,11 +166,11 @@ class ReportRun:
 
 
 def scores_of(trials: Sequence[Trial], correct: Iterable[bool] | None = None) -> Scores:
-    """Return the outcomes of trials, with the category as stratum, the viewpoint as cluster and the task as unit.
+    """Return the outcomes of trials, with categories as strata, viewpoints as clusters and tasks as units.
 
     Args:
         trials: The trials.
-        correct: Whether each trial counts as correct. By default its headline decides.
+        correct: Whether each trial counts as correct. By default, this depends on the headline.
     """
     values = [t.headline == "correct" for t in trials] if correct is None else list(correct)
     return Scores(
@@ -187,19 +187,20 @@ def macro(scores: Scores) -> IntervalEstimate | None:
 
 
 def viewpoint(trial: Trial) -> str:
-    """Return the viewpoint by which a trial is clustered."""
+    """Return the name of the viewpoint by which a trial is clustered."""
     return f"{trial.task.scene}/{trial.task.viewpoint}"
 
 
 def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
-    """Return the runs of a report in the order of the paper's table.
+    """Return the runs for a report, in the order used in the paper's table.
 
-    They are ordered by perception model, then by the size of the planner. Runs of splits other than core come later, and runs that
-    are not ranked come last.
+    Runs are sorted by perception model, then by the size of the planner. Runs on splits other than core come later, and unranked
+    runs come last.
     """
     splits = {split_name(e.card.split) for e in evaluations}
     unlabelled = [
-        ReportRun(0, e, "", _registered(e.card.planner, registry), _registered(e.card.perception, registry)) for e in evaluations
+        ReportRun(0, e, "", _registry_model(e.card.planner, registry), _registry_model(e.card.perception, registry))
+        for e in evaluations
     ]
     labels = [_label(run, with_split=len(splits) > 1) for run in unlabelled]
     shared = {label for label, number in Counter(labels).items() if number > 1}
@@ -214,20 +215,20 @@ def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[
         runs.append(replace(run, label=f"{label} #{seen[label]}" if counts[label] > 1 else label))
     ordered = sorted(runs, key=_sort_key)
     common = main_tasks(ordered)
-    notes = [_other_tasks(run, common) if run in of_main_set(ordered) else "" for run in ordered]
+    notes = [_task_difference(run, common) if run in runs_of_main_set(ordered) else "" for run in ordered]
     return tuple(
         replace(run, number=number, other_tasks=note, label=f"{run.label} [{note}]" if note else run.label)
         for number, (run, note) in enumerate(zip(ordered, notes, strict=True), 1)
     )
 
 
-def _name_with_served(card: ModelCard, model: Model | None) -> str:
-    served = served_instead(card, model)
+def _display_name(card: ModelCard, model: Model | None) -> str:
+    served = unexpected_model(card, model)
     return card.name if served is None else f"{card.name} (served: {served})"
 
 
-def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
-    """Describe how the tasks of a run differ from the common tasks; return an empty text if they do not differ."""
+def _task_difference(run: ReportRun, common: frozenset[str]) -> str:
+    """Describe how the tasks of a run differ from the common tasks; return an empty string if they do not differ."""
     if run.tasks == common:
         return ""
     if run.tasks < common:
@@ -238,14 +239,14 @@ def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
 def _label(run: ReportRun, *, with_split: bool) -> str:
     card = run.evaluation.card
     pair = f"{run.planner_name} + {run.perception_name}"
-    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
+    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON_PROVIDER else pair]
     parts += [f"agent {card.agent_label}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
     parts += [f"{split_name(card.split)} split"] if with_split and card.split != "core" else []
     return ", ".join(parts)
 
 
-def _registered(card: ModelCard, registry: Registry) -> Model | None:
+def _registry_model(card: ModelCard, registry: Registry) -> Model | None:
     try:
         return registry.model(card.registry) if card.registry else None
     except UnknownNameError:
@@ -268,21 +269,21 @@ def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
     return max(counts, key=lambda task_set: counts[task_set]) if counts else None
 
 
-def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return the runs of the main task set that have scored trials."""
+def runs_of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return the runs on the main task set that have scored trials."""
     main = main_task_set(runs)
     return tuple(run for run in runs if run.task_set == main and run.scored_trials)
 
 
 def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
-    """Return the ids of the tasks that most model pairs of the main task set cover; without pairs, those that most runs cover."""
-    main = of_main_set(runs)
-    comparable = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
+    """Return the ids of the tasks that most model pairs (or, without pairs, most runs) on the main task set cover."""
+    main = runs_of_main_set(runs)
+    comparable = runs_on_same_tasks(pairs_of(main)) or runs_on_same_tasks(main)
     return comparable[0].tasks if comparable else frozenset()
 
 
-def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per system: the run with the most scored trials, or the first of several such runs."""
+def primary_runs(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return one run per system: the run with the most scored trials. Ties go to the first run."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):
@@ -291,13 +292,13 @@ def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 
 
 def pairs_of(main: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """Return one run per ranked system. Variants are left out if the unchanged pair is present."""
+    """Return one run per ranked system. A variant is excluded if the unchanged pair is present."""
     ranked = [run for run in main if run.ranked]
     unchanged = {run.system[:3] for run in ranked if not run.system[3]}
-    return primary([run for run in ranked if not run.system[3] or run.system[:3] not in unchanged])
+    return primary_runs([run for run in ranked if not run.system[3] or run.system[:3] not in unchanged])
 
 
-def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+def runs_on_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """Return the runs that cover the most common set of tasks. Ties are resolved by the number of tasks."""
     if not ranked:
         return ()
@@ -309,10 +310,10 @@ def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
     """Return the run from which a system's latency is taken.
 
-    This is the finished run without contention that has the most trials; if there is none, ``run`` itself.
+    This is the finished run without contention that has the most trials or, if there is none, ``run`` itself.
     """
-    same = [other for other in runs if other.system == run.system and other.main_trials]
-    alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
+    same_system = [other for other in runs if other.system == run.system and other.main_trials]
+    alone = [other for other in same_system if not other.evaluation.card.contended and other.evaluation.finished]
     return max(alone, key=lambda other: len(other.main_trials)) if alone else run
 
 

@@ -1,11 +1,11 @@
-"""Compute the scores of an evaluation in progress from its finished runs."""
+"""Compute the current scores of an evaluation in progress."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from scope_ptz.bench.engine.run_totals import CATEGORIES
-from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict
 from scope_ptz.bench.reports.progress_state import CategoryProgress, Score
 from scope_ptz.bench.reports.report_runs import macro, scores_of
 from scope_ptz.bench.scoring.trials import Trial
@@ -13,11 +13,11 @@ from scope_ptz.bench.statistics.clustered import IntervalEstimate, proportion
 
 
 def score_fields(trials: Sequence[Trial]) -> Mapping[str, object]:
-    """Return the fields of ``ProgressState`` that follow from the finished runs.
+    """Return the fields of ``ProgressState`` that depend on the finished runs.
 
-    The scores are those of the report: runs with an infrastructure failure, and runs that still need a judge, are left out.
+    As in reports, runs with an infrastructure failure and runs without a judge's verdict are excluded from the scores.
     """
-    scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
+    scored = [t for t in trials if t.headline != "infrastructure" and not lacks_verdict(t)]
     scores = scores_of(scored)
     counts = {name: sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")}
     return {

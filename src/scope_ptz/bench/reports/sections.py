@@ -17,8 +17,8 @@ class Chart:
         key: Key of the chart.
         title: Title of the chart.
         alt: The text alternative.
-        width_px: Width of the chart. A window that is narrower scrolls it.
-        draw: Draws the chart as inline SVG.
+        width_px: Width of the chart in pixels. The chart scrolls in narrower windows.
+        draw: Function that draws the chart as inline SVG.
     """
 
     key: str
@@ -40,10 +40,10 @@ class Section:
     Attributes:
         key: Key of the section.
         title: Title of the section.
-        text: The paragraphs before charts and tables.
+        text: The paragraphs above the charts and tables.
         charts: The charts.
         tables: The tables.
-        folded: Keys of the tables that the page shows collapsed.
+        folded: Keys of the tables that are collapsed on the page.
     """
 
     key: str

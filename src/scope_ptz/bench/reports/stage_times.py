@@ -1,4 +1,4 @@
-"""Compute the seconds and the number of tool calls of trials."""
+"""Compute the durations and the number of tool calls of trials."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def stage_seconds(run: ReportRun, stage: str) -> list[float]:
 
 
 def median(seconds: Sequence[float]) -> float | None:
-    """Return the median; None if there are no values."""
+    """Return the median of durations; None if there are none."""
     return float(np.median(seconds)) if seconds else None
 
 
 def p95(seconds: Sequence[float]) -> float | None:
-    """Return the linearly interpolated 95th percentile; None if there are no values."""
+    """Return the 95th percentile of durations, linearly interpolated; None if there are none."""
     return float(np.quantile(seconds, 0.95)) if seconds else None
 
 

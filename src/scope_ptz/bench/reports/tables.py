@@ -1,4 +1,4 @@
-"""The tables of a report, and their output as text, Markdown and CSV."""
+"""Report tables, and their conversion to text, Markdown and CSV."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ MISSING = "not measured"
 ColumnKind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
 """Kinds of columns.
 
-"prose": text of a sentence or more; "share": a number from 0 to 1, shown in percent; "points": a difference, shown in percentage
-points with a sign; "width": a difference without a sign.
+"prose": whole sentences; "share": a number from 0 to 1, shown in percent; "points": a signed difference, shown in percentage
+points; "width": an unsigned difference, shown in percentage points.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class MarkedCell:
-    """A value with marks.
+    """A cell with marks, a link or a note.
 
     Attributes:
         value: The value.
-        best: Whether it is the best of its group.
-        best_of_all: Whether it is the best of the table.
-        link: URL to which the value links.
-        note: A note that is shown after the value.
+        best: Whether the value is the best in its group.
+        best_of_all: Whether the value is the best in the table.
+        link: URL to which the value links; empty for none.
+        note: Note after the value; empty for none.
     """
 
     value: str | int | float | IntervalEstimate | None
@@ -42,7 +42,7 @@ CellValue = str | int | float | IntervalEstimate | MarkedCell | None
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table. ``name`` is its header in CSV files, and ``title`` its header on the page."""
+    """A table column. ``name`` is the header in CSV files, and ``title`` is the header on the page."""
 
     name: str
     title: str
@@ -50,21 +50,21 @@ class Column:
 
     @property
     def is_text(self) -> bool:
-        """Whether the column contains text and not numbers."""
+        """Whether the column contains text rather than numbers."""
         return self.kind in ("text", "prose")
 
 
 @dataclass(frozen=True, slots=True)
 class ReportTable:
-    """A table.
+    """A table in a report.
 
     Attributes:
-        key: Name of its CSV file.
+        key: Name of the CSV file, without its suffix.
         title: Title of the table.
-        columns: The columns. The first column contains the name of the row.
+        columns: The columns. The first column contains the row names.
         rows: The cells of each row.
         notes: Explanations below the table.
-        groups: Headings between rows, by the index of the row that follows.
+        groups: Headings between rows, by the index of the next row.
     """
 
     key: str
@@ -80,29 +80,29 @@ class ReportTable:
                 raise ValueError(f"a row of table {self.key} must have {len(self.columns)} values; got {len(row)}")
 
 
-def unmarked(value: CellValue) -> str | int | float | IntervalEstimate | None:
-    """Return the value of a cell without its marks."""
+def cell_value(value: CellValue) -> str | int | float | IntervalEstimate | None:
+    """Return the value of a cell without marks."""
     return value.value if isinstance(value, MarkedCell) else value
 
 
 def cell_text(value: CellValue, kind: ColumnKind) -> str:
-    """Return a cell as text; "not measured" if there is no value."""
-    plain = unmarked(value)
+    """Format a cell as text. A missing value becomes "not measured"."""
+    plain = cell_value(value)
     if plain is None:
         return MISSING
     if isinstance(plain, str):
         return plain
     if isinstance(plain, IntervalEstimate):
-        certainty = ", ".join(filter(None, interval(plain, kind)))
+        certainty = ", ".join(filter(None, interval_texts(plain, kind)))
         return f"{_number(plain.value, kind)} ({certainty})"
     return _number(plain, kind)
 
 
-def interval(estimate: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
-    """Return two texts: the interval of an estimate, and its limitation, such as omitted strata. Either text may be empty."""
+def interval_texts(estimate: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
+    """Return two texts, either of which may be empty: the interval of an estimate, and its limitation, such as omitted strata."""
     if estimate.low is None or estimate.high is None:
         return "", "interval unknown"
-    omitted = ", ".join(name.replace("_", " ") for name in estimate.without)
+    omitted = ", ".join(name.replace("_", " ") for name in estimate.single_cluster_strata)
     return f"{_number(estimate.low, kind)} to {_number(estimate.high, kind)}", f"without {omitted}" if omitted else ""
 
 
@@ -128,13 +128,13 @@ def _number(value: float, kind: ColumnKind) -> str:
             return f"{value:,}" if isinstance(value, int) else f"{value:.2f}"
 
 
-def as_csv(table: ReportTable) -> str:
-    """Return a table as CSV (RFC 4180).
+def csv_text(table: ReportTable) -> str:
+    """Convert a table to CSV (RFC 4180).
 
-    Numbers have full precision, fractions are from 0 to 1, and missing values are empty. An estimate has three columns: value, low
-    and high. It has a fourth column if its interval leaves out some strata.
+    Numbers have full precision, fractions range from 0 to 1, and missing values are empty. An estimate has three columns: value,
+    low and high. If an interval omits strata, there is a fourth column.
     """
-    columns = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
+    columns = [[cell_value(row[index]) for row in table.rows] for index in range(len(table.columns))]
     suffixes = [_suffixes([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in columns]
     out = io.StringIO()
     writer = csv.writer(out)
@@ -147,31 +147,31 @@ def as_csv(table: ReportTable) -> str:
     group = ""
     for number, row in enumerate(table.rows):
         group = table.groups.get(number, group)
-        cells: list[str | int | float | None] = [_without_formula(group)] if table.groups else []
+        cells: list[str | int | float | None] = [_escape_formula(group)] if table.groups else []
         for value, additional in zip(row, suffixes, strict=True):
-            plain = unmarked(value)
+            plain = cell_value(value)
             if isinstance(plain, IntervalEstimate):
-                cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(additional)]
+                cells += [plain.value, plain.low, plain.high, " ".join(plain.single_cluster_strata)][: 1 + len(additional)]
             else:
-                cells += [_without_formula(plain) if isinstance(plain, str) else plain, *(None for _ in additional)]
+                cells += [_escape_formula(plain) if isinstance(plain, str) else plain, *(None for _ in additional)]
         writer.writerow(cells)
     return out.getvalue()
 
 
 def _suffixes(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
-    """Return the suffixes of the additional CSV columns of estimates."""
+    """Return the suffixes for the additional CSV columns of a column with estimates."""
     if not estimates:
         return ()
-    return ("low", "high", "without") if any(estimate.without for estimate in estimates) else ("low", "high")
+    return ("low", "high", "without") if any(estimate.single_cluster_strata for estimate in estimates) else ("low", "high")
 
 
-def _without_formula(text: str) -> str:
-    """Return a text with a leading apostrophe if a spreadsheet would interpret it as a formula."""
+def _escape_formula(text: str) -> str:
+    """Add a leading apostrophe to a text that a spreadsheet would interpret as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
-def as_markdown(table: ReportTable) -> str:
-    """Return a table as Markdown, with its heading and notes. All text is escaped."""
+def markdown_text(table: ReportTable) -> str:
+    """Convert a table to Markdown, with a heading and notes. All text is escaped."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
     lines += ["|" + "|".join("---" if column.is_text else "---:" for column in table.columns) + "|"]
@@ -198,6 +198,6 @@ _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {
 
 
 def escape(text: str) -> str:
-    """Escape text for Markdown and join it into one line."""
+    """Escape a text for Markdown, and join its lines."""
     plain = " ".join(text.split())
     return plain if plain.replace(".", "").replace(" ", "").isalnum() else plain.translate(_SPECIAL)

@@ -1,4 +1,4 @@
-"""Build the content of the pages of failed tasks: instruction, expected answer, evidence, and each failed trial step by step."""
+"""Build the pages about failed tasks: instruction, expected answer, evidence, and each failed trial step by step."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
 
 FRAME_WIDTH = 640
-"""Maximum width of a stored frame in pixels. Panoramas may be twice as wide."""
+"""Maximum width and height of a stored frame in pixels. Panoramas may be twice as wide."""
 MAX_PIXELS = 64_000_000
-"""Maximum number of pixels of a picture. Larger pictures are not shown."""
+"""Maximum number of pixels in a picture. Larger pictures are not shown."""
 MAX_TEXT_CHARS = 2_000
 """Maximum length of a text on a page, in characters. Longer texts are truncated."""
 
 
 class OpenedRun(Protocol):
-    """A stored run that provides its trace and its pictures."""
+    """A stored run that provides its trace and pictures."""
 
     @property
     def trace(self) -> Trace:
@@ -42,20 +42,20 @@ class OpenedRun(Protocol):
 
 
 OpenSample = Callable[[Evaluation, Trial], OpenedRun]
-"""Opens the stored run of a trial."""
+"""Function that opens the stored run of a trial."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageCall:
-    """A tool call on the page, as text.
+    """A tool call as text for a page.
 
     Attributes:
         call: The tool and its arguments.
         result: The result or the error.
         failed: Whether the call failed.
         pose: The camera's pose after the call.
-        replies: The replies of perception.
-        frame: Path of the picture of the call; None if there is none.
+        replies: The perception replies.
+        frame: Path of the call's picture; None if there is no picture.
     """
 
     call: str
@@ -68,7 +68,7 @@ class PageCall:
 
 @dataclass(frozen=True, slots=True)
 class PageStep:
-    """A step of the planner on the page. ``view`` is the path of the frame that the planner was shown, if any."""
+    """A planner step on a page. ``view`` is the path of the frame that was shown to the planner, if any."""
 
     number: int
     thought: str
@@ -78,14 +78,14 @@ class PageStep:
 
 @dataclass(frozen=True, slots=True)
 class FailedRun:
-    """A failed trial on the page.
+    """A failed trial on a page.
 
     Attributes:
-        run: The run of the report.
+        run: The run in the report.
         trial: The trial.
-        steps: The steps of the planner.
-        first_frame: Path of the first frame; None if it is not stored.
-        missing: The reason why the steps cannot be shown; empty if they can.
+        steps: The planner steps.
+        first_frame: Path of the first frame; None if it was not stored.
+        missing: The reason why the steps cannot be shown; empty if they are shown.
     """
 
     run: ReportRun
@@ -97,12 +97,12 @@ class FailedRun:
 
 @dataclass(frozen=True, slots=True)
 class TaskPage:
-    """The content of the page of a failed task.
+    """The content of a page about a failed task.
 
     Attributes:
         task: The task's id.
-        file: Path of the page, relative to the report's folder.
-        evidence: The evidence of the task, one line per view.
+        file: Path of the page, relative to the report folder.
+        evidence: The evidence for the task, one line per view.
         runs: The failed trials.
     """
 
@@ -113,31 +113,31 @@ class TaskPage:
 
     @property
     def facts(self) -> Any:
-        """The facts about the task."""
+        """The task's properties, such as its instruction and expected answer."""
         return self.runs[0].trial.task
 
 
 def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
-    """Return the path of each failed task's page, relative to the report's folder, by the task's id.
+    """Return the paths of the pages about failed tasks, relative to the report folder, by task id.
 
-    Task ids from logs are converted to safe file names.
+    Task ids, which come from logs, are converted to safe file names.
     """
     failed = {t.task.id for e in evaluations for t in e.trials if t.headline in ("incorrect", "unscored")}
     return {task: f"tasks/{file_name(task)}" for task in sorted(failed)}
 
 
 def file_name(task: str) -> str:
-    """Return a safe file name for the page of a task. It is unique to the task and always the same."""
+    """Return a safe file name for the page about a task. The name is unique and always the same."""
     readable = re.sub(r"[^a-z0-9]+", "-", task.lower()).strip("-")[:60]
     return f"{readable or 'task'}-{hashlib.sha256(task.encode()).hexdigest()[:10]}.html"
 
 
 class FrameStore:
-    """Stores the pictures of a report at reduced size. Identical pictures are stored once, under the hash of their content.
+    """Stores the pictures of a report at reduced size. Identical pictures are stored only once, named by the hash of their content.
 
     Args:
-        folder: Folder of the pictures.
-        link_prefix: Path of the folder as used in links on the pages.
+        folder: Folder for the pictures.
+        link_prefix: Path of the folder for links on the pages.
     """
 
     def __init__(self, folder: Path, link_prefix: str) -> None:
@@ -145,10 +145,10 @@ class FrameStore:
         self._links: dict[str, str | None] = {}
 
     def add(self, content: bytes | None) -> str | None:
-        """Store a picture, and return its path as used on the pages.
+        """Store a picture, and return its path for links on the pages.
 
         Returns:
-            The path, or None if there is no picture, it is too large, or it cannot be decoded.
+            The path, or None if the picture is missing, too large or cannot be decoded.
         """
         if not content:
             return None
@@ -180,16 +180,16 @@ def task_pages(
     frames: FrameStore,
     tasks: Mapping[str, Task],
 ) -> list[Callable[[], TaskPage]]:
-    """Return a function for each page that builds the page when it is called.
+    """Return, for each page, a function that builds the page.
 
     The caller builds one page at a time, so that the pictures of only one page are in memory.
 
     Args:
-        runs: The runs of the report.
-        files: The path of each failed task's page, by the task's id.
-        open_sample: Opens the stored run of a trial; None to show no steps.
-        frames: Stores the pictures.
-        tasks: The tasks by id, for their evidence.
+        runs: The runs in the report.
+        files: The paths of the pages about failed tasks, by task id.
+        open_sample: Function that opens the stored run of a trial; None to omit the steps.
+        frames: The store for the pictures.
+        tasks: The tasks by id, for the evidence.
     """
     failed: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
@@ -225,7 +225,7 @@ def _steps(trace: Trace, sample: OpenedRun, frames: FrameStore) -> tuple[PageSte
         calls = tuple(_page_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
         decision = decided.decision
         thought = "; ".join(part for part in (getattr(decision, "thought", ""), decision.reasoning) if part)
-        steps.append(PageStep(decided.step, cut(thought), calls, _stored_frame(decided.view, sample, frames)))
+        steps.append(PageStep(decided.step, truncate(thought), calls, _stored_frame(decided.view, sample, frames)))
     return tuple(steps)
 
 
@@ -236,14 +236,19 @@ def _page_call(called: Called, sample: OpenedRun, frames: FrameStore) -> PageCal
     result = outcome.error if outcome.error is not None else _message(outcome.result)
     pose = f"pan {called.pose.pan_deg:.1f}°, tilt {called.pose.tilt_deg:.1f}°, zoom {called.pose.zoom:.2f}x"
     replies = tuple(
-        cut(
+        truncate(
             f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _reply_text(reply.result)} "
             f"({reply.wall_s:.2f} s)"
         )
         for reply in called.replies
     )
     return PageCall(
-        cut(f"{outcome.call.name}({arguments})"), cut(result), failed, pose, replies, _stored_frame(called.frame, sample, frames)
+        truncate(f"{outcome.call.name}({arguments})"),
+        truncate(result),
+        failed,
+        pose,
+        replies,
+        _stored_frame(called.frame, sample, frames),
     )
 
 
@@ -257,19 +262,19 @@ def _message(result: Mapping[str, Any] | None) -> str:
 
 
 def _reply_text(result: Mapping[str, Any] | None) -> str:
-    """Return a reply of perception as text. Positions are in percent of the frame."""
+    """Format a perception reply as text, with positions in percent of the frame."""
     for plural, singular in (("boxes", "box"), ("points", "point")):
         shapes = result.get(plural) if result else None
         if isinstance(shapes, list | tuple) and result is not None:
             count = f"{len(shapes)} {singular if len(shapes) == 1 else plural}" if shapes else f"no {singular}"
-            more = "" if result.get("complete", True) else ", and more than these"
+            more = "" if result.get("complete", True) else " (the list is incomplete)"
             positions = "; ".join(_shape_text(shape) for shape in shapes)
             return f"{count}{more}{f': {positions}' if positions else ''}{_notes(result)}"
     return _message(result) + _notes(result or {})
 
 
 def _shape_text(shape: Any) -> str:
-    """Return a box or a point as text, with its position in percent of the frame. Other values are returned as they are."""
+    """Format a box or point as text, with its position in percent of the frame. Other values are formatted without a position."""
     if not isinstance(shape, Mapping):
         return _value_text(shape)
     extents = [_percent(shape, axis) for axis in "xy"]
@@ -282,7 +287,7 @@ def _shape_text(shape: Any) -> str:
 
 
 def _percent(shape: Mapping[str, Any], axis: str) -> str | None:
-    """Return the position of a point or the extent of a box along an axis, in percent; None if it is not stated."""
+    """Format the position of a point or the extent of a box along an axis, in percent; return None if it is missing."""
     ends = [shape[name] for name in (axis, f"{axis}_min", f"{axis}_max") if isinstance(shape.get(name), int | float)]
     return "–".join(f"{100 * end:.0f}" for end in ends) + "%" if ends else None
 
@@ -293,7 +298,7 @@ def _notes(result: Mapping[str, Any]) -> str:
 
 
 def _value_text(value: Any) -> str:
-    """Return JSON data as text, without empty values. Numbers have four significant digits."""
+    """Format JSON data as text, without empty values and with four significant digits."""
     if isinstance(value, Mapping):
         parts = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
         return "; ".join(f"{key}: {_value_text(part)}" for key, part in parts.items()) or "nothing"
@@ -306,13 +311,13 @@ def _value_text(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def cut(text: str) -> str:
-    """Truncate a text to ``MAX_TEXT_CHARS``. A note states the full length of a truncated text."""
+def truncate(text: str) -> str:
+    """Truncate a text to ``MAX_TEXT_CHARS``, and add a note with its full length."""
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} … ({len(text):,} characters)"
 
 
 def evidence_lines(task: Task | None) -> tuple[str, ...]:
-    """Return the evidence of a task, one line per view; empty if the task is not available."""
+    """Return the evidence for a task, one line per view, or no lines if the task is not available."""
     lines = []
     if task is not None and not task.evidence:
         return ("none: the answer does not depend on any view",)

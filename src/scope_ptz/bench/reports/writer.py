@@ -1,4 +1,4 @@
-"""Write a report: the HTML page, Markdown, CSV files, and a page for each failed task. Text from models is escaped."""
+"""Write a report: an HTML page, Markdown, CSV files, and a page for each failed task. Text from models is escaped."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from scope_ptz.bench.reports.tables import (
     CellValue,
     Column,
     MarkedCell,
-    as_csv,
-    as_markdown,
     cell_text,
+    cell_value,
+    csv_text,
     escape,
-    interval,
-    unmarked,
+    interval_texts,
+    markdown_text,
 )
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
 from scope_ptz.bench.scoring.trials import Evaluation
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 GENERATOR = "scope bench report"
-"""Value of the page's ``generator`` tag, which identifies an earlier report."""
+"""Content of the page's ``generator`` tag, by which an earlier report is recognised."""
 _REPORT_FILES = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"), ("charts", "*.svg"))
-"""Folders and file patterns of a report."""
+"""Folders in a report, and the patterns of the files in them."""
 
 
 def write_report(
@@ -51,10 +51,10 @@ def write_report(
 
     Args:
         evaluations: The evaluations.
-        registry: The registry that describes the models.
-        out: The folder of the report. An earlier report in it is replaced.
-        open_sample: Opens the stored run of a trial. Without it, the pages show no trajectories.
-        tasks: The tasks by id, for the evidence on their pages and for what constant answers win.
+        registry: The model registry.
+        out: The report folder. An earlier report in it is replaced.
+        open_sample: Function that opens the stored run of a trial. Without it, the pages show no trajectories.
+        tasks: The tasks by id, for the evidence on the pages and the scores of constant answers.
         progress: Called after each page with the number of finished pages and the total number of pages.
         pages: Whether to write pages for failed tasks.
 
@@ -62,13 +62,13 @@ def write_report(
         The report.
 
     Raises:
-        OutputError: The folder cannot be written, or it is not empty and contains no report.
+        OutputError: The folder cannot be written to, or it is not empty and contains no report.
         InputError: The evaluations contain no trials.
     """
     files = page_files(evaluations) if pages else {}
     report = build_report(evaluations, registry, files, tasks)
     try:
-        _clear(out)
+        _remove_earlier_report(out)
         (out / "tables").mkdir(parents=True, exist_ok=True)
         (out / "tasks").mkdir(exist_ok=True)
         page_builders = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
@@ -80,18 +80,18 @@ def write_report(
             if progress is not None:
                 progress(number, len(page_builders))
         for table in report.tables:
-            (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
+            (out / "tables" / f"{table.key}.csv").write_text(csv_text(table), "utf-8", newline="")
         (out / "charts").mkdir(exist_ok=True)
         for chart in (chart for section in report.sections for chart in section.charts):
             (out / "charts" / f"{chart.key}.svg").write_text(standalone_svg(chart), "utf-8")
-        (out / "report.md").write_text(markdown(report), "utf-8")
-        (out / "index.html").write_text(html(report, environment), "utf-8")
+        (out / "report.md").write_text(render_markdown(report), "utf-8")
+        (out / "index.html").write_text(render_html(report, environment), "utf-8")
     except OSError as error:
         raise OutputError(f"The report cannot be written to {out}: {error.strerror}.") from error
     return report
 
 
-def _clear(out: Path) -> None:
+def _remove_earlier_report(out: Path) -> None:
     """Remove the files of an earlier report from a folder. Raises ``OutputError`` if the folder contains no report."""
     if out.exists() and not out.is_dir():
         raise OutputError(f"{out} is a file. Choose a folder for the report.")
@@ -105,14 +105,14 @@ def _clear(out: Path) -> None:
             file.unlink()
 
 
-def html(report: EvaluationReport, environment: Environment | None = None) -> str:
-    """Return the HTML page. It contains no scripts and loads nothing from the network."""
+def render_html(report: EvaluationReport, environment: Environment | None = None) -> str:
+    """Render the HTML page, which contains no scripts and loads nothing from the network."""
     template = (environment or _environment()).get_template("index.html.j2")
     return template.render(report=report, version=__version__, generator=GENERATOR)
 
 
-def markdown(report: EvaluationReport) -> str:
-    """Return the report as Markdown. Its charts are the files in ``charts/``."""
+def render_markdown(report: EvaluationReport) -> str:
+    """Render the report as Markdown, which shows the chart files in ``charts/``."""
     parts = ["# SCOPE benchmark report"]
     parts += [f"> **{escape(report.notice)}**"] if report.notice else []
     parts += ["> " + escape(line) for line in (*report.contradictions, *report.problems)]
@@ -120,7 +120,7 @@ def markdown(report: EvaluationReport) -> str:
         parts.append(f"## {escape(section.title)}")
         parts += [escape(line) for line in section.text]
         parts += [f"![{escape(chart.title)}](charts/{chart.key}.svg)" for chart in section.charts]
-        parts += [as_markdown(table) for table in section.tables]
+        parts += [markdown_text(table) for table in section.tables]
         if number == 0:
             parts += ["## Summary", *(escape(line) for line in report.summary), *("> " + escape(line) for line in report.warnings)]
     return "\n\n".join(parts) + f"\n\n*Made by scope-ptz {__version__}.*\n"
@@ -138,17 +138,17 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["cell"] = cell
-    environment.filters["drawn"] = Markup  # Only for charts, whose text the drawing library has escaped.
+    environment.filters["drawn"] = Markup  # Used only for charts, whose text is already escaped by the drawing library.
     return environment
 
 
 def cell(value: CellValue, column: Column) -> dict[str, Any]:
-    """Return the parts of a cell for the template: its text, its interval with the limitation, and its marks."""
-    plain = unmarked(value)
+    """Return the parts of a cell for the template: the text, the interval with its limitation, and the marks."""
+    plain = cell_value(value)
     marks = value if isinstance(value, MarkedCell) else MarkedCell(None)
     bounds = limits = ""
     if isinstance(plain, IntervalEstimate):
-        bounds, limits = interval(plain, column.kind)
+        bounds, limits = interval_texts(plain, column.kind)
         plain = plain.value
     text = cell_text(plain, column.kind)
     return {

@@ -1,1 +1,1 @@
-"""Scoring of runs: checks, verdicts, error modes, and records of trials."""
+"""Score runs: checks, verdicts, error modes and trial records."""

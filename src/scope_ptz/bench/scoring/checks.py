@@ -1,4 +1,4 @@
-"""The executable checks. Each function checks one aspect of a run against its task."""
+"""The executable checks that score a run. Each function checks one aspect of the run against the task."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
 
 CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
 SAME_ANGLE_DEG = 0.5
+"""Maximum difference in pan or tilt, in degrees, between poses that are considered equal."""
 SAME_ZOOM_RATIO = 0.03
-"""Tolerances within which two poses are the same: degrees of pan or tilt, and the relative difference of zoom."""
+"""Maximum relative difference in zoom between poses that are considered equal."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """The result of one check. ``passed`` is None if the answer is unreadable, so that the check cannot decide."""
+    """The result of a check. ``passed`` is None if the check cannot decide, because the answer is unreadable."""
 
     name: CheckName
     passed: bool | None
@@ -32,13 +33,13 @@ class CheckResult:
 
 
 def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
-    """Run every check that applies to a task, in a fixed order."""
+    """Run all checks that apply to a task, in a fixed order."""
     results = (check(task, episode) for check in _CHECKS)
     return tuple(result for result in results if result is not None)
 
 
 def check_outcome(task: Task, episode: Episode) -> CheckResult:
-    """Check that the run ended as the task requires: with an answer, a clarifying question or a refusal."""
+    """Check that the run ended with the required outcome: an answer, a clarifying question or a refusal."""
     required: tuple[RunOutcome, ...] = task.behaviour.outcomes
     passed = episode.outcome in required
     return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(required)}")
@@ -54,11 +55,11 @@ def check_answer(task: Task, episode: Episode) -> CheckResult | None:
     passed = agrees(task.expected, parsed)
     if isinstance(parsed, Unreadable):
         return CheckResult("answer", None, f"cannot be read: {parsed.reason}")
-    stated = "declined" if isinstance(parsed, Declined) else f"read as {_as_text(parsed.value)}"
+    stated = "declined" if isinstance(parsed, Declined) else f"read as {_value_text(parsed.value)}"
     return CheckResult("answer", passed, stated if passed else f"{stated}, which is not what is expected")
 
 
-def _as_text(value: object) -> str:
+def _value_text(value: object) -> str:
     return (
         ", ".join(sorted(value)) or "none"
         if isinstance(value, frozenset) and all(isinstance(v, str) for v in value)
@@ -76,7 +77,7 @@ def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_pose(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the camera ends at the pose that the task requires."""
+    """Check that the camera ended at the required pose."""
     final = task.behaviour.final
     if final is None:
         return None
@@ -85,7 +86,7 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def pose_difference(required: FinalPose, actual: CameraPosition) -> list[str]:
-    """Return the differences from the required pose in words. The list is empty if the pose is within tolerance."""
+    """Return descriptions of the differences from the required pose. The list is empty if the pose is within tolerance."""
     wrong = []
     if actual.viewpoint != required.viewpoint:
         wrong.append(f"at viewpoint {actual.viewpoint}, not {required.viewpoint}")
@@ -111,30 +112,30 @@ def check_calls(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that no forbidden tool was used and no forbidden change remained."""
+    """Check that no forbidden tool was used, and that no forbidden change remained at the end."""
     forbidden = task.behaviour.forbidden
     if not forbidden.tools and not forbidden.changes:
         return None
     used = sorted({call.name for call in episode.calls if call.succeeded and call.name in forbidden.tools})
-    changed = [change for change in changes(episode.start, episode.final) if change in forbidden.changes]
+    changed = [change for change in changed_properties(episode.start, episode.final) if change in forbidden.changes]
     wrong = [f"{name} was called" for name in used] + [f"{name} was changed" for name in changed]
     return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
 
 
-def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
-    """Return which of viewpoint, pan, tilt and zoom differ between two positions of the camera."""
-    one, two = before.pose, after.pose
-    differs = {
+def changed_properties(before: CameraPosition, after: CameraPosition) -> list[str]:
+    """Return the names of the properties (viewpoint, pan, tilt, zoom) that differ between two camera positions."""
+    start, end = before.pose, after.pose
+    differences = {
         "viewpoint": before.viewpoint != after.viewpoint,
-        "pan": abs(wrap_pan_deg(one.pan_deg - two.pan_deg)) > SAME_ANGLE_DEG,
-        "tilt": abs(one.tilt_deg - two.tilt_deg) > SAME_ANGLE_DEG,
-        "zoom": abs(two.zoom / one.zoom - 1) > SAME_ZOOM_RATIO,
+        "pan": abs(wrap_pan_deg(start.pan_deg - end.pan_deg)) > SAME_ANGLE_DEG,
+        "tilt": abs(start.tilt_deg - end.tilt_deg) > SAME_ANGLE_DEG,
+        "zoom": abs(end.zoom / start.zoom - 1) > SAME_ZOOM_RATIO,
     }
-    return [name for name, different in differs.items() if different]
+    return [name for name, differs in differences.items() if differs]
 
 
 def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the requested number of pictures was taken and, where this is known, that their files exist."""
+    """Check that the requested number of pictures was taken and, if their existence is recorded, that the files exist."""
     required = task.behaviour.pictures
     if required is None:
         return None
@@ -146,7 +147,7 @@ def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:
-    """Check that the target is in the centre of the final view and that its size is within the required limits."""
+    """Check that the target is centred in the final view, and that its size is within the required limits."""
     framing = task.behaviour.framing
     if framing is None:
         return None
@@ -162,15 +163,15 @@ def check_framing(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def framing_of(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
-    """Return the size and the offset of an outline in the final view.
+    """Return the size and offset of an outline in the final view.
 
     Args:
         outline_deg: Directions (pan, tilt) along the outline.
         episode: The run.
 
     Returns:
-        The larger of width and height, and the larger of the horizontal and vertical offset from the middle, as fractions of the
-        frame's width or height. Both are infinite if a part of the outline is behind the camera.
+        The width or height of the outline, whichever is larger, and its horizontal or vertical offset from the centre, whichever
+        is larger, as fractions of the frame's width or height. Both are infinite if part of the outline is behind the camera.
     """
     pose = episode.final.pose
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), 1600, round(1600 / episode.aspect))

@@ -1,6 +1,6 @@
-"""Coverage of evidence: whether a run observed the views on which its answer is based.
+"""Check the coverage of evidence: whether a run observed the views on which its answer depends.
 
-An answer passes only if successful observations cover its evidence.
+A run passes only if successful observations cover the evidence.
 """
 
 from __future__ import annotations
@@ -17,58 +17,58 @@ from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
 INSET = 0.02
-"""Fraction of the view along each border that need not be covered, because it contains no evidence."""
+"""Width of the margin on each side of a view that need not be covered, as a fraction of the view."""
 
 MIN_CAP_PX = 14.0
-"""Minimum height of capitals in pixels. Smaller text is not legible."""
+"""Minimum height of capital letters in pixels. Smaller text is illegible."""
 
 _GRID = 9
-"""Number of reference directions along each side of a view."""
+"""Number of reference directions along each dimension of a view."""
 _TOLERANCE = 1e-6
 """Relative tolerance of all comparisons."""
 Floats = NDArray[np.float64]
 
 
 def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> str | None:
-    """Describe the part of an evidence view that the observations do not cover.
+    """Describe the part of an evidence view that observations do not cover.
 
     Args:
-        view: A view on which the answer is based.
+        view: A view on which the answer depends.
         observations: The observations of the run.
 
     Returns:
-        The description, or None if the observations cover the view.
+        A description of the uncovered part, or None if the observations cover the view.
     """
-    matching = [observation for observation in observations if observation.known and counts_for(view, observation)]
+    matching = [observation for observation in observations if observation.known and matches_view(view, observation)]
     if not matching:
         return f"nothing looked from {view.aim.viewpoint}{' at what was asked' if view.about else ''}"
     if view.whole:
         points = reference_directions(view)
         seen = np.zeros(len(points), dtype=bool)
         for observation in matching:
-            if density_px_deg(observation) >= view.min_density_px_deg * (1 - _TOLERANCE):
-                seen |= inside(observation, points)
+            if density_px_per_deg(observation) >= view.min_density_px_deg * (1 - _TOLERANCE):
+                seen |= are_inside(observation, points)
         if not seen.all():
             return f"{1 - seen.mean():.0%} of the view from {view.aim.viewpoint} was not looked at closely enough"
     for item in view.items:
-        if not any(shows(item, observation) for observation in matching):
+        if not any(is_clearly_shown(item, observation) for observation in matching):
             return f"{item.instance} was in no look large enough"
     return None
 
 
-def counts_for(view: EvidenceView, observation: Observation) -> bool:
-    """Return whether an observation matches the viewpoint, the time window and the subject of an evidence view."""
+def matches_view(view: EvidenceView, observation: Observation) -> bool:
+    """Return whether an observation matches the viewpoint, time window and subject of an evidence view."""
     if observation.viewpoint != view.aim.viewpoint:
         return False
     if view.window_s is not None and not view.window_s[0] <= observation.time_s <= view.window_s[1]:
         return False
-    return not view.about or observation.how == "planner" or names_any(observation.asked, view.about)
+    return not view.about or observation.kind == "planner" or names_any(observation.request, view.about)
 
 
 def reference_directions(view: EvidenceView) -> Floats:
-    """Return directions on a regular grid over the reference frame of an evidence view, without its border.
+    """Return directions on a regular grid over the reference frame of an evidence view, without its margin.
 
-    If the scope is full, the directions cover all pans within the view's band of tilts.
+    If the scope is full, the directions cover all pan angles within the view's tilt range.
 
     Returns:
         Unit vectors of shape ``(n, 3)``.
@@ -83,20 +83,20 @@ def reference_directions(view: EvidenceView) -> Floats:
     return frame.directions(np.stack([xs.ravel(), ys.ravel()], axis=-1))
 
 
-def inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
-    """Return which directions, of shape ``(n, 3)``, lie in the image of an observation."""
+def are_inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
+    """Return, for each direction in an array of shape ``(n, 3)``, whether it is inside the image of an observation."""
     points = observation.projection.points(directions)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.all((points >= -_TOLERANCE) & (points <= 1 + _TOLERANCE), axis=-1))
 
 
 def is_within(item: Item, observation: Observation) -> bool:
-    """Return whether a piece of evidence is completely in the image, at any size."""
-    return bool(inside(observation, box_directions(item.box_deg)).all())
+    """Return whether a piece of evidence is completely inside the image, at any size."""
+    return bool(are_inside(observation, box_directions(item.box_deg)).all())
 
 
-def shows(item: Item, observation: Observation) -> bool:
-    """Return whether a piece of evidence is completely in the image and large enough."""
+def is_clearly_shown(item: Item, observation: Observation) -> bool:
+    """Return whether a piece of evidence is completely inside the image and large enough."""
     if not is_within(item, observation):
         return False
     outline = box_directions(item.box_deg)
@@ -104,13 +104,13 @@ def shows(item: Item, observation: Observation) -> bool:
     size = points.max(axis=0) - points.min(axis=0)
     if isinstance(observation.projection, Equirectangular) and size[0] > observation.projection.width / 2:
         size[0] = observation.projection.width - size[0]
-    if item.cap_height_deg is not None and item.cap_height_deg * density_px_deg(observation) < MIN_CAP_PX * (1 - _TOLERANCE):
+    if item.cap_height_deg is not None and item.cap_height_deg * density_px_per_deg(observation) < MIN_CAP_PX * (1 - _TOLERANCE):
         return False
     return bool(size.max() >= item.min_px * (1 - _TOLERANCE))
 
 
 def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5) -> Floats:
-    """Return directions along the border of a box of pans and tilts, of shape ``(4 * per_side, 3)``."""
+    """Return directions along the border of a box in pan and tilt, as an array of shape ``(4 * per_side, 3)``."""
     left, bottom, right, top = box_deg
     width = right - left if right >= left else right - left + 360.0
     t = np.linspace(0.0, 1.0, per_side)
@@ -120,6 +120,6 @@ def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5
     return direction(pans, tilts)
 
 
-def density_px_deg(observation: Observation) -> float:
-    """Return the pixels per degree at the centre of the image."""
+def density_px_per_deg(observation: Observation) -> float:
+    """Return the resolution at the centre of the image, in pixels per degree."""
     return observation.projection.pixels_per_radian * math.pi / 180

@@ -1,6 +1,6 @@
-"""The record of a run that the checks use: calls with the camera's pose before and after, observations, and the outcome.
+"""Episodes, the form of a run that the checks use: calls with the camera positions before and after, observations, and the outcome.
 
-An episode is built from a recorded trace, or by hand in tests. It contains no ground truth of the scene.
+An episode is built from a recorded trace, or by hand in tests. It contains no ground truth about the scene.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from scope_ptz.simulator.models import SceneFile
 from scope_ptz.tools.sweep import plan_sweep
 
 ObservationKind = Literal["count", "query", "locate", "track", "planner"]
-_HOW: dict[str, ObservationKind] = {
+_OBSERVATION_KINDS: dict[str, ObservationKind] = {
     "count_objects": "count",
     "query_answer": "query",
     "zoom_to_object": "locate",
     "track_object": "track",
 }
-"""The kind of observation that each tool makes."""
+"""The kind of observation that each perception tool makes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,33 +37,33 @@ class CameraPosition:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """One successful observation by perception, or by a planner that is shown frames.
+    """A successful observation by perception, or by a planner that is shown frames.
 
     Attributes:
         viewpoint: Viewpoint of the camera.
         projection: Projection of the image.
         time_s: Scene time in seconds.
-        how: The kind of perception call; "planner" for a frame that the planner was shown.
-        asked: The description or question of the call.
-        known: Whether perception could answer. An observation without an answer covers no evidence.
+        kind: The kind of perception call; "planner" for a frame that was shown to the planner.
+        request: The description or question in the call.
+        known: Whether perception knew the answer. Observations without an answer do not cover any evidence.
     """
 
     viewpoint: str | None
     projection: Perspective | Equirectangular
     time_s: float
-    how: ObservationKind
-    asked: str = ""
+    kind: ObservationKind
+    request: str = ""
     known: bool = True
 
     @property
-    def swept(self) -> bool:
-        """Whether the observation is of a panorama."""
+    def is_panorama(self) -> bool:
+        """Whether a panorama was observed."""
         return isinstance(self.projection, Equirectangular)
 
 
 @dataclass(frozen=True, slots=True)
 class EpisodeCall:
-    """A tool call. ``fault`` is the cause of ``error``, as in the trace. ``observations`` contains only successful ones."""
+    """A tool call. ``fault`` is the cause of ``error``, as in the trace. ``observations`` contains only successful observations."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -83,7 +83,7 @@ class EpisodeCall:
 
 @dataclass(frozen=True, slots=True)
 class SavedPicture:
-    """A picture that ``take_image`` reported. ``exists`` states whether its file exists; None if that was not checked."""
+    """A picture reported by ``take_image``. ``exists`` states whether the file exists; None if this was not checked."""
 
     file: str
     exists: bool | None = None
@@ -91,18 +91,18 @@ class SavedPicture:
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """A run.
+    """A run in the form that the checks use.
 
     Attributes:
         instruction: The instruction to the agent.
-        start: Position of the camera at the start.
+        start: Initial position of the camera.
         calls: The tool calls in order.
-        final: Position of the camera at the end.
+        final: Final position of the camera.
         answer: The agent's final answer.
         outcome: How the run ended; None if it was interrupted.
         pictures: The pictures that the agent took.
-        planner_views: The frames that the planner itself was shown.
-        failure: Kind of failure of the planner's server; None if it did not fail.
+        planner_views: The frames that were shown to the planner.
+        failure: Kind of the planner failure that ended the run; None if there was none.
         aspect: Width of a frame divided by its height.
         optics: The camera's lens.
     """
@@ -121,7 +121,7 @@ class Episode:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """Every successful observation, including the frames that the planner was shown."""
+        """All successful observations, including the frames that were shown to the planner."""
         return (*self.planner_views, *(observation for call in self.calls for observation in call.observations))
 
 
@@ -141,7 +141,7 @@ class PresetViewpoints:
 
 @dataclass(frozen=True, slots=True)
 class FrameGeometry:
-    """The geometry of a run's frames: their size in pixels, and the lens and the limits of the camera."""
+    """The geometry of a run's frames: the frame size in pixels, and the camera's lens and limits."""
 
     width: int
     height: int
@@ -153,7 +153,7 @@ class FrameGeometry:
         return Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), self.width, self.height)
 
     def sweep(self) -> Equirectangular:
-        """Return the projection of a sweep's panorama, which has the same pixels per degree as its frames."""
+        """Return the projection of a sweep's panorama, which has the same resolution as the frames of the sweep."""
         blocks = plan_sweep(CameraInfo("", self.limits, self.optics, self.width, self.height, simulated=True))
         left, top = blocks[0].left_pan_deg, blocks[0].top_tilt_deg
         span, bottom = max(b.right_pan_deg for b in blocks) - left, min(b.bottom_tilt_deg for b in blocks)
@@ -168,7 +168,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         trace: The recorded run.
         places: The viewpoints of the scene's presets.
         planner_sees: Whether the planner was shown frames.
-        keeps_files: Whether the run folder contains the pictures, so that their existence can be checked.
+        keeps_files: Whether pictures are kept in the run folder, so that their existence can be checked.
     """
     started = trace.started
     geometry = FrameGeometry(started.frame_width, started.frame_height)
@@ -227,23 +227,25 @@ def _episode_call(
 def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observation, ...]:
     """Return the observations of a successful call.
 
-    A call of ``zoom_to_object`` yields only its first observation, because later ones are not recorded. A call of ``track_object``
-    yields one for each pose on its path.
+    For ``zoom_to_object``, only the first observation is returned, because later ones are not recorded. For ``track_object``, there
+    is one observation for each pose on the path.
     """
-    how, result = _HOW.get(call.name), call.result or {}
-    if how is None:
+    kind, result = _OBSERVATION_KINDS.get(call.name), call.result or {}
+    if kind is None:
         return ()
-    asked = str(call.arguments.get("description", call.arguments.get("question", "")))
+    request = str(call.arguments.get("description", call.arguments.get("question", "")))
     place = call.before.viewpoint
-    if how == "track":
+    if kind == "track":
         path = result.get("path") or [{"time_s": 0.0, "pose": RecordedPose.of(call.before.pose).model_dump()}]
         return tuple(
-            Observation(place, geometry.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked)
+            Observation(place, geometry.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), kind, request)
             for point in path
         )
-    swept = how in ("count", "query") and call.arguments.get("view", "current") == "full"
-    known = how != "query" or result.get("known") is not False
-    return (Observation(place, geometry.sweep() if swept else geometry.view(call.before.pose), call.time_s, how, asked, known),)
+    is_panorama = kind in ("count", "query") and call.arguments.get("view", "current") == "full"
+    known = kind != "query" or result.get("known") is not False
+    return (
+        Observation(place, geometry.sweep() if is_panorama else geometry.view(call.before.pose), call.time_s, kind, request, known),
+    )
 
 
 def _planner_views(
@@ -253,7 +255,7 @@ def _planner_views(
     geometry: FrameGeometry,
     start_s: float,
 ) -> Iterator[Observation]:
-    """Yield the frames that the planner was shown before its decisions."""
+    """Yield the frames that were shown to the planner before its decisions."""
     for decided in decisions:
         if decided.decision.opened is False:
             continue

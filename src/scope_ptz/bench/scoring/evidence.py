@@ -1,4 +1,4 @@
-"""Tool evidence: what the tools of a run reported, and whether it supports the final answer."""
+"""Tool evidence: what the tools reported in a run, and whether this supports the final answer."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from scope_ptz.bench.tasks.expected import (
 from scope_ptz.bench.tasks.task import Task
 
 _MAX_COUNTS = 8
-"""Sums are computed only for the first counts of a run, at most this many."""
+"""Maximum number of counts for which sums are computed. Later counts in a run are ignored in sums."""
 
 
 def text_from_tools(episode: Episode) -> str:
-    """Return everything that the tools reported as one text."""
+    """Return everything that the tools reported as a single text."""
     parts = list[str]()
     for call in episode.calls:
         if call.succeeded and call.result is not None:
@@ -42,7 +42,7 @@ def text_from_tools(episode: Episode) -> str:
 
 
 def numbers_from_tools(episode: Episode) -> set[float]:
-    """Return the numbers that the tools reported, with the sums and differences of counts and the number of counts above zero."""
+    """Return the reported numbers, the sums and differences of reported counts, and the number of counts above zero."""
     counts, other_numbers = list[float](), set[float]()
     for call in episode.calls:
         result = call.result or {}
@@ -61,7 +61,7 @@ def numbers_from_tools(episode: Episode) -> set[float]:
 
 
 def is_supported_by_tools(task: Task, episode: Episode) -> bool:
-    """Return whether the answer follows from what the tools reported.
+    """Return whether the answer follows from the tool results.
 
     Denials and comparisons are conclusions, so no tool needs to report them.
     """
@@ -78,10 +78,10 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
         case Choice():
             chosen = all_wordings(str(value), task.expected.options[str(value)]) if value != "same" else ()
             several = any(len(view.items) > 1 for view in task.evidence)
-            return not chosen or (_is_mentioned(episode, chosen) if several else names_any(reported, chosen))
+            return not chosen or (_is_reported(episode, chosen) if several else names_any(reported, chosen))
         case NameSet():
             named = value if isinstance(value, frozenset) else frozenset()
-            return all(_is_present_by_tools(episode, all_wordings(name, task.expected.options[name])) for name in named)
+            return all(_is_reported_present(episode, all_wordings(name, task.expected.options[name])) for name in named)
         case YesNo() | NoneThere():
             claims_presence = value == isinstance(task.expected, YesNo)
             return not claims_presence or _is_presence_reported(task, episode)
@@ -91,16 +91,16 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
             return True
 
 
-def _is_mentioned(episode: Episode, wordings: Sequence[str]) -> bool:
-    """Return whether the tools reported anything about a thing: a count of it, even zero, or its presence."""
+def _is_reported(episode: Episode, wordings: Sequence[str]) -> bool:
+    """Return whether the tools reported on a thing: its presence, or a count (even zero)."""
     counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
-    return _is_present_by_tools(episode, wordings) or any(names_any(description, wordings) for description in counted)
+    return _is_reported_present(episode, wordings) or any(names_any(description, wordings) for description in counted)
 
 
-def _is_present_by_tools(episode: Episode, wordings: Sequence[str]) -> bool:
+def _is_reported_present(episode: Episode, wordings: Sequence[str]) -> bool:
     """Return whether a tool reported that a thing is present.
 
-    A tool reports presence by a count above zero, by finding the thing, by naming it without denial, or by answering yes.
+    A tool reports presence by counting at least one thing, finding it, naming it without denying it, or answering yes.
     """
     for call in episode.calls:
         result = call.result or {}
@@ -119,7 +119,7 @@ def _is_present_by_tools(episode: Episode, wordings: Sequence[str]) -> bool:
 
 
 def _is_presence_reported(task: Task, episode: Episode) -> bool:
-    """Return whether a tool reported a presence that supports the answer yes."""
+    """Return whether a tool reported a presence that supports a positive answer."""
     for call in episode.calls:
         result = call.result or {}
         if call.succeeded and (result.get("count", 0) or result.get("found") or _answers_yes(task.expected, result.get("answer"))):

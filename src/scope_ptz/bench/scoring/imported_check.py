@@ -1,9 +1,9 @@
-"""The only executable check of imported tasks: whether the expected tools were called."""
+"""The only executable check for imported tasks: whether the expected calls were made."""
 
 from __future__ import annotations
 
 from scope_ptz.bench.scoring.episode import Episode
-from scope_ptz.bench.scoring.required_calls import call_matches, missing_in_any_order, missing_in_order
+from scope_ptz.bench.scoring.required_calls import matches_required_call, missing_in_any_order, missing_in_order
 from scope_ptz.bench.scoring.trials import CheckRecord
 from scope_ptz.bench.tasks.imported import ImportedTask
 
@@ -11,12 +11,12 @@ CHECK_NAME = "calls"
 
 
 def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecord:
-    """Check that a run made the calls that an imported task expects. Without expected calls the check is undecided."""
+    """Check that a run made the calls that an imported task expects. Without expected calls, the check cannot decide."""
     required = imported.calls
     if not required or imported.policy == "none":
         return CheckRecord(name=CHECK_NAME, passed=None, reason="the file demands no tools")
     if imported.policy == "any":
-        passed = any(call_matches(spec, call) for spec in required for call in episode.calls)
+        passed = any(matches_required_call(spec, call) for spec in required for call in episode.calls)
         reason = (
             "one of the expected tools was used" if passed else f"none of {', '.join(spec.tool for spec in required)} succeeded"
         )

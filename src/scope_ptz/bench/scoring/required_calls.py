@@ -1,4 +1,4 @@
-"""Compare the calls that a task requires with the calls that a run made."""
+"""Compare the calls in a run with the calls that a task requires."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from scope_ptz.bench.tasks.task import Argument, RequiredCall
 from scope_ptz.tools.registry import TOOLS
 
 _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in TOOLS.items()}
-"""The default arguments of each tool."""
+"""The default arguments of each tool, by tool name."""
 
 
-def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
-    """Return the arguments of a call with defaults filled in.
+def complete_arguments(call: EpisodeCall) -> Mapping[str, Any]:
+    """Return the arguments of a call, including defaults.
 
-    A zoom in percent is also given as ``zoom_factor``. If the zoom does not change, ``zoom_factor`` is 1.
+    A zoom in percent is converted to ``zoom_factor``. If the call does not change the zoom, ``zoom_factor`` is 1.
     """
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
     percent = arguments.get("zoom_percent")
@@ -28,19 +28,19 @@ def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
     return arguments
 
 
-def call_matches(required: RequiredCall, call: EpisodeCall, ignored: Collection[str] = ()) -> bool:
-    """Return whether a call matches a required call, succeeded, and found its target if it searched for one.
+def matches_required_call(required: RequiredCall, call: EpisodeCall, ignored: Collection[str] = ()) -> bool:
+    """Return whether a call succeeded, matches a required call, and found its target if it was a search.
 
     Args:
         required: The required call.
         call: The actual call.
-        ignored: Names of arguments that are not compared. If it contains "found", a call that did not find its target matches.
+        ignored: Names of arguments that are not compared. With "found", a search that did not find its target also matches.
     """
     if not call.succeeded or call.name != required.tool:
         return False
     if "found" not in ignored and (call.result or {}).get("found") is False:
         return False
-    given = arguments_of(call)
+    given = complete_arguments(call)
     return all(_argument_matches(spec, given.get(name)) for name, spec in required.arguments.items() if name not in ignored)
 
 
@@ -54,11 +54,11 @@ def _argument_matches(spec: Argument, given: Any) -> bool:
 
 
 def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], ignored: Collection[str] = ()) -> str | None:
-    """Return a description of the first required call that is missing or out of order; None if all were made in order."""
+    """Describe the first required call that is missing or out of order; return None if all were made in order."""
     position = 0
     for spec in required:
         for number in range(spec.times):
-            while position < len(calls) and not call_matches(spec, calls[position], ignored):
+            while position < len(calls) and not matches_required_call(spec, calls[position], ignored):
                 position += 1
             if position == len(calls):
                 time = f" (time {number + 1} of {spec.times})" if spec.times > 1 else ""
@@ -70,14 +70,14 @@ def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCa
 def missing_in_any_order(
     required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], ignored: Collection[str] = ()
 ) -> str | None:
-    """Return a description of the first missing call; None if the required calls can be matched to different calls in any order."""
+    """Describe the first missing call; return None if every required call can be matched to a different call, in any order."""
     slots = [spec for spec in required for _ in range(spec.times)]
     slot_of_call: dict[int, int] = {}
 
     def assign(slot: int, tried: set[int]) -> bool:
         """Assign a call to a slot, reassigning earlier slots if necessary (bipartite matching)."""
         for index, call in enumerate(calls):
-            if index not in tried and call_matches(slots[slot], call, ignored):
+            if index not in tried and matches_required_call(slots[slot], call, ignored):
                 tried.add(index)
                 if index not in slot_of_call or assign(slot_of_call[index], tried):
                     slot_of_call[index] = slot

@@ -1,6 +1,6 @@
 """The records of an evaluation: its trials with their verdicts, and its conditions.
 
-Reports, agreement and regression gates use these records. ``bench.engine.logs`` reads them from logs.
+Reports, agreement measurements and regression gates use these records. ``bench.engine.logs`` reads them from logs.
 The docstrings of ``ModelCard`` and ``RunCard`` are part of the published schema of submissions.
 """
 
@@ -28,7 +28,7 @@ class _Record(BaseModel):
 
 
 class CheckRecord(_Record):
-    """The result of one executable check in a trial. ``passed`` is None if the check could not decide."""
+    """The result of an executable check in a trial. ``passed`` is None if the check could not decide."""
 
     name: str
     passed: bool | None
@@ -42,12 +42,12 @@ class Judgement(_Record):
         judge: Name of the judge's model.
         prompt: Version of the judge's prompt.
         repeat: Index of the judgement, from 0, if the judge judged the run several times.
-        verdict: "unparseable" if the judge never gave a valid verdict, "failed" if its server never answered.
+        verdict: The verdict; "unparseable" if the judge gave no valid reply, "failed" if its server gave no usable reply.
         error_mode: The error mode that the judge assigned.
         reason: The judge's reason.
         attempts: Number of requests.
-        input_tokens: Tokens of all requests.
-        output_tokens: Tokens of all replies.
+        input_tokens: Number of tokens in all requests.
+        output_tokens: Number of tokens in all replies.
         latency_s: Wall-clock seconds of the whole judgement.
     """
 
@@ -64,7 +64,7 @@ class Judgement(_Record):
 
 
 class Label(_Record):
-    """A human label: one person's verdict on a run."""
+    """A human label: a person's verdict on a run."""
 
     by: str
     verdict: Literal["correct", "incorrect", "unclear"]
@@ -73,13 +73,13 @@ class Label(_Record):
 
 
 class ObservationTime(_Record):
-    """Wall-clock seconds of one perception call. Concurrent calls share a frame and its capture.
+    """The wall-clock times of a perception call. Concurrent calls share a frame and its capture.
 
     Attributes:
         view: Whether the current view or a panorama of the full scene was observed.
-        eyes_s: Seconds of perception (the model role "eyes").
-        capture_s: Seconds of camera moves and captures, including rendering.
-        call_s: Seconds of the whole tool call.
+        eyes_s: Seconds for perception (the model role "eyes").
+        capture_s: Seconds for camera moves and captures, including rendering.
+        call_s: Seconds for the whole tool call.
     """
 
     view: Literal["current", "full"]
@@ -89,14 +89,14 @@ class ObservationTime(_Record):
 
 
 class Trial(_Record):
-    """One run of one task with its verdict.
+    """A run of a task, with its verdict.
 
     Attributes:
-        task: The facts about the task.
+        task: The task's properties.
         epoch: Number of the run among the runs of the same task, from 1.
-        sample: Name of the sample in the log. The sample contains the trace and the pictures of the run.
+        sample: Name of the sample in the log, which contains the trace and pictures of the run.
         headline: The verdict: correct, incorrect, unscored, or infrastructure failure.
-        scored_by: The source of the verdict: the checks, or a judge if the task has no check of its answer.
+        scored_by: The source of the verdict: the checks, or a judge if the task has no answer check.
         reason: The reason for the verdict.
         error_mode: The error mode; None unless the headline is "incorrect".
         checks: The results of the checks.
@@ -104,16 +104,16 @@ class Trial(_Record):
         outcome: How the run ended; None if it was interrupted.
         answer: The agent's final answer.
         steps: Number of decisions that the planner made.
-        planned_by: Number of decisions by part of a hybrid planner ("grammar", "model"); empty for other planners.
-        tool_calls: Number of calls by tool, including failed calls.
+        planned_by: Number of decisions by each part of a hybrid planner ("grammar", "model"); empty for other planners.
+        tool_calls: Number of calls to each tool, including failed calls.
         bad_calls: Number of calls with invalid arguments or to unknown tools.
         perception_failures: Number of calls that failed because perception failed.
-        server_events: Failures of model servers by kind.
-        input_tokens: Tokens of the planner's requests.
-        output_tokens: Tokens of the planner's replies.
+        server_events: Number of model server failures, by kind.
+        input_tokens: Number of tokens in the planner's requests.
+        output_tokens: Number of tokens in the planner's replies.
         cost_usd: Cost of the planner's tokens; None if unknown.
         timings: Wall-clock seconds by stage.
-        looks: The observation times: wall-clock seconds of each perception call.
+        looks: The wall-clock times of each perception call.
         judgements: The verdicts of judges.
         labels: The human labels.
     """
@@ -144,8 +144,8 @@ class Trial(_Record):
     labels: tuple[Label, ...] = ()
 
     @model_serializer(mode="wrap")
-    def _without_empty_parts(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out the parts of a planner that has none, so that its trials can also be read by older versions."""
+    def _omit_empty_planned_by(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Omit an empty ``planned_by``, so that older versions can also read the trial."""
         fields: dict[str, Any] = serialize(self)
         return {name: value for name, value in fields.items() if name != "planned_by" or value}
 
@@ -192,15 +192,15 @@ class RunCard(_Record):
 
     @model_validator(mode="before")
     @classmethod
-    def _isolation_of_older_logs(cls, fields: Any) -> Any:
-        """Label the external agents of logs without the label as "in-process": older versions ran them in the scorer's process."""
+    def _add_missing_isolation(cls, fields: Any) -> Any:
+        """Set the missing ``isolation`` of an external agent to "in-process", because older versions ran all agents in this way."""
         if isinstance(fields, dict) and "isolation" not in fields and fields.get("agent", OWN_AGENT) != OWN_AGENT:
             return fields | {"isolation": "in-process"}
         return fields
 
     @model_serializer(mode="wrap")
-    def _without_empty_isolation(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out the label of SCOPE's own loop, so that its cards can also be read by older versions."""
+    def _omit_empty_isolation(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Omit an empty ``isolation``, so that older versions can also read the cards of SCOPE's own loop."""
         fields: dict[str, Any] = serialize(self)
         return {name: value for name, value in fields.items() if name != "isolation" or value is not None}
 
@@ -211,12 +211,12 @@ class RunCard(_Record):
 
     @property
     def agent_label(self) -> str:
-        """Name of the agent in tables, with the label of an external agent."""
+        """Name of the agent in tables, with the isolation label of an external agent."""
         return f"{self.agent} ({self.isolation})" if self.isolation is not None else self.agent
 
     @property
     def ranked(self) -> bool:
-        """Whether rankings of models include the pair."""
+        """Whether the pair is included in rankings."""
         return not (self.planner.deterministic or self.perception.deterministic)
 
 
@@ -224,16 +224,16 @@ LogFault = Literal[
     "score-differs", "trace-missing", "trace-damaged", "task-differs", "task-unknown", "tasks-changed", "card-differs",
     "sample-missing", "sample-repeated",
 ]  # fmt: skip
-"""Kinds of contradictions between a log and its own traces."""
+"""Kinds of contradictions between a log and its traces, or between a log and the published tasks."""
 
 
 class LogFinding(_Record):
-    """A contradiction between a log and its own traces, or between a log and the published tasks.
+    """A contradiction between a log and its traces, or between a log and the published tasks.
 
     Attributes:
         kind: The kind of contradiction.
         sample: Name of the sample; empty if the finding concerns the whole log.
-        detail: What was found, as a sentence without a final full stop.
+        detail: A description of the contradiction, without a final full stop.
     """
 
     kind: LogFault
@@ -246,11 +246,11 @@ class Evaluation(_Record):
 
     Attributes:
         card: The conditions of the evaluation.
-        trials: The finished runs. Their verdicts are recomputed from the traces; only judgements and labels are as stored.
-        wanted: Number of trials in the complete evaluation: tasks times epochs.
+        trials: The finished runs. Verdicts are recomputed from the traces; only judgements and labels are read from storage.
+        wanted: Number of trials in the complete evaluation (tasks times epochs).
         log: Path of the log.
-        findings: Contradictions between the log and its traces. They are not part of stored copies of an evaluation.
-        failure: The error that ended the evaluation; empty if none did.
+        findings: Contradictions between the log and its traces. They are not stored with the evaluation.
+        failure: The error that ended the evaluation; empty if it did not end in an error.
     """
 
     card: RunCard
@@ -261,8 +261,8 @@ class Evaluation(_Record):
     failure: str = ""
 
     @model_serializer(mode="wrap")
-    def _without_empty_failure(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out an empty ``failure``, so that older versions can also read the result."""
+    def _omit_empty_failure(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Omit an empty ``failure``, so that older versions can also read the result."""
         fields: dict[str, Any] = serialize(self)
         return {name: value for name, value in fields.items() if name != "failure" or value}
 

@@ -1,7 +1,7 @@
 """Combine the check results of a run into a verdict.
 
-A run is correct only if every check passes. Runs that cannot be scored, and runs that failed because of infrastructure, have
-their own verdicts.
+A run is correct only if every check passes. There are separate verdicts for runs that cannot be scored and for runs with an
+infrastructure failure.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Literal
 
 from scope_ptz.bench.agents.faults import AGENT_FAULTS
 from scope_ptz.bench.answers import ParsedValue, parse_answer
-from scope_ptz.bench.scoring.checks import CheckResult, changes, run_checks
+from scope_ptz.bench.scoring.checks import CheckResult, changed_properties, run_checks
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
@@ -19,11 +19,11 @@ from scope_ptz.errors import ScopeError
 from scope_ptz.tools.registry import TOOLS
 
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
-"""The categories of results. "unscored": a check could not decide; "infrastructure": a failure outside the agent."""
+"""The possible verdicts. "unscored": a check could not decide; "infrastructure": a failure outside the agent."""
 MOVING_TOOLS = TOOLS.moving
 """Names of the tools that can move the camera."""
 AGENT_FAILURES = frozenset({"empty", "context-overflow", *AGENT_FAULTS})
-"""Kinds of planner failures that count against the agent: an empty reply, a context overflow, and faults of external agents."""
+"""Kinds of planner failures that count against the agent: empty replies, context overflows, and faults of external agents."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Verdict:
 
     Attributes:
         task: The task's id.
-        headline: The category of the result: "correct", "incorrect", "unscored" or "infrastructure".
+        headline: "correct", "incorrect", "unscored" or "infrastructure".
         checks: The results of the checks.
         moved_needlessly: Whether the final pose differs from the start although the task required no move. It does not affect
             the headline.
@@ -51,10 +51,10 @@ class Verdict:
 
 
 def score_episode(task: Task, episode: Episode) -> Verdict:
-    """Score a run by the checks of its task.
+    """Score a run with the checks of its task.
 
     Raises:
-        ScopeError: The task defines no check.
+        ScopeError: The task has no checks.
     """
     checks = run_checks(task, episode)
     if all(check.name == "outcome" for check in checks) and task.behaviour.outcomes == ("answered",):
@@ -74,9 +74,10 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
 
 
 def infrastructure_failure(task: Task, episode: Episode) -> str | None:
-    """Return why a run cannot be used to score the agent; None if it can.
+    """Return the infrastructure failure because of which a run cannot be scored; None if there was none.
 
-    A run cannot be used if it was interrupted, or if the camera or a model server failed. Faults of an external agent are its own.
+    Infrastructure failures are interruptions and failures of the camera or a model server. Faults of an external agent are not
+    infrastructure failures.
     """
     if episode.outcome is None:
         return "the run was cut off"
@@ -103,4 +104,4 @@ def moved_needlessly(task: Task, episode: Episode) -> bool:
     """Return whether the final pose differs from the start although neither the instruction nor the answer requires a move."""
     behaviour = task.behaviour
     requires_move = behaviour.final or behaviour.framing or any(call.tool in MOVING_TOOLS for call in behaviour.calls)
-    return not requires_move and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))
+    return not requires_move and set(task.needs) <= {"sweep"} and bool(changed_properties(episode.start, episode.final))

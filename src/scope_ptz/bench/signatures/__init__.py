@@ -1,1 +1,1 @@
-"""Ed25519 keys of hosts, detached signatures of submissions, and the check of who evaluated a submission."""
+"""Manage the Ed25519 keys of hosts, sign submissions, and determine who evaluated a submission."""

@@ -1,4 +1,4 @@
-"""Detached signatures: ``FILE.sig`` beside a file, with an Ed25519 signature of the exact bytes of the file."""
+"""Detached signatures: ``FILE.sig`` next to a file contains an Ed25519 signature of the file's exact bytes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 SIGNATURE_SUFFIX = ".sig"
-MAX_SIGNATURE_FILE_BYTES = 10_000  # a larger file is no signature
+MAX_SIGNATURE_FILE_BYTES = 10_000  # a larger file is not a signature
 
 
 class _Part(BaseModel):
@@ -25,7 +25,7 @@ class _Part(BaseModel):
 
 
 class SignedFile(_Part):
-    """What was signed: the file's name, its size in bytes, and its SHA-256. The signature covers the bytes, not this record."""
+    """The name, size in bytes and SHA-256 digest of a signed file. The signature covers the file's bytes, not this record."""
 
     file: Annotated[str, Field(max_length=300)]
     bytes: Annotated[int, Field(ge=0)]
@@ -38,10 +38,10 @@ class Signature(_Part):
     Attributes:
         format: Version of this format.
         algorithm: The signature algorithm.
-        public_key: The signer's public key, as base64 of its 32 bytes.
+        public_key: The 32 bytes of the signer's public key, in base64.
         fingerprint: The fingerprint of the public key.
-        signature: Base64 of the signature of the file's bytes.
-        signed: The file that was signed.
+        signature: The signature of the file's bytes, in base64.
+        signed: The signed file.
     """
 
     format: Literal[1] = 1
@@ -53,26 +53,26 @@ class Signature(_Part):
 
     def raw_key(self) -> bytes:
         """Return the 32 bytes of the public key. Raises ``InputError``."""
-        raw = _decoded(self.public_key)
+        raw = _decode_base64(self.public_key)
         if len(raw) != RAW_KEY_BYTES:
             raise InputError("its public key is not an Ed25519 key")
         return raw
 
 
 def signature_path(path: Path) -> Path:
-    """Return the path of the signature of a file."""
+    """Return the path of a file's signature."""
     return path.with_name(path.name + SIGNATURE_SUFFIX)
 
 
 def sign(path: Path, key: Ed25519PrivateKey) -> Path:
-    """Sign a file, and write the signature beside it. An earlier signature is replaced.
+    """Sign a file, and write the signature next to it. An earlier signature is replaced.
 
     Returns:
         The path of the signature.
 
     Raises:
         InputError: The file cannot be read.
-        OutputError: The signature cannot be written.
+        OutputError: The signature file cannot be written.
     """
     try:
         content = path.read_bytes()
@@ -94,15 +94,15 @@ def sign(path: Path, key: Ed25519PrivateKey) -> Path:
 
 
 def read_signature(path: Path) -> Signature | None:
-    """Read the signature beside a file; None if there is none.
+    """Read the signature of a file; return None if there is no signature.
 
     Raises:
-        InputError: The signature cannot be read, or its format is wrong.
+        InputError: The signature file cannot be read, or its format is invalid.
     """
     file = signature_path(path)
     try:
-        with file.open("rb") as opened:
-            content = opened.read(MAX_SIGNATURE_FILE_BYTES + 1)
+        with file.open("rb") as stream:
+            content = stream.read(MAX_SIGNATURE_FILE_BYTES + 1)
     except FileNotFoundError:
         return None
     except OSError as error:
@@ -118,10 +118,10 @@ def read_signature(path: Path) -> Signature | None:
 
 
 def check_signature(signature: Signature, content: bytes) -> None:
-    """Check that a signature was made with its public key over exactly these bytes.
+    """Check that a signature matches its public key and exactly these bytes.
 
     Raises:
-        InputError: It was not. The message says why.
+        InputError: The signature is not valid. The message states the reason.
     """
     from cryptography.exceptions import InvalidSignature
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
@@ -130,13 +130,13 @@ def check_signature(signature: Signature, content: bytes) -> None:
     if signature.fingerprint != fingerprint(raw):
         raise InputError("its fingerprint is not that of its public key")
     try:
-        Ed25519PublicKey.from_public_bytes(raw).verify(_decoded(signature.signature), content)
+        Ed25519PublicKey.from_public_bytes(raw).verify(_decode_base64(signature.signature), content)
     except InvalidSignature:
         changed = hashlib.sha256(content).hexdigest() != signature.signed.sha256
         raise InputError("the file was edited after it was signed" if changed else "it was not made with its public key") from None
 
 
-def _decoded(text: str) -> bytes:
+def _decode_base64(text: str) -> bytes:
     try:
         return base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError):

@@ -1,4 +1,4 @@
-"""Ed25519 keys of hosts: PEM files that this package and OpenSSL can read."""
+"""Ed25519 keys of hosts, stored as PEM files that OpenSSL can also read."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
 
 PUBLIC_SUFFIX = ".pub"
-"""Suffix of the file of a public key. It is appended to the name of the private key's file."""
-RAW_KEY_BYTES = 32  # size of a public key
+"""Suffix of public key files. It is appended to the file name of the private key."""
+RAW_KEY_BYTES = 32  # size of a raw public key
 MAX_KEY_FILE_BYTES = 10_000  # a larger file is not a key
-_OTHERS = 0o077  # permissions of other users
+_OTHERS = 0o077  # permission bits of other users
 
 
 def generate_key(path: Path) -> Ed25519PublicKey:
-    """Create a key pair: the private key in a file that only its owner can read, and the public key beside it.
+    """Create a key pair. Only the owner can read the private key; the public key is stored next to it.
 
     Args:
-        path: The file of the private key. The public key is written to the same path with the suffix ``.pub``.
+        path: The file for the private key. The public key is written to the same path with the suffix ``.pub``.
 
     Returns:
         The public key.
@@ -45,12 +45,12 @@ def generate_key(path: Path) -> Ed25519PublicKey:
 
 
 def public_path(path: Path) -> Path:
-    """Return the path of the public key that belongs to a private key's file."""
+    """Return the path of the public key that belongs to a private key."""
     return path.with_name(path.name + PUBLIC_SUFFIX)
 
 
 def load_private_key(path: Path) -> Ed25519PrivateKey:
-    """Read a private key. Messages about it never contain its content.
+    """Read a private key. Error messages never contain the key.
 
     Raises:
         ConfigError: The file cannot be read, other users can read it, or it contains no Ed25519 key.
@@ -63,7 +63,7 @@ def load_private_key(path: Path) -> Ed25519PrivateKey:
         raise ConfigError(f"Other users can read the key {path}. Run `chmod 600 {path}`, or create a new key.")
     try:
         key = load_pem_private_key(content, password=None)
-    except (ValueError, TypeError):  # the message of the library may quote the content
+    except (ValueError, TypeError):  # the library's message may quote the content
         key = None
     if not isinstance(key, Ed25519PrivateKey):
         raise ConfigError(f"{path} contains no Ed25519 private key. Create one with `scope bench keygen`.")
@@ -88,11 +88,11 @@ def load_public_key(path: Path) -> Ed25519PublicKey:
     return key
 
 
-def trusted_keys(paths: Iterable[Path]) -> dict[bytes, str]:
-    """Return the public keys that an operator trusts, as raw bytes with the names of their files.
+def read_trusted_keys(paths: Iterable[Path]) -> dict[bytes, str]:
+    """Read the public keys that an operator trusts, and return their file names by raw key.
 
     Args:
-        paths: Files of public keys, and folders, in which all files that end in ``.pub`` are read.
+        paths: Public key files, and folders in which all files ending in ``.pub`` are read.
 
     Raises:
         ConfigError: A file is not a public key.
@@ -115,7 +115,7 @@ def raw_bytes(key: Ed25519PublicKey) -> bytes:
 
 
 def fingerprint(raw: bytes) -> str:
-    """Return the fingerprint of a public key: ``SHA256:`` and the unpadded base64 of the hash of its 32 bytes."""
+    """Return the fingerprint of a public key: ``SHA256:`` and the hash of its 32 bytes in base64 without padding."""
     return "SHA256:" + base64.b64encode(hashlib.sha256(raw).digest()).decode().rstrip("=")
 
 
@@ -128,12 +128,12 @@ def _read(path: Path) -> bytes:
 
 
 def _write_new(path: Path, content: bytes, mode: int) -> None:
-    """Write a file that must not exist yet. It has its permissions from the start."""
+    """Create a file with the given permissions. The file must not exist yet."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
             file.write(content)
     except FileExistsError as error:
-        raise OutputError(f"{path} already exists. A key is never overwritten: choose another name.") from error
+        raise OutputError(f"{path} already exists. Keys are never overwritten, so choose another file.") from error
     except OSError as error:
         raise OutputError(f"The key {path} cannot be written: {error.strerror}.") from error

@@ -1,4 +1,4 @@
-"""Decide who evaluated a submission: a trusted host, or its authors."""
+"""Determine who evaluated a submission: a trusted host or its authors."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Evaluated = Literal["hosted", "self-reported"]
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Who evaluated a submission.
+    """The provenance of a submission: who evaluated it.
 
     Attributes:
-        evaluated: "hosted" if a trusted host signed exactly this file, else "self-reported".
-        faults: Reasons why the file must not be accepted, such as an edit after the signature.
+        evaluated: "hosted" if a trusted host signed exactly this file, otherwise "self-reported".
+        faults: Reasons to reject the file, such as an edit after it was signed.
         notes: Remarks that are not faults.
-        signer: Fingerprint of the trusted key that signed the file; empty for self-reported files.
+        signer: Fingerprint of the trusted key with which the file was signed; empty for self-reported files.
     """
 
     evaluated: Evaluated
@@ -33,49 +33,51 @@ class Provenance:
 
 
 def provenance_of(path: Path, trusted: Mapping[bytes, str]) -> Provenance:
-    """Return who evaluated a submission. The signature is read from ``FILE.sig``.
+    """Determine who evaluated a submission. The signature is read from ``FILE.sig``.
 
     Args:
         path: The submission.
-        trusted: The public keys of trusted hosts, with the names of their files.
+        trusted: The file names of trusted public keys, by raw key.
 
     Raises:
         InputError: The submission cannot be read.
-        ConfigError: There is a signature, but the package that checks signatures is not installed.
+        ConfigError: There is a signature, but the package for checking signatures is not installed.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"The submission {path} cannot be read: {error.strerror}.") from error
-    claims = _claims_hosted(content)
+    claims_hosted = _claims_hosted(content)
     sig = signature_path(path).name
     try:
         signature = read_signature(path)
         if signature is None:
             missing = f"the header states that a host evaluated it, but there is no signature {sig}"
-            return Provenance("self-reported", (missing,) if claims else ())
+            return Provenance("self-reported", (missing,) if claims_hosted else ())
         raw = signature.raw_key()
         check_signature(signature, content)
     except InputError as error:
         reason = str(error).rstrip(".")
         return Provenance("self-reported", (reason if sig in reason else f"the signature {sig} is not valid: {reason}",))
     except ModuleNotFoundError as error:
-        raise ConfigError("Signatures need cryptography. Install it with: pip install 'scope-ptz[bench]'.") from error
+        raise ConfigError(
+            "Signatures require the package cryptography. Install it with: pip install 'scope-ptz[bench]'."
+        ) from error
     if raw not in trusted:
         unknown = f"it is signed by the unknown key {fingerprint(raw)}" + (
-            "" if trusted else "; no key of a host is trusted, name one with --host-key"
+            "" if trusted else "; no host keys are trusted, so give one with --host-key"
         )
         return Provenance("self-reported", (unknown,))
-    if claims is False:
+    if claims_hosted is False:
         return Provenance("self-reported", notes=(f"signed by {trusted[raw]}, but the header states that it is self-reported",))
     return Provenance("hosted", notes=(f"signed by {trusted[raw]} ({fingerprint(raw)})",), signer=fingerprint(raw))
 
 
 def _claims_hosted(content: bytes) -> bool | None:
-    """Return whether the header of a submission states that a host evaluated it; None if it does not say."""
+    """Return whether the header of a submission states that a host evaluated it; None if the header does not state this."""
     try:
         header = json.loads(content.split(b"\n", 1)[0])
         evaluated = header.get("evaluated")
     except (ValueError, AttributeError, RecursionError):
-        return None  # The checks of the content report damaged headers.
+        return None  # The content checks report damaged headers.
     return None if evaluated is None else evaluated == "hosted"

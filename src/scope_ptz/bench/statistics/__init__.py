@@ -1,1 +1,1 @@
-"""Statistics for evaluations: pure functions, with references for their formulas."""
+"""Statistics for evaluations: pure functions with references for the formulas."""

@@ -1,9 +1,9 @@
-"""Correct accuracy for chance: what remains after contrast pairs count whole and the level of constant answers is subtracted.
+"""Correct accuracy for chance: require both tasks in a contrast pair to be correct, and subtract the score of constant answers.
 
-A contrast pair is two tasks of like wording. In one of them the thing in question is present, in the other it is absent
-(``Task.pair``). An agent that always gives the same answer can pass one of the two, but not both. A task of a pair therefore
-counts only if both tasks of the pair are correct (Gardner et al. 2020, "Evaluating Models' Local Decision Boundaries via Contrast
-Sets": contrast consistency). Tasks without a pair, or whose twin was not run, count as they are.
+A contrast pair is two tasks with similar wording (``Task.pair``). The thing in question is present in one task and absent in the
+other. An agent that always gives the same answer can pass one of the two tasks, but not both. Therefore, a task in a pair counts
+only if both tasks in the pair are correct (Gardner et al. 2020, "Evaluating Models' Local Decision Boundaries via Contrast
+Sets": contrast consistency). Tasks without a pair, or whose twin was not run, are counted individually.
 
 The chance-corrected accuracy of a category k is (p_k - c_k) / (1 - c_k), where p_k is its pair-consistent accuracy and c_k that of
 the best constant answer. This is Abbott's formula (Abbott 1925, "A Method of Computing the Effectiveness of an Insecticide"),
@@ -22,7 +22,7 @@ import numpy as np
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, proportion
 
 MAX_CHANCE = 0.999
-"""Categories with a higher chance level are left out of chance-corrected accuracy, because they cannot exceed chance."""
+"""Categories with a higher chance level are excluded from chance-corrected accuracy, because they cannot exceed chance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class ConstantAgentScore:
     Attributes:
         answer: The constant answer.
         correct: Number of tasks that it passes.
-        consistent: Number of tasks that it passes if a task of a pair counts only if both tasks of the pair pass.
+        consistent: Pair-consistent number of passed tasks: a task in a pair counts only if the agent passes both tasks in the pair.
         tasks: Number of tasks that expect an answer, a clarifying question or a refusal.
     """
 
@@ -43,27 +43,26 @@ class ConstantAgentScore:
 
     @property
     def share(self) -> float:
-        """The fraction of the tasks that it passes."""
+        """The fraction of tasks that the agent passes."""
         return self.correct / self.tasks if self.tasks else 0.0
 
     @property
     def consistent_share(self) -> float:
-        """The fraction of the tasks that it passes, with pairs counted whole."""
+        """The pair-consistent fraction of tasks that the agent passes."""
         return self.consistent / self.tasks if self.tasks else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class ChanceLevel:
-    """What constant answers win on a set of tasks.
+    """The scores of constant agents on a set of tasks.
 
     Attributes:
         tasks: Number of tasks.
-        without_calls: The best constant answer of an agent that makes no calls, by the checks.
-        accepted: The most accepted constant reply, if only answers and outcomes were checked.
-        looking: The best constant answer of an agent that moves as asked and looks once, by the checks.
-        adaptive: The same agent with the best constant answer of each category.
-        by_category: The largest pair-consistent fraction of the tasks of each category that a constant answer wins after moving as
-            asked and looking once.
+        without_calls: The best score of an agent without calls, according to all checks.
+        accepted: The best score according to the answer and outcome checks alone.
+        looking: The best score of an agent that moves as instructed and observes once, according to all checks.
+        adaptive: The score of the same agent with the best constant answer for each category.
+        by_category: The best pair-consistent accuracy of the same agent in each category.
     """
 
     tasks: int
@@ -76,7 +75,7 @@ class ChanceLevel:
 
 @dataclass(frozen=True, slots=True)
 class ChanceCorrected:
-    """Accuracy beside its chance-corrected value. All values are macro averages over the categories.
+    """Pair-consistent and chance-corrected accuracy, as macro averages over the categories.
 
     Attributes:
         consistent: Pair-consistent accuracy.
@@ -89,16 +88,16 @@ class ChanceCorrected:
     corrected: IntervalEstimate
 
 
-def whole_pairs(correct: Sequence[bool], units: Sequence[str], twins: Sequence[str | None]) -> list[bool]:
-    """Return the outcomes with pairs counted whole.
+def pair_consistent(correct: Sequence[bool], units: Sequence[str], twins: Sequence[str | None]) -> list[bool]:
+    """Return pair-consistent outcomes: a task counts as correct only if both tasks in its pair are correct.
 
     Args:
-        correct: The outcomes of tasks or of trials of one repeat.
+        correct: The outcomes of tasks, or of the trials in one repeat.
         units: The task of each outcome.
-        twins: The other task of its pair; None without a pair.
+        twins: The other task in the pair for each outcome; None for unpaired tasks.
 
     Returns:
-        Each outcome, but False if the twin has an incorrect outcome. A twin without an outcome changes nothing.
+        The outcomes, where an outcome is False if its twin is incorrect. A twin without an outcome has no effect.
     """
     by_unit = dict(zip(units, correct, strict=True))
     return [value and by_unit.get(twin, True) if twin is not None else value for value, twin in zip(correct, twins, strict=True)]
@@ -107,24 +106,25 @@ def whole_pairs(correct: Sequence[bool], units: Sequence[str], twins: Sequence[s
 def chance_corrected(scores: Scores, by_category: Mapping[str, float]) -> ChanceCorrected | None:
     """Return the chance-corrected accuracy of pair-consistent outcomes.
 
-    The estimate is a weighted sum of category means, so its interval is that of the weighted proportion, transformed linearly.
+    The estimate is a weighted sum of category means, so its interval is a linear transformation of the weighted proportion's
+    interval.
 
     Args:
         scores: The pair-consistent outcomes, with the category as stratum.
         by_category: The chance level of each category.
 
     Returns:
-        None if there are no outcomes in categories whose chance level is known and at most ``MAX_CHANCE``.
+        The accuracy; None without outcomes in categories whose chance level is known and does not exceed ``MAX_CHANCE``.
     """
-    kept = [i for i, name in enumerate(scores.strata) if by_category.get(str(name), 1.0) <= MAX_CHANCE]
-    if not kept:
+    included = [i for i, name in enumerate(scores.strata) if by_category.get(str(name), 1.0) <= MAX_CHANCE]
+    if not included:
         return None
     units = scores.unit_of_each
     known = Scores(
-        np.array([scores.values[i] for i in kept], dtype=np.float64),
-        tuple(scores.strata[i] for i in kept),
-        tuple(scores.clusters[i] for i in kept),
-        tuple(units[i] for i in kept),
+        np.array([scores.values[i] for i in included], dtype=np.float64),
+        tuple(scores.strata[i] for i in included),
+        tuple(scores.clusters[i] for i in included),
+        tuple(units[i] for i in included),
     )
     equal = macro_weights(known)
     unscaled = {name: weight / (1 - by_category[str(name)]) for name, weight in equal.items()}

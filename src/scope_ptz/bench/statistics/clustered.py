@@ -1,6 +1,6 @@
-"""Estimate means over strata with cluster-robust intervals, because outcomes of tasks at one viewpoint are correlated.
+"""Estimate means over strata with cluster-robust intervals, because outcomes of tasks at the same viewpoint are correlated.
 
-An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. It is the macro average if every w_k is 1/K, the micro
+An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. It is a macro average if every w_k is 1/K, a micro
 average if there is a single stratum, and a contrast if the weights are +1 and -1. Its variance is that of the linearised estimate,
 summed by cluster (Liang and Zeger 1986), times G/(G-1). The quantiles are those of Student's t distribution with G-1 degrees of
 freedom (Cameron and Miller 2015, sections II.A and VI.D).
@@ -19,23 +19,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtr, stdtrit  # type: ignore[import-untyped]
 
-LEVEL = 0.95
-"""Confidence level of intervals and tests."""
-_ROUNDING = 1e-24
-"""Variances up to this size are treated as rounding errors."""
+CONFIDENCE_LEVEL = 0.95
+"""Confidence level for intervals and tests."""
+_MAX_ROUNDING_VARIANCE = 1e-24
+"""Variances up to this value are treated as rounding errors."""
 Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Outcomes with their strata, clusters and units. All sequences have length n.
+    """Outcomes with their strata, clusters and units. All fields have length n.
 
     Attributes:
         values: The outcomes, of shape ``(n,)``.
         strata: The stratum of each outcome.
         clusters: The cluster of each outcome.
-        units: The unit of each outcome; None if no outcomes are repeats, so that each outcome is a unit. A unit belongs to one
-            stratum and one cluster.
+        units: The unit of each outcome; None if there are no repeats, so that each outcome is a unit. A unit belongs to one stratum
+            and one cluster.
     """
 
     values: Numbers
@@ -55,17 +55,17 @@ class Scores:
 
 @dataclass(frozen=True, slots=True)
 class IntervalEstimate:
-    """An estimate with its 95% interval.
+    """An estimate with its 95% confidence interval.
 
     Attributes:
         value: The estimate.
-        low: Lower limit; None if unknown.
-        high: Upper limit; None if unknown.
+        low: Lower limit of the interval; None if unknown.
+        high: Upper limit of the interval; None if unknown.
         se: Standard error; None if unknown.
         n: Number of units (tasks).
         clusters: Number of clusters.
-        without: Strata with only one cluster. They are part of the value, but their variation between clusters is unknown, so the
-            interval is too narrow. If every stratum has only one cluster, there is no interval.
+        single_cluster_strata: Strata with only one cluster. They contribute to the value, but their variation between clusters is
+            unknown, so the interval is too narrow. If every stratum has only one cluster, there is no interval.
     """
 
     value: float
@@ -74,7 +74,7 @@ class IntervalEstimate:
     se: float | None
     n: int
     clusters: int
-    without: tuple[str, ...] = ()
+    single_cluster_strata: tuple[str, ...] = ()
 
 
 def macro_weights(scores: Scores) -> dict[Hashable, float]:
@@ -83,8 +83,8 @@ def macro_weights(scores: Scores) -> dict[Hashable, float]:
     return {stratum: 1.0 / len(present) for stratum in present}
 
 
-def pooled(scores: Scores) -> Scores:
-    """Return the same outcomes in a single stratum."""
+def pool_strata(scores: Scores) -> Scores:
+    """Combine all outcomes into a single stratum."""
     return Scores(scores.values, ("all",) * len(scores.values), scores.clusters, scores.units)
 
 
@@ -92,7 +92,7 @@ def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
     """Return the weighted sum of the stratum means.
 
     Raises:
-        ValueError: A stratum of ``weights`` has no outcome.
+        ValueError: A weighted stratum has no outcome.
     """
     values: dict[Hashable, list[float]] = {}
     for stratum, value in zip(scores.strata, scores.values.tolist(), strict=True):
@@ -103,7 +103,7 @@ def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
 
 
 def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Return the variance of ``weighted_mean`` over clusters; None with fewer than two clusters.
+    """Return the cluster-robust variance of ``weighted_mean``; None with fewer than two clusters.
 
     The variance is G/(G-1) sum_g u_g^2, where u_g is the sum of w_k/n_k (x - mean_k) over the outcomes of cluster g. With one
     stratum it equals the CR1 variance of a regression on a constant.
@@ -117,7 +117,7 @@ def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | No
 
 
 def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Return the variance as if all units were independent; None with fewer than two units.
+    """Return the variance under the assumption that all units are independent; None with fewer than two units.
 
     Repeats of a task form one unit, because they are not independent: a deterministic model always gives the same result.
     """
@@ -125,7 +125,7 @@ def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float 
 
 
 def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
-    """Return the strata with only one cluster. Their residuals always sum to 0, so they add no variance."""
+    """Return the strata with only one cluster. They add no variance, because their residuals always sum to 0."""
     clusters_by_stratum: dict[Hashable, set[Hashable]] = {}
     for stratum, cluster in zip(scores.strata, scores.clusters, strict=True):
         clusters_by_stratum.setdefault(stratum, set()).add(cluster)
@@ -133,12 +133,12 @@ def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple
 
 
 def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Return the standard error: the square root of the larger of the clustered and the independent variance.
+    """Return the standard error: the square root of the clustered or the independent variance, whichever is larger.
 
-    With the larger variance, chance agreement between a few clusters cannot shrink the interval.
+    Using the larger variance prevents chance agreement between a few clusters from shrinking the interval.
 
     Returns:
-        The standard error, or None if every stratum has only one cluster, because the variation between clusters is then unknown.
+        The standard error, or None if every stratum has only one cluster, so that the variation between clusters is unknown.
     """
     clustered, independent = cluster_variance(scores, weights), independent_variance(scores, weights)
     if (
@@ -148,7 +148,7 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
     ):
         return None
     variance = max(clustered, independent)
-    return sqrt(variance) if variance > _ROUNDING else 0.0
+    return sqrt(variance) if variance > _MAX_ROUNDING_VARIANCE else 0.0
 
 
 def proportion(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
@@ -158,14 +158,14 @@ def proportion(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
 
     Args:
         scores: The outcomes.
-        weights: Weights of the strata, relative to their sum; None pools all outcomes.
+        weights: Weights of the strata, which are normalised to a sum of 1; None to pool all outcomes.
 
     Returns:
         The estimate, or None if there are no outcomes.
     """
     if not len(scores.values):
         return None
-    scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
+    scores, weights = (pool_strata(scores), {"all": 1.0}) if weights is None else (scores, weights)
     se, clusters, units = standard_error(scores, weights), len(set(scores.clusters)), len(set(scores.unit_of_each))
     value = min(1.0, max(0.0, weighted_mean(scores, weights) / fsum(weights.values())))
     low = high = None
@@ -178,18 +178,18 @@ def proportion(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
 def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
     """Estimate a mean difference or a contrast of proportions, with the interval value +- t se, limited to [-1, 1].
 
-    If all outcomes are equal, there is no interval, because a variance of 0 does not mean that the difference is known.
+    If all outcomes are equal, there is no interval, because a variance of 0 does not mean that the difference is exact.
 
     Args:
         scores: The differences, or the outcomes of a contrast.
-        weights: Weights of the strata; None pools all outcomes.
+        weights: Weights of the strata; None to pool all outcomes.
 
     Returns:
         The estimate, or None if there are no outcomes.
     """
     if not len(scores.values):
         return None
-    scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
+    scores, weights = (pool_strata(scores), {"all": 1.0}) if weights is None else (scores, weights)
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
     half = se * t_quantile(clusters) if se else None
     low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
@@ -197,17 +197,17 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> In
 
 
 def proportion_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
-    """Estimate the proportion of ``first`` minus that of ``second``, which are different sets of outcomes.
+    """Estimate the difference between the proportions of two different sets of outcomes (``first`` minus ``second``).
 
-    The interval combines the intervals of the two proportions as if these were independent (Newcombe 1998, method 10; Zou and
-    Donner 2008). Unlike value +- t se, it has a non-zero width even if all outcomes of one set are equal. If one of the
-    proportions has no interval, the difference has none.
+    The interval combines the intervals of the two proportions as if they were independent (Newcombe 1998, method 10; Zou and
+    Donner 2008). Unlike value +- t se, it has a non-zero width even if all outcomes in one set are equal. If either proportion has
+    no interval, the difference has none.
 
     Returns:
         The estimate, or None if one of the sets is empty.
     """
-    one, other = proportion(first), proportion(second)
-    if one is None or other is None:
+    first_estimate, second_estimate = proportion(first), proportion(second)
+    if first_estimate is None or second_estimate is None:
         return None
     both = Scores(
         np.concatenate([first.values, second.values]),
@@ -218,21 +218,24 @@ def proportion_difference(first: Scores, second: Scores) -> IntervalEstimate | N
     contrast = difference(both, {1: 1.0, 2: -1.0})
     if contrast is None:
         return None
-    low, high = newcombe((one.value, one.low, one.high), (other.value, other.low, other.high))
-    return replace(contrast, low=low, high=high, without=())
+    low, high = newcombe(
+        (first_estimate.value, first_estimate.low, first_estimate.high),
+        (second_estimate.value, second_estimate.low, second_estimate.high),
+    )
+    return replace(contrast, low=low, high=high, single_cluster_strata=())
 
 
 Bounded = tuple[float, float | None, float | None]
-"""A value with the limits of its interval."""
+"""A value with the lower and upper limit of its interval."""
 
 
-def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, None]:
-    """Return Newcombe's interval for the difference of two independent proportions, which combines their intervals.
+def newcombe(first: Bounded, second: Bounded) -> tuple[float, float] | tuple[None, None]:
+    """Return Newcombe's interval for the difference between two independent proportions, which combines their intervals.
 
     Returns:
-        The lower and upper limit, or (None, None) if one of the intervals is unknown.
+        The lower and upper limit, or (None, None) if either interval is unknown.
     """
-    (p, p_low, p_high), (q, q_low, q_high) = one, other
+    (p, p_low, p_high), (q, q_low, q_high) = first, second
     if p_low is None or p_high is None or q_low is None or q_high is None:
         return None, None
     return p - q - hypot(p - p_low, q_high - q), p - q + hypot(p_high - p, q - q_low)
@@ -243,20 +246,20 @@ def _single_cluster_strata(scores: Scores, weights: Mapping[Any, float]) -> tupl
 
 
 def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:
-    """Return Wilson's interval (1927) for a proportion, within [0, 1]. The sample size need not be an integer."""
+    """Return the Wilson interval (1927) for a proportion, limited to [0, 1]. The sample size need not be an integer."""
     square = quantile**2 / size
     centre = (value + square / 2) / (1 + square)
     half = quantile / (1 + square) * sqrt(max(0.0, value * (1 - value)) / size + square / (4 * size))
     return max(0.0, centre - half), min(1.0, centre + half)
 
 
-def t_quantile(clusters: int, level: float = LEVEL) -> float:
+def t_quantile(clusters: int, level: float = CONFIDENCE_LEVEL) -> float:
     """Return the two-sided quantile of Student's t distribution with ``clusters - 1`` degrees of freedom."""
     return float(stdtrit(clusters - 1, 0.5 + level / 2))
 
 
 def two_sided_p(estimate: IntervalEstimate) -> float | None:
-    """Return the p value of the hypothesis that a difference is 0; None without a standard error."""
+    """Return the two-sided p value for the hypothesis that a difference is 0; None without a standard error."""
     if estimate.se is None:
         return None
     if estimate.se == 0:
@@ -264,8 +267,8 @@ def two_sided_p(estimate: IntervalEstimate) -> float | None:
     return float(2 * stdtr(estimate.clusters - 1, -abs(estimate.value) / estimate.se))
 
 
-def detectable_difference(se: float, clusters: int, power: float = 0.8, level: float = LEVEL) -> float:
-    """Return the smallest true difference that a two-sided test detects with a given power.
+def detectable_difference(se: float, clusters: int, power: float = 0.8, level: float = CONFIDENCE_LEVEL) -> float:
+    """Return the smallest true difference that a two-sided test detects with the given power.
 
     The difference is (t_(1-a/2) + t_power) se (Bloom 1995).
     """
@@ -273,14 +276,14 @@ def detectable_difference(se: float, clusters: int, power: float = 0.8, level: f
 
 
 def _factorise(labels: Sequence[Hashable]) -> tuple[list[Hashable], NDArray[np.intp]]:
-    """Return the distinct labels, and the index of each label among them."""
+    """Return the distinct labels, and the index of each given label among them."""
     indices: dict[Hashable, int] = {}
     codes = np.array([indices.setdefault(label, len(indices)) for label in labels], dtype=np.intp)
     return list(indices), codes
 
 
 def _strata_codes(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
-    """Return the stratum of each outcome, of shape ``(n,)``, and each stratum's weight divided by its number of outcomes."""
+    """Return the stratum index of each outcome, of shape ``(n,)``, and each stratum's weight per outcome."""
     strata, codes = _factorise(scores.strata)
     _check_strata(strata, weights)
     counts = np.bincount(codes, minlength=len(strata))
@@ -293,7 +296,7 @@ def _check_strata(strata: Collection[Hashable], weights: Mapping[Any, float]) ->
 
 
 def _residuals(scores: Scores, weights: Mapping[Any, float]) -> tuple[Numbers, Numbers]:
-    """Return the residual of each outcome and its weight in the estimate, both of shape ``(n,)``."""
+    """Return the residuals of the outcomes and their weights in the estimate, both of shape ``(n,)``."""
     codes, weight = _strata_codes(scores, weights)
     means = np.bincount(codes, weights=scores.values) / np.bincount(codes)
     return scores.values - means[codes], weight[codes]

@@ -1,4 +1,4 @@
-"""Statistics for comparing two runs over the same tasks: an exact test, a bootstrap, and an adjustment for multiple tests."""
+"""Statistics for comparing two runs on the same tasks: an exact test, a bootstrap, and an adjustment for multiple tests."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ DRAWS = 10_000
 """Default number of bootstrap draws."""
 
 
-def mcnemar_exact(only_first: int, only_second: int) -> float:
+def mcnemar_exact(first_wins: int, second_wins: int) -> float:
     """Return the two-sided exact p value of McNemar's test (1947).
 
     The p value is min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). If tasks were repeated, this is the sign test of the
     tasks' mean differences.
 
     Args:
-        only_first: Number of tasks on which only the first run is correct.
-        only_second: Number of tasks on which only the second run is correct.
+        first_wins: Number of tasks on which only the first run is correct.
+        second_wins: Number of tasks on which only the second run is correct.
     """
-    differing = only_first + only_second
-    tail = sum(comb(differing, k) for k in range(min(only_first, only_second) + 1))
-    return min(1.0, float(2 * tail / 2**differing))
+    discordant = first_wins + second_wins
+    tail = sum(comb(discordant, k) for k in range(min(first_wins, second_wins) + 1))
+    return min(1.0, float(2 * tail / 2**discordant))
 
 
 def holm(p_values: Sequence[float | None]) -> list[float | None]:
-    """Adjust p values by Holm's step-down method (1979). A value of None remains None and does not count as a test."""
+    """Adjust p values with Holm's step-down method (1979). None remains None and does not count as a test."""
     tests = sorted((p, index) for index, p in enumerate(p_values) if p is not None)
     adjusted: list[float | None] = [None] * len(p_values)
     highest = 0.0
@@ -40,13 +40,12 @@ def holm(p_values: Sequence[float | None]) -> list[float | None]:
 
 
 def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> tuple[float, float] | None:
-    """Return the 95% percentile interval of the macro mean of paired differences, by a cluster bootstrap (Field and Welsh 2007).
+    """Return the 95% percentile interval for the macro mean of paired differences from a cluster bootstrap (Field and Welsh 2007).
 
     Args:
         scores: One difference per task.
-        seed: Seed of the draws.
-        draws: Number of draws. Whole clusters are drawn with replacement. Strata without outcomes in a draw are left out of its
-            mean.
+        seed: Seed for the draws.
+        draws: Number of draws. Whole clusters are drawn with replacement. A draw's mean excludes strata without outcomes.
 
     Returns:
         The lower and upper limit, or None with fewer than two clusters.
@@ -59,8 +58,8 @@ def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> t
     np.add.at(sums, (clusters, strata), scores.values)
     np.add.at(counts, (clusters, strata), 1.0)
     times = np.random.default_rng(seed).multinomial(size[0], np.full(size[0], 1 / size[0]), size=draws)
-    drawn = times @ counts
-    means = np.divide(times @ sums, drawn, out=np.full(drawn.shape, np.nan), where=drawn > 0)
+    resampled = times @ counts
+    means = np.divide(times @ sums, resampled, out=np.full(resampled.shape, np.nan), where=resampled > 0)
     low, high = np.quantile(np.nanmean(means, axis=1), (0.025, 0.975))
     return float(low), float(high)
 

@@ -1,4 +1,4 @@
-"""Statistics of tasks that were run several times."""
+"""Statistics for tasks that were run several times."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from math import comb
 
 
 def pass_all(runs: int, passed: int, k: int) -> float | None:
-    """Return pass^k of one task, C(c, k) / C(n, k) for c passed of n runs (Yao et al. 2024).
+    """Return pass^k for one task: C(c, k) / C(n, k) if c of n runs passed (Yao et al. 2024).
 
-    This is an unbiased estimate of the probability that k runs all pass.
+    It is an unbiased estimate of the probability that all of k runs pass.
 
     Args:
         runs: Number of runs.
@@ -28,6 +28,6 @@ def pass_all(runs: int, passed: int, k: int) -> float | None:
 
 
 def mean_pass_all(tasks: Iterable[tuple[int, int]], k: int) -> tuple[float | None, int]:
-    """Return the mean pass^k over tasks given as (runs, passed), and the number of tasks with at least k runs."""
+    """Return the mean pass^k over tasks, given as (runs, passed), and the number of tasks with at least k runs."""
     shares = [share for runs, passed in tasks if (share := pass_all(runs, passed, k)) is not None]
     return (sum(shares) / len(shares) if shares else None), len(shares)

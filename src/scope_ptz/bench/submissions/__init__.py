@@ -1,1 +1,1 @@
-"""Write and validate submissions to a public leaderboard."""
+"""Write and validate submissions for a public leaderboard."""

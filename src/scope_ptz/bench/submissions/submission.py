@@ -1,8 +1,8 @@
-"""Write submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
+"""Write submissions for a public leaderboard: a header and one JSON line per trial, without keys and addresses.
 
-Format 1 contains only the trials. Format 2 also contains their traces, so that whoever checks the file can execute the checks and
-make the calls again. The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The
-docstrings of the line models are part of that schema and change only with its version.
+Format 1 contains only the trials. Format 2 also contains the traces, so that the checks can be run again and the calls repeated.
+The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models
+are part of that schema and change only with its version.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from scope_ptz.bench.tasks.task import CANARY, Category, ToolName
 from scope_ptz.errors import InputError, OutputError
 
 MOST_ANSWER = 8_000
-"""Maximum length of a published answer in characters. The published schema contains this name."""
+"""Maximum length of a published answer in characters. The published schema refers to it by this name."""
 Line = Annotated[str, Field(max_length=500)]
-MOST_TRACE = 2_000_000
-"""Maximum length of a compressed trace in base64 characters."""
+MAX_TRACE_CHARS = 2_000_000
+"""Maximum length of a compressed trace, in base64 characters."""
 CUT = " [cut]"
-"""Suffix of a published answer that was cut."""
+"""Suffix of a truncated answer."""
 TOOLS = frozenset(get_args(ToolName))
 UNKNOWN_TOOL = "unknown"
 _UNCHANGED_FIELDS = (
     "epoch", "headline", "scored_by", "error_mode", "outcome", "steps", "bad_calls", "perception_failures", "collateral",
     "input_tokens", "output_tokens", "cost_usd",
 )  # fmt: skip
-"""Fields of a trial that are published unchanged."""
+"""Trial fields that are published unchanged."""
 _SECRET = re.compile(
     r"(?:\b(?:sk|pk|rk)-[A-Za-z0-9_-]{16,}|\bhf_[A-Za-z0-9]{16,}|\bgh[pousr]_[A-Za-z0-9]{20,}|\bAKIA[A-Z0-9]{16}\b"
     r"|\beyJ[\w-]{10,}\.[\w-]{10,}\.|bearer\s+[\w.~+/-]{12,}|://[^/\s:@]+:[^/\s@]+@|-----BEGIN [A-Z ]*PRIVATE KEY)",
@@ -109,7 +109,7 @@ class Run(_Part):
     """A run. ``trace``: its trace as JSON lines, compressed with zlib, in base64; ``sees``: whether the planner was shown frames;
     ``true_counts``: the true count for each counting call that was looked up, by the index of the call."""
 
-    trace: Annotated[str, Field(max_length=MOST_TRACE)]
+    trace: Annotated[str, Field(max_length=MAX_TRACE_CHARS)]
     sees: bool = False
     true_counts: dict[str, int | None] = {}
 
@@ -145,7 +145,7 @@ LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine
 
 
 class DigestedTask(Protocol):
-    """The attributes of a task that are included in the digest of the tasks."""
+    """The task attributes that the digest of a set of tasks covers."""
 
     @property
     def id(self) -> str: ...
@@ -158,7 +158,7 @@ class DigestedTask(Protocol):
 
 
 def submission_schema() -> dict[str, Any]:
-    """Return the published JSON schema of one line of a submission."""
+    """Return the published JSON schema for one line of a submission."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A line of a submission", **LINE.json_schema()}
 
 
@@ -169,7 +169,7 @@ def tasks_digest(tasks: Iterable[DigestedTask]) -> str:
 
 
 def totals_of(lines: Sequence[TrialLine]) -> Totals:
-    """Count the headlines and the error modes of trial lines."""
+    """Count trial lines by headline and by error mode."""
     modes = Counter(line.error_mode for line in lines if line.error_mode is not None)
     return Totals(trials=len(lines), headlines=dict(Counter(line.headline for line in lines)), error_modes=dict(modes))
 
@@ -181,11 +181,11 @@ def submission_lines(
 
     Args:
         evaluation: The evaluation.
-        runs: The public runs by the names of their samples, for format 2. Without them, the submission has format 1.
+        runs: The published runs by sample name, for format 2. Without them, the submission has format 1.
         places: The viewpoints of the presets, by scene.
 
     Raises:
-        InputError: The evaluation is unfinished.
+        InputError: The evaluation is not finished.
     """
     card = evaluation.card
     if not evaluation.finished or not evaluation.trials:
@@ -218,7 +218,7 @@ def submission_lines(
 
 
 def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> None:
-    """Write the header and the trial lines of a submission to a file.
+    """Write a submission to a file.
 
     Raises:
         OutputError: The file cannot be written.
@@ -226,15 +226,15 @@ def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> N
     header, lines = submission
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        # Files of format 1 are the same as those of version 0.1.0.
+        # Format 1 must be identical to the files written by version 0.1.0.
         omitted = {"evaluated", "places", "run"} if header.format == 1 else set[str]()
         out.write_text("".join(row.model_dump_json(exclude=omitted) + "\n" for row in (header, *lines)), "utf-8")
     except OSError as error:
         raise OutputError(f"The submission {out} cannot be written: {error.strerror}.") from error
 
 
-def without_secrets(text: str) -> str:
-    """Return a text in which everything that looks like a key, a token or an address of a server is replaced."""
+def remove_secrets(text: str) -> str:
+    """Replace everything in a text that looks like a key, a token or a server address."""
     return _ADDRESS.sub("[removed]", _SECRET.sub("[removed]", text))
 
 
@@ -254,7 +254,7 @@ def secrets_in(content: Any, path: str = "") -> Iterator[str]:
 
 
 def trial_line(trial: Trial, run: Run | None = None) -> TrialLine:
-    """Return the published form of a trial, with its run for format 2."""
+    """Return the published form of a trial. ``run`` is its published run, for format 2."""
     answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + CUT
     judgements = tuple(
         JudgeSaid(judge=j.judge, prompt=j.prompt, verdict=j.verdict, error_mode=j.error_mode)
@@ -280,20 +280,20 @@ def _check_results(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
 
 
 def _public_tool_calls(calls: Mapping[str, int]) -> dict[str, int]:
-    """Return the number of calls by tool. Calls to tools that do not exist are counted as "unknown"."""
+    """Return the number of calls to each tool. Calls to tools that do not exist are counted as "unknown"."""
     counts = {name: number for name, number in calls.items() if name in TOOLS}
     unknown = sum(number for name, number in calls.items() if name not in TOOLS)
     return {**counts, UNKNOWN_TOOL: unknown} if unknown else counts
 
 
 def _public_card(model: ModelCard) -> ModelCard:
-    """Return a model card without secrets and addresses."""
+    """Remove secrets and addresses from a model card."""
     provider = "" if "://" in model.provider else model.provider
     return model.model_copy(update={"reported": public_settings(model.reported), "provider": provider})
 
 
 def public_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings without the values that look like a secret or an address."""
+    """Remove values that look like secrets or addresses from settings."""
     return {name: _public_value(value) for name, value in settings.items() if not _is_private(name, value)}
 
 
@@ -301,14 +301,14 @@ def _public_value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return public_settings(value)
     if isinstance(value, list | tuple):
-        return [_public_value(one) for one in value if not _is_private("", one)]
+        return [_public_value(item) for item in value if not _is_private("", item)]
     return value
 
 
 def _is_private(name: str, value: Any) -> bool:
-    """Return whether a value must not be published, because it or its name looks like a secret or an address.
+    """Return whether a value must not be published because the value or its name looks like a secret or an address.
 
-    The parts of a nested value are checked separately.
+    Nested values are checked separately.
     """
     if "://" in name or _SECRET.search(name):
         return True

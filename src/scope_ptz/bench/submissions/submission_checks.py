@@ -1,4 +1,4 @@
-"""Validate a submission. Each line is checked against the schema, the other lines and the tasks."""
+"""Validate submissions: check each line against the schema, the other lines and the tasks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.bench.engine.traces.named_models import card_contradictions, mode
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 from scope_ptz.bench.signatures.provenance import Provenance, provenance_of
 from scope_ptz.bench.submissions.submission import LINE, Evaluated, Header, TrialLine, secrets_in, tasks_digest, totals_of
-from scope_ptz.bench.submissions.submission_traces import copied_traces, runs_in, trace_line_faults
+from scope_ptz.bench.submissions.submission_traces import copied_trace_faults, runs_in, trace_line_faults
 from scope_ptz.bench.submissions.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import EARLIER_VERSIONS, SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
@@ -26,8 +26,8 @@ from scope_ptz.regular_files import check_regular_file
 from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
-"""Maximum size of a submission file in bytes."""
-NO_TRACES = "not verifiable: the file has format 1, which contains no traces, so verdicts and calls are as its author states them"
+"""Maximum size of a submission in bytes."""
+NO_TRACES = "not verifiable: the file has format 1, which contains no traces, so its verdicts and calls are claims of its author"
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 
 
@@ -37,11 +37,11 @@ class SubmissionFindings:
 
     Attributes:
         file: Name of the file.
-        faults: One message for each fault, with its line number.
-        counts: The number of trials, and the numbers of trials by headline.
+        faults: One message per fault, with the line number.
+        counts: The total number of trials, and the number of trials with each headline.
         notes: Remarks that are not faults.
         evaluated: Who ran the evaluation; "hosted" only if a signature proves it.
-        runs: The runs that can be verified, by their calls; empty for format 1.
+        runs: The runs whose calls can be repeated; empty for format 1.
     """
 
     file: str
@@ -73,12 +73,12 @@ class SubmissionFindings:
 def check_submission(
     path: Path, tasks: Sequence[Task] | None = None, trusted: Mapping[bytes, str] | None = None
 ) -> SubmissionFindings:
-    """Validate a submission. For format 2, the checks are executed again on its traces.
+    """Validate a submission. For format 2, the checks are run again on the traces.
 
     Args:
         path: The file.
         tasks: The tasks that it must cover. The default is the published split that its header names.
-        trusted: The public keys of trusted hosts, with their names. By default, no host is trusted.
+        trusted: The names of trusted hosts by public key. By default, no host is trusted.
 
     Raises:
         InputError: The file cannot be read, or its split is unknown and no tasks are given.
@@ -99,18 +99,18 @@ def check_submission(
     faults += _completeness_faults(header, trials, tasks_by_id)
     runs = runs_in(header, trials, tasks_by_id) if header.format == 2 else {}
     faults += _trace_faults(header, lines, runs, tasks_by_id)
-    who = provenance_of(path, trusted or {})
-    faults += who.faults
+    provenance = provenance_of(path, trusted or {})
+    faults += provenance.faults
     totals = totals_of(trials)
     models = (header.card.planner, header.card.perception)
     unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
     notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
     if broken := totals.headlines.get("infrastructure", 0):
         notes.append(f"{broken} of {totals.trials} trials were broken by infrastructure and are excluded from accuracy")
-    notes += _provenance_notes(header, trials, who)
+    notes += _provenance_notes(header, trials, provenance)
     counts = {"trials": totals.trials, **{str(name): number for name, number in totals.headlines.items()}}
     verifiable = tuple(run for run in runs.values() if isinstance(run, RunToVerify))
-    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes), who.evaluated, verifiable)
+    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes), provenance.evaluated, verifiable)
 
 
 def _trace_faults(
@@ -119,7 +119,7 @@ def _trace_faults(
     runs: Mapping[tuple[str, int], RunToVerify | str],
     tasks: Mapping[str, Task],
 ) -> Iterator[str]:
-    """Yield faults of the traces of format 2, and of lines that do not follow from their traces."""
+    """Yield faults in the traces of format 2, and in lines that contradict their traces."""
     for number, line in lines:
         if header.format == 1:
             if line.run is not None:
@@ -127,14 +127,14 @@ def _trace_faults(
         elif line.task in tasks:
             for fault in trace_line_faults(header, line, runs.get((line.task, line.epoch))):
                 yield f"line {number} ({line.task}): {fault}"
-    yield from copied_traces([line for _, line in lines])
+    yield from copied_trace_faults([line for _, line in lines])
     models = [models_of(run.stored_run) for run in runs.values() if isinstance(run, RunToVerify)]
     yield from (f"line 1: {fault}" for fault in card_contradictions(models, header.card))
 
 
-def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: Provenance) -> list[str]:
-    """Return notes on what the file proves: who ran the evaluation, and what cannot be computed again."""
-    notes = list(who.notes)
+def _provenance_notes(header: Header, lines: Sequence[TrialLine], provenance: Provenance) -> list[str]:
+    """Return notes about the limits of the validation: who ran the evaluation, and which verdicts cannot be recomputed."""
+    notes = list(provenance.notes)
     notes += [NO_TRACES] if header.format == 1 else []
     if header.card.isolation is not None:
         notes.append(f"the agent was {header.card.isolation}")
@@ -143,8 +143,8 @@ def _provenance_notes(header: Header, lines: Sequence[TrialLine], who: Provenanc
     return notes
 
 
-def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
-    """Return the reasons why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
+def coverage_faults(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
+    """Return the reasons why trials do not cover a whole split, such as missing, repeated, unknown or reworded tasks.
 
     Args:
         header: The header of the submission.
@@ -187,7 +187,7 @@ def _read_rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[s
 
 
 def _reject_constant(name: str) -> float:
-    """Reject the constants NaN and Infinity, which are not valid JSON."""
+    """Raise ``ValueError`` for NaN and Infinity, which are not valid JSON."""
     raise ValueError(f"{name} is not a number")
 
 
@@ -227,8 +227,8 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[st
         yield f"the package version {header.card.package_version} is not a version number"
     elif version > (_parse_version(__version__) or ()):
         yield (
-            f"made with scope-ptz {header.card.package_version}, which is newer than the installed version ({__version__}); update "
-            "scope-ptz first"
+            f"the submission was written by scope-ptz {header.card.package_version}, which is newer than the installed version "
+            f"({__version__}); update scope-ptz first"
         )
 
 
@@ -247,7 +247,7 @@ def _parse_version(text: str) -> tuple[int, ...] | None:
 
 
 def _completeness_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[str, Task]) -> Iterator[str]:
-    """Yield faults of the set of trials: duplicate, unknown or missing ones."""
+    """Yield a fault for each duplicate, unknown or missing trial."""
     counts = Counter((line.task, line.epoch) for line in lines)
     for task, epoch in sorted(key for key, number in counts.items() if number > 1):
         yield f"{task}, repeat {epoch}, occurs {counts[task, epoch]} times"

@@ -1,4 +1,4 @@
-"""Check that a trial of a submission is consistent with itself and with its task."""
+"""Check that the trials of a submission are internally consistent and match their tasks."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.tools.registry import TOOLS as REGISTRY
 
 SLACK_S = 0.5
-"""Seconds by which a stage may exceed the whole trial, because the clock is read several times."""
+"""Seconds by which a stage may take longer than the whole trial, because the clock is read several times."""
 BROKEN_OUTCOMES = ("camera_error", "cancelled", "planner_error")
-"""Outcomes of runs that infrastructure may have broken. The model itself may also cause a planner error."""
+"""Outcomes that infrastructure failures can cause. A planner error can also be caused by the model itself."""
 PERCEPTION_TOOLS = REGISTRY.perceiving
 """Names of the tools that call perception."""
 MOVING_NEEDS = frozenset({"move", "zoom", "preset"})
-"""Needs of a task for which the camera's viewpoint or pose must change."""
+"""Task needs that require a change of viewpoint or pose."""
 
 
 def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator[str]:
-    """Yield the faults of a trial. ``task`` is None if the trial's task is not in the split."""
+    """Yield the faults in a trial. ``task`` is None if the task is not in the split."""
     if line.epoch > header.card.epochs:
         yield f"this is repeat {line.epoch}, but the header states {header.card.epochs} repeats"
     if line.error_mode is not None and line.headline != "incorrect":
@@ -53,7 +53,7 @@ def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator
 
 
 def _verdict_faults(line: TrialLine) -> Iterator[str]:
-    """Yield a fault if the headline does not follow from the checks or from a judgement."""
+    """Yield a fault if the headline contradicts the checks or the judgements."""
     if line.scored_by == "judge":
         if line.headline in ("correct", "incorrect") and line.headline not in {judgement.verdict for judgement in line.judged}:
             yield f"the trial was scored {line.headline} by a judge, but no judgement has this verdict"
@@ -70,7 +70,7 @@ def _verdict_faults(line: TrialLine) -> Iterator[str]:
 
 
 def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield a fault if parsing the answer again does not give the result of the answer check."""
+    """Yield a fault if parsing the answer again gives another result for the answer check."""
     if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(CUT):
         return
     if "answer" not in line.checks:
@@ -88,7 +88,7 @@ def _result_text(passed: bool | None) -> str:
 
 
 def checks_of(task: Task) -> set[str]:
-    """Return the names of the checks that apply to a task."""
+    """Return the names of the checks that apply to runs of a task."""
     behaviour = task.behaviour
     applies = {
         "outcome": True,
@@ -104,7 +104,7 @@ def checks_of(task: Task) -> set[str]:
 
 
 def _check_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield faults of the checks: missing or superfluous checks, or an outcome check that contradicts the outcome."""
+    """Yield faults in the checks: missing or unexpected checks, or an outcome check that contradicts the outcome."""
     if line.scored_by == "judge":
         yield "the trial was scored by a judge although the task has checks"
     if line.headline == "infrastructure" and line.outcome is None and not line.checks:
@@ -119,10 +119,10 @@ def _check_faults(line: TrialLine, task: Task) -> Iterator[str]:
 
 
 def _infrastructure_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield a fault if a trial has the headline "infrastructure" although infrastructure did not break it.
+    """Yield a fault if a trial has the headline "infrastructure" without an infrastructure failure.
 
-    A run is broken by a failure of a server or the camera, or by an interruption. A run that ended in another way is broken only if
-    every perception call failed and the answer states no value.
+    A server failure, a camera failure or an interruption breaks a run. A run that ended in another way is broken only if every
+    perception call failed and the answer states no value.
     """
     if line.headline != "infrastructure" or line.outcome in (None, *BROKEN_OUTCOMES):
         return
@@ -136,7 +136,7 @@ def _infrastructure_faults(line: TrialLine, task: Task) -> Iterator[str]:
 
 
 def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
-    """Yield faults of the calls, such as a check that passed without the calls that it requires."""
+    """Yield faults in the calls, such as a check that passed without the required calls."""
     total, calls = sum(line.tool_calls.values()), Counter(line.tool_calls)
     if line.outcome is not None and line.outcome not in BROKEN_OUTCOMES and not line.steps:
         yield f"the trial ended {line.outcome} without a step"
@@ -160,9 +160,9 @@ def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
 
 
 def _may_see_frames(card: RunCard) -> bool:
-    """Return whether the planner may be shown frames.
+    """Return whether the planner may have been shown frames.
 
-    This is so if it is also the perception model, if it is a person or an external agent, or if its settings state it.
+    It may if it is also the perception model, if it is a person or an external agent, or if its settings state so.
     """
     settings = card.sampling.get("planner")
     sees = settings.get("sees") if isinstance(settings, dict) else None

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler
 Wording = Annotated[str, Field(min_length=1, pattern=r"\w")]
 Wordings = tuple[Wording, ...]
 Options = Annotated[dict[Wording, Wordings], Field(min_length=1)]
-"""Maps the name of each option to its other wordings. The name is itself a wording."""
+"""The other wordings of each option, by the option's name. The name is also a wording."""
 
 
 class _Expected(BaseModel):

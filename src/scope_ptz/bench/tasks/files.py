@@ -1,4 +1,4 @@
-"""Read and write task files: JSONL with one task per line, or a YAML list."""
+"""Read and write task files: JSONL files with one task per line, or YAML lists."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_ptz.regular_files import check_regular_file
 
 
 def digest_of(tasks: Iterable[Task]) -> str:
-    """Return the SHA-256 of the tasks' JSON."""
+    """Return the SHA-256 digest of tasks in JSON form."""
     return hashlib.sha256("\n".join(task.model_dump_json() for task in tasks).encode()).hexdigest()
 
 
@@ -56,6 +56,6 @@ def _parse_task(row: Any, path: Path, number: int) -> Task:
 
 
 def dump_tasks(tasks: Iterable[Task], path: Path) -> None:
-    """Write tasks as JSONL. Default values are left out, except the canary."""
+    """Write tasks to a JSONL file. Default values are omitted, except for the canary."""
     rows = ({**task.model_dump(mode="json", exclude_defaults=True), "canary": task.canary} for task in tasks)
     path.write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows), "utf-8")

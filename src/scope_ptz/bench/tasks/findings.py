@@ -1,4 +1,4 @@
-"""Findings about the rows of imported files: reasons why a row cannot be run, and doubts about its content."""
+"""Findings about rows in imported files: reasons why a row cannot be run, and doubts about its content."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ FindingKind = Literal[
 BLOCKING: frozenset[FindingKind] = frozenset(
     {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
 )
-"""The kinds of findings that prevent a row from being run."""
+"""Kinds of findings that prevent a row from being run."""
 
-MEANINGS: dict[FindingKind, str] = {
+FINDING_DESCRIPTIONS: dict[FindingKind, str] = {
     "empty-question": "the question is empty",
     "nothing-expected": "the row expects neither an answer nor a tool call, so a run cannot be judged",
     "unknown-category": "the category is not one of the eight categories",
@@ -57,11 +57,11 @@ MEANINGS: dict[FindingKind, str] = {
     "ragged-row": "the row has more or fewer cells than the header",
     "id-repeated": "another row has the same id",
 }
-"""The meaning of each kind of finding, as reports state it."""
+"""Descriptions of the kinds of findings, for reports."""
 
 
 class RowFinding(BaseModel):
-    """A finding about one row. ``detail`` names the cells, values or lines that it concerns."""
+    """A finding about a row. ``detail`` names the cells, values or lines concerned."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

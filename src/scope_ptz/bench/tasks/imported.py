@@ -1,4 +1,4 @@
-"""Imported tasks, and the JSONL files that store them, one task per line."""
+"""Imported tasks, and the JSONL files that store them with one task per line."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ expected call was made; "none": the calls are not checked.
 
 
 class ImportedTask(BaseModel):
-    """A task imported from a file of another format. A judge scores its answer; its expected calls are an executable check.
+    """A task imported from a file in another format. A judge scores its answer, and a check compares its expected calls.
 
     Attributes:
         imported: Version of this format.
-        facts: The facts about the task.
+        facts: The task's properties, as judges and reports use them.
         line: Line number in the source file.
-        raw: The cells of the source file, unchanged.
+        raw: The unchanged cells of the row in the source file.
         calls: The expected calls.
         policy: How the expected calls are checked.
-        order: Whether the calls must be made in the given order ("ordered") or in any order.
+        order: Whether the calls must be made in the given order ("ordered") or may be made in any order ("any").
         start_s: Scene time at the start, in seconds.
-        findings: Problems that the import found in the source row.
+        findings: Problems found in the source row.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -52,7 +52,7 @@ class ImportedTask(BaseModel):
 
 
 def is_imported_file(path: Path) -> bool:
-    """Return whether the first line of a file is an imported task."""
+    """Return whether a file contains imported tasks, judging by its first line."""
     try:
         check_regular_file(path)
         with path.open(encoding="utf-8") as file:
@@ -63,17 +63,17 @@ def is_imported_file(path: Path) -> bool:
 
 
 def load_imported(path: Path) -> tuple[ImportedTask, ...]:
-    """Load the imported tasks of a file.
+    """Load imported tasks from a file.
 
     Raises:
-        InputError: The file cannot be read or a task is invalid. The message names the line.
+        InputError: The file cannot be read, or a task is invalid. The message states the line number.
     """
     try:
         lines = path.read_text("utf-8").split("\n")  # JSON strings may contain other line separators.
     except OSError as error:
         raise InputError(f"The task file {path} cannot be read: {error.strerror}.") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path} contains no imported tasks: it is not UTF-8 text.") from error
+        raise InputError(f"{path} is not a file of imported tasks, because it is not UTF-8 text.") from error
     tasks = list[ImportedTask]()
     for number, line in enumerate(lines, 1):
         if not line.strip():

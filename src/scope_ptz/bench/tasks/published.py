@@ -1,6 +1,6 @@
-"""The published tasks by their ids, and the viewpoints of the presets of the scenes in the package.
+"""Look up published tasks by id, and the viewpoints of presets in packaged scenes.
 
-Logs and submissions contain copies of their tasks. Scores use the published task instead, so a modified copy has no effect.
+Logs and submissions contain copies of their tasks. Scoring uses the published tasks instead, so modified copies have no effect.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.simulator.pack import load_scene
 
 PUBLISHED_SPLITS = ("core", "paraphrase", "reaction", "unseen")
-"""The splits that together contain each published task exactly once."""
+"""The splits that together contain every published task exactly once."""
 
 
 @lru_cache(maxsize=1)
 def published_tasks() -> Mapping[str, Task]:
-    """Return the tasks of every published split that is installed, by id."""
+    """Return the tasks of all installed published splits, by id."""
     tasks: dict[str, Task] = {}
     for split in PUBLISHED_SPLITS:
         try:
@@ -39,13 +39,13 @@ def published_digest(task_id: str) -> str | None:
 
 @lru_cache(maxsize=256)
 def preset_viewpoints(world: str) -> tuple[Mapping[str, str], str] | None:
-    """Return the viewpoint of each preset by its name, and the viewpoint of the home preset.
+    """Return the viewpoints of a scene's presets by name, and the viewpoint of the home preset.
 
     Args:
-        world: Name of a scene, or of a variation of a scene, which has its own presets.
+        world: Name of a scene or of a scene variation. A variation has its own presets.
 
     Returns:
-        None if the package does not contain the scene.
+        The viewpoints, or None if the package does not contain the scene.
     """
     try:
         file = load_scene(world).file

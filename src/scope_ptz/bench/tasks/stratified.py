@@ -1,4 +1,4 @@
-"""Samples of tasks that preserve the shares of categories and scenes, and that are balanced over answers."""
+"""Sample tasks so that the shares of categories and scenes are preserved and the answers are balanced."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from scope_ptz.bench.tasks.expected import (
 from scope_ptz.bench.tasks.task import Task
 
 ABSENT = "no"
-"""Key of the answers "no" and "there is none", which the same text gives."""
+"""Key for the answers "no" and "there is none", which share a key because the same text can express both."""
 
 
 @dataclass(frozen=True, slots=True)
 class SampledTask:
-    """What a balanced sample considers of a task.
+    """The properties of a task that balanced sampling uses.
 
     Attributes:
         id: The task's id.
-        group: Its category and other fields whose shares the sample preserves, such as the scene.
-        answer: Key of its answer; empty if no other task could share the answer.
-        twin: Id of the other task of its contrast pair; None without one.
+        group: The task's category and other fields whose shares the sample preserves, such as the scene.
+        answer: Key of the task's answer; empty if no other task can have the same answer.
+        twin: Id of the other task in the contrast pair; None for an unpaired task.
     """
 
     id: str
@@ -42,19 +42,19 @@ class SampledTask:
 
 
 _Unit = tuple[SampledTask, ...]
-"""A pair, or a task without a twin."""
+"""A contrast pair or an unpaired task. A sample usually contains it as a whole."""
 _Margin = tuple[str, str]
 
 
 class _Group(NamedTuple):
-    """The tasks with the same fields that have a twin, or those that have none."""
+    """A group of tasks with equal fields, which are either all paired or all unpaired."""
 
     fields: tuple[str, ...]
     paired: bool
 
 
 def answer_key(expected: AnyExpected) -> str:
-    """Return a key that answers share if the same constant text could give them; empty for texts, orders and actions."""
+    """Return a key that is equal for answers that the same text can express. It is empty for texts, orders and actions."""
     match expected:
         case ActionOnly():
             return ""
@@ -71,18 +71,20 @@ def answer_key(expected: AnyExpected) -> str:
 
 
 def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[str], str] = str) -> frozenset[str]:
-    """Return the ids of a sample that is balanced over answers.
+    """Return the ids of a sample that is balanced across answers.
 
-    The tasks of a contrast pair are taken together, so that a sample contains as many absences as presences of paired things. One
-    pair may be halved if only one place is left and no unpaired task fits. Paired tasks have the same share of the sample as of all
-    tasks. Each step takes from the group that is least
-    represented in the sample so far, relative to the numbers of tasks with each of its fields and to the number of paired or
-    unpaired tasks of its category. Within a group, the task is taken whose answer the sample contains least often.
+    The two tasks of a contrast pair are selected together, so that presences and absences of paired things are equally frequent.
+    A pair may be split if only one more task is needed and no unpaired task remains. The fraction of paired tasks in the sample is
+    the same as in all tasks.
+
+    Each step selects from the group that is least represented in the sample so far, relative to the number of tasks with each of
+    its fields and to the number of paired or unpaired tasks in its category. Within a group, it selects the task whose answer
+    occurs least often in the sample.
 
     Args:
         tasks: The tasks to sample from.
         number: Size of the sample.
-        order: Returns the key by which ties between tasks are broken. The result does not depend on the order of ``tasks``.
+        order: Function that returns the key for breaking ties between tasks. The order of ``tasks`` does not affect the result.
     """
     number = min(number, len(tasks))
     groups: dict[_Group, list[_Unit]] = {}
@@ -102,7 +104,7 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
             fitting or remaining,
             key=lambda g: (sum(Fraction(taken[m], totals[m]) for m in _margins(g)), -len(groups[g]), g),
         )
-        unit = min(groups[least], key=lambda u: _repetition(u, answers))
+        unit = min(groups[least], key=lambda u: _repetition_count(u, answers))
         groups[least].remove(unit)
         quotas[least.paired] -= len(unit)
         for task in unit[:free]:
@@ -113,7 +115,7 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
 
 
 def _units(tasks: Sequence[SampledTask]) -> list[_Unit]:
-    """Return the pairs and the unpaired tasks. A task whose twin is not among the tasks is unpaired."""
+    """Group tasks into pairs and unpaired tasks. A task whose twin is missing counts as unpaired."""
     by_id = {task.id: task for task in tasks}
     units, seen = list[_Unit](), set[str]()
     for task in tasks:
@@ -131,46 +133,46 @@ def _group_of(unit: _Unit) -> _Group:
 
 
 def _margins(group: _Group) -> list[_Margin]:
-    """Return the keys under which a task of a group is counted: each of its fields, and whether it has a twin."""
+    """Return the keys for counting the tasks in a group: one for each field, and one for whether they are paired."""
     paired = "paired" if group.paired else "unpaired"
     return [*((str(field), name) for field, name in enumerate(group.fields)), (paired, group.fields[0])]
 
 
-def _repetition(unit: _Unit, answers: Counter[str]) -> int:
-    """Return how often the sample already contains the answers of a unit. The absence of a pair does not count."""
+def _repetition_count(unit: _Unit, answers: Counter[str]) -> int:
+    """Return how often the sample already contains the answers of a unit. The absence in a pair is not counted."""
     keys = [task.answer for task in unit if task.answer and not (len(unit) > 1 and task.answer == ABSENT)]
     return max((answers[key] for key in keys), default=0)
 
 
 def sampled_task(task: Task, *fields: str) -> SampledTask:
-    """Return what a balanced sample considers of a task. ``fields`` are the names of the fields whose shares it preserves."""
+    """Return the properties of a task for balanced sampling. ``fields`` are the fields whose shares the sample preserves."""
     return SampledTask(task.id, tuple(str(getattr(task, name)) for name in fields), answer_key(task.expected), task.pair)
 
 
 def lite_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
-    """Return a balanced sample over categories, scenes, difficulties and answers. The seed breaks ties.
+    """Return a sample that is balanced across categories, scenes, difficulties and answers. The seed breaks ties.
 
     Returns:
         The sample in the original order.
     """
 
-    def shuffled(name: str) -> str:
+    def random_key(name: str) -> str:
         return hashlib.sha256(f"{seed}:{name}".encode()).hexdigest()
 
-    chosen = balanced_sample([sampled_task(task, "category", "scene", "difficulty") for task in tasks], number, shuffled)
+    chosen = balanced_sample([sampled_task(task, "category", "scene", "difficulty") for task in tasks], number, random_key)
     return tuple(task for task in tasks if task.id in chosen)
 
 
 def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
     """Return a sample that approximately preserves the fractions of categories, scenes, difficulties and their combinations.
 
-    Tasks are taken one by one from the most underrepresented group. Within a group the choice depends only on the seed and the
-    task ids. Answers are not balanced.
+    Tasks are selected one by one from the most underrepresented group. Within a group, the selection depends only on the seed and
+    the task ids. Answers are not balanced.
 
     Args:
         tasks: The tasks to sample from.
         number: Size of the sample.
-        seed: Seed for the choice within a group.
+        seed: Seed for the selection within a group.
 
     Returns:
         The sample in the original order.
@@ -193,5 +195,5 @@ def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Ta
 
 
 def _group_margins(group: tuple[str, ...]) -> list[tuple[str, ...]]:
-    """Return the keys under which a task of a group is counted: the whole group, and each of its three parts."""
+    """Return the keys for counting the tasks in a group: the whole group, and each of its three fields."""
     return [group, *(("any", part) for part in group)]

@@ -1,7 +1,7 @@
-"""The schema of benchmark tasks: the instruction, the expected answer and behaviour, and the evidence for them.
+"""The schema of benchmark tasks: the instruction, the expected answer and behaviour, and the evidence.
 
-Angles are degrees in the camera's frame (pan positive = right, tilt positive = up), zoom is magnification. The docstrings of these
-models are part of the published JSON schema of tasks and change only with its version.
+Angles are in degrees in the camera's frame (positive pan is right, positive tilt is up), and zoom is magnification. The
+docstrings of these models are part of the published JSON schema of tasks and change only with its version.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scope_ptz.tools.registry import TOOLS
 CANARY: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = (
     "SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"
 )
-"""Every task contains this string, so that training corpora that contain tasks can be detected."""
+"""Marker in every task, which makes it possible to detect training corpora that contain tasks."""
 
 Category = Literal[
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative"

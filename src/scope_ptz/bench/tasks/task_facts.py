@@ -1,4 +1,4 @@
-"""The facts about a task that judges are given and that reports use to group runs."""
+"""The properties of a task that judges and reports use."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from scope_ptz.bench.tasks.task import Category, Scope, Stratum
 
 
 class TaskFacts(BaseModel):
-    """The facts about a task that judges are given and by which reports group runs.
+    """The properties of a task that judges receive and by which reports group runs.
 
     Attributes:
         id: The task's id.
         dataset: The dataset's version.
-        stratum: Part of the dataset; "imported" for an imported task, whose answer has no executable check.
+        stratum: Part of the dataset that contains the task; "imported" for imported tasks, whose answers have no executable check.
         scene: The scene.
-        viewpoint: The viewpoint where the run starts.
-        preset: The preset where the run starts.
+        viewpoint: The viewpoint at which runs start.
+        preset: The preset at which runs start.
         instruction: The instruction to the agent.
         category: The task's category.
         scope: Whether the task is about the current view or the full scene.
         difficulty: The task's difficulty.
         expected: The expected answer in words.
-        demands: Requirements on the run that follow from the instruction, in sentences for a judge.
+        demands: The requirements that follow from the instruction, as sentences for a judge.
         needs: Kinds of camera actions that the task requires.
-        pair: Id of a task with similar wording. In one of the two tasks the thing in question is present, in the other it is
-            absent.
+        pair: Id of the other task in a contrast pair. The two tasks have similar wording, but the thing in question is present in
+            one and absent in the other.
         paraphrase_of: Id of the task that this task paraphrases.
     """
 

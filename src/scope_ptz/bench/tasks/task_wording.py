@@ -1,4 +1,4 @@
-"""Describe tasks in words for judges and people: the expected answer and the required behaviour.
+"""Describe the expected answer and the required behaviour of tasks in words, for judges and people.
 
 These sentences are part of judge prompts, so changing them may change verdicts.
 """
@@ -28,7 +28,7 @@ _OUTCOMES = {"answered": "with an answer", "clarification": "with a question bac
 
 
 def facts_of(task: Task, viewpoint: str) -> TaskFacts:
-    """Return the facts about a task. ``viewpoint`` is the viewpoint of its preset."""
+    """Return the properties of a task for judges and reports. ``viewpoint`` is the viewpoint of the task's preset."""
     return TaskFacts(
         id=task.id,
         dataset=task.dataset,
@@ -49,7 +49,7 @@ def facts_of(task: Task, viewpoint: str) -> TaskFacts:
 
 
 def expected_in_words(expected: AnyExpected) -> str:
-    """Return the expected answer in a sentence or two, with the other accepted wordings."""
+    """Describe an expected answer in a sentence or two, including other accepted wordings."""
     match expected:
         case Number():
             unit = f" ({expected.unit[0]})" if expected.unit else ""
@@ -57,14 +57,14 @@ def expected_in_words(expected: AnyExpected) -> str:
             return f"{expected.value:g}{unit}{give}"
         case YesNo():
             wordings = expected.affirms if expected.value else expected.denies
-            return f"{'Yes' if expected.value else 'No'}{_also(wordings)}"
+            return f"{'Yes' if expected.value else 'No'}{_alternatives(wordings)}"
         case Choice():
             others = [name for name in expected.options if name != expected.value]
             wrong = f" (not {', '.join(others)})" if others else ""
-            return f"{expected.value}{_also(expected.options[expected.value])}{wrong}"
+            return f"{expected.value}{_alternatives(expected.options[expected.value])}{wrong}"
         case Text():
             lenient = "; look-alike letters and digits (0/O, 1/I, 5/S, 8/B) count as the same" if expected.ocr else ""
-            return f"the text {_or(expected.accepted)}{lenient}"
+            return f"the text {_join_with_or(expected.accepted)}{lenient}"
         case NameSet():
             return "all of these and nothing else, in any order: " + ", ".join(expected.value) if expected.value else "none of them"
         case Ordering():
@@ -72,19 +72,19 @@ def expected_in_words(expected: AnyExpected) -> str:
         case Relation():
             return _relation(expected)
         case Description():
-            stated = "; ".join(_or(fact.any_of) for fact in expected.facts)
+            stated = "; ".join(_join_with_or(fact.any_of) for fact in expected.facts)
             return f"a description that states all of: {stated}{_contradictions(expected.contradictions)}"
         case NoneThere():
-            return f"that there is none (no {_or(expected.subject)})"
+            return f"that there is none (no {_join_with_or(expected.subject)})"
         case ActionOnly():
             return "no answer is wanted; what the camera did decides"
 
 
 def demands(task: Task) -> Iterator[str]:
-    """Yield the requirements on a run, one sentence each. They contain only requirements that follow from the instruction."""
+    """Yield the requirements on runs of a task that follow from the instruction, one sentence each."""
     behaviour = task.behaviour
     if behaviour.outcomes != ("answered",):
-        yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
+        yield f"The run must end {_join_with_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
     if behaviour.calls:
         order = "in this order" if behaviour.order == "ordered" and len(behaviour.calls) > 1 else "in any order"
         calls = "; ".join(call_in_words(call) for call in behaviour.calls)
@@ -116,7 +116,7 @@ def _evidence_view(view: EvidenceView) -> str:
 
 
 def call_in_words(call: RequiredCall) -> str:
-    """Return a required call as text, with the accepted values of its arguments."""
+    """Format a required call as text, with the accepted values of its arguments."""
     arguments = ", ".join(f"{name}={_argument(spec)}" for name, spec in call.arguments.items())
     times = f" {call.times} times" if call.times > 1 else ""
     return f"{call.tool}({arguments}){times}"
@@ -124,26 +124,27 @@ def call_in_words(call: RequiredCall) -> str:
 
 def _argument(spec: Argument) -> str:
     if spec.mentions:
-        return f"<about {_or(spec.mentions)}>"
+        return f"<about {_join_with_or(spec.mentions)}>"
     shown = f"{spec.equals:g}" if isinstance(spec.equals, float) else str(spec.equals)
     return f"{shown}±{spec.within:g}" if spec.within else shown
 
 
 def _relation(expected: Relation) -> str:
-    one, two = expected.subject[0], expected.object[0]
+    subject, compared = expected.subject[0], expected.object[0]
     if expected.value == "same":
-        return f"{one} and {two} are the same in this"
+        return f"{subject} and {compared} are the same in this"
     words = expected.forward if expected.value == "forward" else expected.backward
-    return f"{one}, compared with {two}: {_or(words) if words else 'the other way round than ' + expected.forward[0]}"
+    relation = _join_with_or(words) if words else f"the other way round than {expected.forward[0]}"
+    return f"{subject}, compared with {compared}: {relation}"
 
 
 def _contradictions(contradictions: Sequence[Fact]) -> str:
     return f"; it must not state any of: {', '.join(fact.any_of[0] for fact in contradictions)}" if contradictions else ""
 
 
-def _also(words: Sequence[str]) -> str:
+def _alternatives(words: Sequence[str]) -> str:
     return f" (or: {', '.join(words)})" if words else ""
 
 
-def _or(words: Sequence[str], marks: str = '"') -> str:
+def _join_with_or(words: Sequence[str], marks: str = '"') -> str:
     return " or ".join(f"{marks}{word}{marks}" for word in words)

@@ -1,4 +1,4 @@
-"""An AXIS camera."""
+"""The driver for AXIS cameras."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from scope_ptz.camera.base import Arrival, CameraInfo, PresetInfo
 from scope_ptz.camera.capabilities import Capabilities
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState
 from scope_ptz.camera.network.camera import Command, NetworkCamera
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.network.stop_process import StopProcess
 from scope_ptz.errors import CameraError, UnknownNameError
 from scope_ptz.geometry import Axis, Pose, wrap_pan_deg
@@ -36,10 +36,10 @@ class AxisCamera(NetworkCamera):
         client: The connection to the device.
         device: The device's properties and capabilities.
         pictures: The source of its pictures.
-        settling: The criteria for when the camera counts as settled.
+        settling: The criteria for deciding that the camera has settled.
     """
 
-    def __init__(self, client: VapixClient, device: AxisDevice, pictures: AxisPictures, settling: Settling) -> None:
+    def __init__(self, client: VapixClient, device: AxisDevice, pictures: AxisPictures, settling: SettlingCriteria) -> None:
         name = f"{device.model or 'AXIS camera'} at {client.address}"
         info = CameraInfo(
             name, device.limits, device.optics, pictures.width, pictures.height, simulated=False,
@@ -65,27 +65,27 @@ class AxisCamera(NetworkCamera):
         latency_s: float = 0.1,
         fields_deg: tuple[float, float] | None = None,
         measured_fields: tuple[tuple[float, float], ...] | None = None,
-        settling: Settling | None = None,
+        settling: SettlingCriteria | None = None,
     ) -> AxisCamera:
-        """Connect to a camera and read its capabilities. ``http`` is closed with the camera, or if opening fails.
+        """Connect to a camera and read its capabilities. Closing the camera closes ``http``, and so does a failure to open it.
 
         Args:
             http: The HTTP connection to the device.
-            credentials: The account for the RTSP stream.
+            credentials: The credentials for the RTSP stream.
             channel: The video channel.
             width: Width of a frame in pixels.
             height: Height of a frame in pixels.
             stream: The transport of ``frames``.
             rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
-            fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom; None for those that the device
-                reports.
+            fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom; None to use the values that the
+                device reports.
             measured_fields: Measured rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
                 They take precedence over the device's values, and ``fields_deg`` takes precedence over them.
-            settling: The criteria for when the camera counts as settled.
+            settling: The criteria for deciding that the camera has settled.
 
         Raises:
-            CameraError: The camera cannot be reached, refuses the account, or is not an AXIS camera.
+            CameraError: The camera cannot be reached, rejects the credentials, or is not an AXIS camera.
         """
         client = VapixClient(http, channel)
         try:
@@ -96,7 +96,7 @@ class AxisCamera(NetworkCamera):
             pictures = AxisPictures(
                 client, credentials, width, height, sizes=device.sizes, stream=stream, rtsp_port=rtsp_port, latency_s=latency_s
             )
-            return cls(client, device, pictures, settling or Settling())
+            return cls(client, device, pictures, settling or SettlingCriteria())
         except BaseException:
             with anyio.CancelScope(shield=True):
                 await http.close()
@@ -109,26 +109,26 @@ class AxisCamera(NetworkCamera):
         return Pose(pan_deg, position.tilt_deg, zoom)
 
     async def presets(self) -> list[PresetInfo]:
-        # Two presets with the same name differ only in their numbers, and only the first can be reached by name.
+        # Presets may share a name and differ only in number. Only the first of them can be reached by name.
         return [PresetInfo(name) for name in dict.fromkeys((await self._client.presets()).values())]
 
     async def go_to_preset(self, name: str) -> Arrival:
-        await self._find_preset(name)
+        await self._require_preset(name)
         try:
             return await self._go(partial(self._client.command, requests.go_to_preset(self._client.channel, name)))
         except VapixError:
-            await self._find_preset(name)  # it may have been removed in the meantime
+            await self._require_preset(name)  # it may have been removed in the meantime
             raise
 
     async def save_preset(self, name: str, description: str = "") -> PresetInfo:  # noqa: ARG002 - devices keep names only
         request = requests.save_preset(self._client.channel, name)
         await self._client.command(request)
         if name not in (await self._client.presets()).values():
-            raise CameraError(f"{self._info.name} did not save the preset. Its account may lack administrator rights.")
+            raise CameraError(f"{self._info.name} did not save the preset. The account may lack administrator rights.")
         return PresetInfo(name)
 
     async def remove_preset(self, name: str) -> None:
-        await self._find_preset(name)
+        await self._require_preset(name)
         await self._client.command(requests.remove_preset(self._client.channel, name))
 
     async def lens(self) -> LensState:
@@ -146,11 +146,11 @@ class AxisCamera(NetworkCamera):
         zoom_units = self._device.zoom.to_units(pose.zoom)
         await self._client.command(requests.absolute(self._client.channel, pose.pan_deg, pose.tilt_deg, zoom_units))
 
-    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
+    def _centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Command | None:
         if "AreaZoom" not in self._device.supported:
             return None
         optics = self._info.optics
-        percent = round(100 * optics.focal(target.zoom) / optics.focal(here.zoom))
+        percent = round(100 * optics.focal(target.zoom) / optics.focal(current.zoom))
         size = self._info.frame_width, self._info.frame_height
         return partial(self._client.command, requests.centre(self._client.channel, x, y, percent, size))
 
@@ -188,32 +188,32 @@ class AxisCamera(NetworkCamera):
         try:
             await self._client.drop_control()
         except CameraError:
-            pass  # the connection is gone, and the control queue drops a client that sends nothing
+            pass  # the connection is lost, and the control queue drops clients that stop sending requests
         finally:
             await self._client.http.close()
 
-    async def _explain_miss(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
+    async def _axes_at_limits(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
         reported = parse_limits((await self._client.send(requests.query(self._client.channel, "limits"))).body)
-        scale, tolerance = self._device.zoom, self._settling
+        scale, settling = self._device.zoom, self._settling
         bounds: dict[Axis, tuple[float, float, float, float]] = {
             "pan": (reached.pan_deg, target.pan_deg, reported.min_pan_deg, reported.max_pan_deg),
             "tilt": (reached.tilt_deg, target.tilt_deg, reported.min_tilt_deg, reported.max_tilt_deg),
             "zoom": (reached.zoom, target.zoom, scale.to_zoom(reported.min_zoom_units), scale.to_zoom(reported.max_zoom_units)),
         }
-        stopped: list[Axis] = []
+        axes_at_limits: list[Axis] = []
         for axis, (at, requested, low, high) in bounds.items():
-            allowed = tolerance.zoom_tolerance * requested if axis == "zoom" else tolerance.angle_tolerance_deg
+            allowed = settling.zoom_tolerance * requested if axis == "zoom" else settling.angle_tolerance_deg
             off = abs(wrap_pan_deg(at - requested)) if axis == "pan" else abs(at - requested)
             if off <= allowed:
                 continue
             at_limit = (requested > high and abs(at - high) <= allowed) or (requested < low and abs(at - low) <= allowed)
             if not at_limit:
-                reason = f"The {axis} motor may be blocked, or somebody else moved the camera."
+                reason = f"The {axis} motor may be blocked, or someone else may have moved the camera."
                 raise self._not_reached(reached, target, reason)
-            stopped.append(axis)
-        return tuple(stopped)
+            axes_at_limits.append(axis)
+        return tuple(axes_at_limits)
 
-    async def _find_preset(self, name: str) -> None:
+    async def _require_preset(self, name: str) -> None:
         known = (await self._client.presets()).values()
         if name not in known:
             raise UnknownNameError("preset", name, known)
@@ -224,7 +224,7 @@ class AxisCamera(NetworkCamera):
 
 
 def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
-    """Stop all motion of a device, over a separate connection. The call blocks.
+    """Stop all motion of a device over a separate connection, without asyncio.
 
     Args:
         http: The HTTP connection to the device.
@@ -239,7 +239,7 @@ def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
 def _zoom_speed(rate: float, capabilities: Capabilities) -> int:
     """Return the VAPIX zoom speed, from -100 to 100, for a rate in octaves per second.
 
-    VAPIX does not report how fast a zoom speed is, so 100 is taken as the assumed top rate.
+    VAPIX does not report physical zoom speeds, so a VAPIX speed of 100 is assumed to be the camera's top zoom rate.
     """
     top = capabilities.top_speed.zoom_rate
     if not rate or not top:

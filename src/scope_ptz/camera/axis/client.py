@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp, DeviceReply
 
 NOT_IMPLEMENTED_STATUSES = (404, 405, 501)
-"""HTTP status codes that mean that the device lacks the requested interface."""
+"""HTTP status codes that indicate that the device lacks the requested interface."""
 
 
 class DeviceControlHeldError(ControlHeldError):
@@ -26,7 +26,7 @@ class DeviceControlHeldError(ControlHeldError):
 
     def __init__(self, camera: str, place: QueuePlace) -> None:
         wait = f"about {place.seconds} s" if place.seconds >= 0 else "an unknown time"
-        # VAPIX reports the place in the queue, but no names.
+        # VAPIX reports a position in the queue, but not the names of the clients.
         CameraError.__init__(
             self,
             f"{camera} is controlled by another client in its control queue (this client would be number {place.place}, "
@@ -61,7 +61,7 @@ class VapixClient:
         """
         reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_IMPLEMENTED_STATUSES)
         if reply.status in NOT_IMPLEMENTED_STATUSES:
-            raise CameraReplyError(f"The camera at {self.address} has no {request.path}. Check its model and firmware.")
+            raise CameraReplyError(f"The camera at {self.address} does not support {request.path}. Check its model and firmware.")
         return reply
 
     async def command(self, request: VapixRequest) -> None:
@@ -79,26 +79,26 @@ class VapixClient:
         return parse_position((await self.send(requests.query(self.channel, "position"))).body)
 
     async def presets(self) -> dict[int, str]:
-        """Read the names of the presets, by preset number."""
+        """Read the preset names, keyed by preset number."""
         return parse_presets((await self.send(requests.query(self.channel, "presetposcam"))).body)
 
     async def take_control(self) -> None:
         """Take or renew control if the device's control queue is on.
 
         Raises:
-            ControlHeldError: Another client has control. This client leaves the queue.
+            ControlHeldError: Another client has control. This client has left the queue.
         """
         if not self.control_queue_on or monotonic() < self._control_until_s:
             return
         try:
             place = parse_queue((await self.send(requests.control_queue(self.channel, "request"))).body)
         except VapixError as error:
-            raise CameraError(f"The control queue of the camera at {self.address} did not assign a place. {error}") from None
+            raise CameraError(f"The control queue of the camera at {self.address} did not assign a position. {error}") from None
         if place.place != 1:
             await self.drop_control()
             raise DeviceControlHeldError(f"The camera at {self.address}", place)
-        left_s = place.poll_s if place.seconds < 0 else min(place.poll_s, place.seconds)
-        self._control_until_s = monotonic() + left_s / 2
+        remaining_s = place.poll_s if place.seconds < 0 else min(place.poll_s, place.seconds)
+        self._control_until_s = monotonic() + remaining_s / 2
 
     async def drop_control(self) -> None:
         """Release control, or leave the queue."""
@@ -110,4 +110,4 @@ class VapixClient:
         except CameraSignInError:
             raise
         except CameraError:
-            return  # the queue drops a client that sends nothing
+            return  # the queue drops clients that stop sending requests

@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from scope_ptz.camera.capabilities import Capabilities
 
 RANGE_UNITS = 9998
-"""Size of the ranges of focus and iris, whose positions go from 1 to 9999."""
+"""Number of steps in the focus and iris ranges, from position 1 to 9999."""
 
 
 def focus_actions(supported: frozenset[str]) -> tuple[FocusAction, ...]:
-    """Return the focus actions of a device, given the names of its true ``PTZ.Support`` parameters."""
+    """Return the focus actions of a device, given the names of the ``PTZ.Support`` parameters that are true."""
     automatic: tuple[FocusAction, ...] = ("auto", "manual", "once") if "AutoFocus" in supported else ()
     steps: tuple[FocusAction, ...] = ("near", "far") if "RelativeFocus" in supported else ()
     return automatic + steps
 
 
 def iris_actions(supported: frozenset[str]) -> tuple[IrisAction, ...]:
-    """Return the iris actions of a device, given the names of its true ``PTZ.Support`` parameters."""
+    """Return the iris actions of a device, given the names of the ``PTZ.Support`` parameters that are true."""
     automatic: tuple[IrisAction, ...] = ("auto", "manual") if "AutoIris" in supported else ()
     steps: tuple[IrisAction, ...] = ("open", "close") if "RelativeIris" in supported else ()
     return automatic + steps
@@ -38,19 +38,19 @@ class AxisLens:
         name: The camera's name, for error messages.
         client: The connection.
         capabilities: The device's capabilities.
-        poll_s: Interval, in seconds, at which the focus is read while it moves.
+        poll_s: Interval in seconds between readings of the focus while it is moving.
     """
 
     def __init__(self, name: str, client: VapixClient, capabilities: Capabilities, poll_s: float) -> None:
         self._name, self._client, self._capabilities, self._poll_s = name, client, capabilities, poll_s
 
     async def state(self) -> LensState:
-        """Read the state of focus and iris."""
+        """Read the state of the focus and iris."""
         position = await self._client.position()
         return LensState(position.autofocus, _fraction(position.focus_units), position.autoiris, _fraction(position.iris_units))
 
     async def set_focus(self, action: FocusAction, step: float = DEFAULT_STEP) -> LensState:
-        """Set the focus and return when it has settled. A step turns autofocus off first, because autofocus would undo the step.
+        """Set the focus and return when it has settled. A step first turns autofocus off, because autofocus would undo the step.
 
         Raises:
             InputError: The action or the step is invalid.
@@ -63,7 +63,7 @@ class AxisLens:
         elif "manual" in offered:
             await self._send(requests.autofocus(channel, on=False))
         if action in ("near", "far"):
-            await self._send(requests.relative_focus(channel, _steps(step) * (1 if action == "far" else -1)))
+            await self._send(requests.relative_focus(channel, _step_units(step) * (1 if action == "far" else -1)))
         state = await wait_until_focused(self.state, self._poll_s)
         if action == "once":
             await self._send(requests.autofocus(channel, on=False))
@@ -71,7 +71,7 @@ class AxisLens:
         return state
 
     async def set_iris(self, action: IrisAction, step: float = DEFAULT_STEP) -> LensState:
-        """Set the iris. A step turns the automatic iris off first.
+        """Set the iris. A step first turns the automatic iris off.
 
         Raises:
             InputError: The action or the step is invalid.
@@ -82,14 +82,14 @@ class AxisLens:
         if "auto" in offered:
             await self._send(requests.autoiris(channel, on=action == "auto"))
         if action in ("open", "close"):
-            await self._send(requests.relative_iris(channel, _steps(step) * (1 if action == "open" else -1)))
+            await self._send(requests.relative_iris(channel, _step_units(step) * (1 if action == "open" else -1)))
         return await self.state()
 
     async def _send(self, request: VapixRequest) -> None:
         await self._client.command(request)
 
 
-def _steps(fraction: float) -> int:
+def _step_units(fraction: float) -> int:
     return max(1, round(fraction * RANGE_UNITS))
 
 

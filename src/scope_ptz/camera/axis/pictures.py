@@ -24,7 +24,7 @@ StreamKind = Literal["mjpeg", "rtsp"]
 """The transport of live frames."""
 
 SMALL_WIDTH = 320
-"""Minimum width in pixels of the pictures that are compared to detect when the camera has settled."""
+"""Minimum width in pixels of the pictures that are compared to detect whether the camera has settled."""
 
 
 class AxisPictures(DevicePictures):
@@ -32,7 +32,7 @@ class AxisPictures(DevicePictures):
 
     Args:
         client: The connection.
-        credentials: The account for the RTSP stream.
+        credentials: The credentials for the RTSP stream.
         width: Width of a frame in pixels.
         height: Height of a frame in pixels.
         sizes: Picture sizes that the device reports.
@@ -53,7 +53,7 @@ class AxisPictures(DevicePictures):
         rtsp_port: int = 554,
         latency_s: float = 0.1,
     ) -> None:
-        super().__init__(width, height, small=_small_size(width, height, sizes), latency_s=latency_s)
+        super().__init__(width, height, small_size=_small_size(width, height, sizes), latency_s=latency_s)
         self._client, self._credentials = client, credentials
         self._stream_kind, self._rtsp_port = stream, rtsp_port
 
@@ -76,5 +76,5 @@ def _small_size(width: int, height: int, sizes: tuple[tuple[int, int], ...]) -> 
 
     If there is none, return the frame's own size.
     """
-    fitting = [(w, h) for w, h in sizes if w >= SMALL_WIDTH and abs(w * height - h * width) <= max(w, h)]
-    return min([*fitting, (width, height)])
+    candidates = [(w, h) for w, h in sizes if w >= SMALL_WIDTH and abs(w * height - h * width) <= max(w, h)]
+    return min([*candidates, (width, height)])

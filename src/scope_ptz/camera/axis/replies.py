@@ -1,4 +1,4 @@
-"""Parse VAPIX replies, which are text or JSON. Replies are not trusted, so every value is checked."""
+"""Parse VAPIX replies, which are text or JSON. Replies are untrusted, so every value is checked."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAX_QUOTED = 120
 """Maximum number of characters to quote from a device's error message."""
 
 _PRESET = re.compile(r"presetposno(\d{1,6})=(.*)")
-# In replies from the queue, the names of HTML anchors are the place, the seconds and the poll interval.
+# In the control queue's replies, the names of the HTML anchors hold the position, the seconds and the poll interval.
 _ANCHOR = re.compile(r'name="(-?\d{1,9})"')
 
 
@@ -24,9 +24,9 @@ class VapixError(CameraError):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A position that the device reports. Pan and tilt are in degrees, and other values in the device's units.
+    """A reported position. Pan and tilt are in degrees, the other numbers in the device's units.
 
-    None means that the device does not report the value.
+    A value is None if the device does not report it.
     """
 
     pan_deg: float
@@ -40,7 +40,7 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class DeviceLimits:
-    """The limits that a device reports. Field angles are in tenths of a degree, and None if it does not report them."""
+    """The limits that a device reports. Field angles are in tenths of a degree; None means not reported."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -54,7 +54,7 @@ class DeviceLimits:
 
 @dataclass(frozen=True, slots=True)
 class QueuePlace:
-    """A place in the control queue.
+    """A client's position in the control queue.
 
     Attributes:
         place: Position in the queue: 1 has control, 2 and above are waiting, and 0 is not in the queue.
@@ -67,7 +67,7 @@ class QueuePlace:
     poll_s: int
 
 
-def text_of(body: bytes) -> str:
+def decode_text(body: bytes) -> str:
     """Decode a text reply: UTF-8, or ISO 8859-1 from older devices.
 
     Raises:
@@ -82,13 +82,11 @@ def text_of(body: bytes) -> str:
     if stripped[:6].lower() == "error:":
         raise VapixError(f"The camera refused the request: {_quote(stripped[6:])}.")
     if "\0" in text or (stripped[:1] == "<" and "name=" not in stripped[:20]):
-        raise CameraReplyError(
-            "The camera's reply is not VAPIX text. Check that it is an AXIS camera and that its firmware is up to date."
-        )
+        raise CameraReplyError("The reply is not VAPIX text. Check that the device is an AXIS camera with up-to-date firmware.")
     return text
 
 
-def values_of(text: str) -> dict[str, str]:
+def parse_values(text: str) -> dict[str, str]:
     """Return the ``name=value`` lines of a reply as a dictionary. The prefix ``root.`` is removed from names."""
     pairs = (line.strip().partition("=") for line in text.splitlines())
     return {name.strip().removeprefix("root."): value.strip() for name, equals, value in pairs if equals and name.strip()}
@@ -101,15 +99,15 @@ def parse_position(body: bytes) -> Position:
         VapixError: The device refuses the request.
         CameraReplyError: An axis is missing or not a number.
     """
-    values = _lower(values_of(text_of(body)))
+    values = _lower_keys(parse_values(decode_text(body)))
     return Position(
-        _number(values, "pan"),
-        _number(values, "tilt"),
-        _number(values, "zoom"),
-        _flag(values, "autofocus"),
-        _flag(values, "autoiris"),
-        _number(values, "focus") if "focus" in values else None,
-        _number(values, "iris") if "iris" in values else None,
+        _required_number(values, "pan"),
+        _required_number(values, "tilt"),
+        _required_number(values, "zoom"),
+        _parse_flag(values, "autofocus"),
+        _parse_flag(values, "autoiris"),
+        _required_number(values, "focus") if "focus" in values else None,
+        _required_number(values, "iris") if "iris" in values else None,
     )
 
 
@@ -118,30 +116,30 @@ def parse_limits(body: bytes) -> DeviceLimits:
 
     Raises:
         VapixError: The device refuses the request.
-        CameraReplyError: A limit is missing or not a number, or a maximum is too small. The maximum of pan and of tilt must be
-            greater than the minimum; that of zoom may be equal to it.
+        CameraReplyError: A limit is missing or is not a number, or a maximum is too small. The maximum pan and tilt must be
+            greater than the minimum; the maximum zoom may equal the minimum.
     """
-    values = _lower(values_of(text_of(body)))
-    fields = [_optional(values, name) for name in ("minfieldangle", "maxfieldangle")]
+    values = _lower_keys(parse_values(decode_text(body)))
+    fields = [_optional_number(values, name) for name in ("minfieldangle", "maxfieldangle")]
     limits = DeviceLimits(
-        *(_number(values, name) for name in ("minpan", "maxpan", "mintilt", "maxtilt", "minzoom", "maxzoom")), *fields
+        *(_required_number(values, name) for name in ("minpan", "maxpan", "mintilt", "maxtilt", "minzoom", "maxzoom")), *fields
     )  # fmt: skip
     if not (
         limits.min_pan_deg < limits.max_pan_deg
         and limits.min_tilt_deg < limits.max_tilt_deg
         and limits.min_zoom_units <= limits.max_zoom_units
     ):
-        raise CameraReplyError("The camera reports limits whose minimum is not below the maximum. Reset its PTZ limits.")
+        raise CameraReplyError("The camera reports a minimum limit that is not below the maximum. Reset its PTZ limits.")
     return limits
 
 
 def parse_presets(body: bytes) -> dict[int, str]:
-    """Parse the reply to ``query=presetposcam``. Return preset names by number, in numerical order."""
-    found: dict[int, str] = {}
-    for line in text_of(body).splitlines():
+    """Parse the reply to ``query=presetposcam`` and return the preset names by number, in numerical order."""
+    presets: dict[int, str] = {}
+    for line in decode_text(body).splitlines():
         if (match := _PRESET.fullmatch(line.strip())) and match.group(2).strip():
-            found[int(match.group(1))] = match.group(2).strip()
-    return dict(sorted(found.items()))
+            presets[int(match.group(1))] = match.group(2).strip()
+    return dict(sorted(presets.items()))
 
 
 def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tuple[float, float], ...]:
@@ -151,26 +149,26 @@ def parse_table(body: bytes, channel: int, attribute: str, key: str) -> tuple[tu
         body: The reply.
         channel: The video channel.
         attribute: The table: ``zoomSteps`` or ``speeds``.
-        key: The column with the physical values, ``zoom`` or ``speed``. The column ``value`` has the device's values.
+        key: The column with the physical values: ``zoom`` or ``speed``. The column ``value`` contains the device's values.
 
     Returns:
         Rows of (device value, physical value), increasing in both columns; empty if the device has no such table. Rows that break
         the order are dropped.
     """
-    text = text_of(body)
+    text = decode_text(body)
     try:
-        found = json.loads(text)
-        rows = found[f"Camera {channel}"][attribute]
+        document = json.loads(text)
+        rows = document[f"Camera {channel}"][attribute]
         pairs = sorted((float(row["value"]), float(row[key])) for row in rows)
     except (ValueError, KeyError, TypeError, RecursionError):
         return ()
-    rising: list[tuple[float, float]] = []
+    increasing: list[tuple[float, float]] = []
     for value, physical in pairs:
         if math.isfinite(value) and math.isfinite(physical) and physical > 0:
-            if rising and (value <= rising[-1][0] or physical <= rising[-1][1]):
+            if increasing and (value <= increasing[-1][0] or physical <= increasing[-1][1]):
                 continue
-            rising.append((value, physical))
-    return tuple(rising)
+            increasing.append((value, physical))
+    return tuple(increasing)
 
 
 def parse_queue(body: bytes) -> QueuePlace:
@@ -178,32 +176,34 @@ def parse_queue(body: bytes) -> QueuePlace:
 
     Raises:
         VapixError: The device refuses the request, for example because the queue is full.
-        CameraReplyError: The reply contains no place.
+        CameraReplyError: The reply contains no position.
     """
-    numbers = [int(number) for number in _ANCHOR.findall(text_of(body))]
+    numbers = [int(number) for number in _ANCHOR.findall(decode_text(body))]
     if len(numbers) < 3 or numbers[0] < 0:
-        raise CameraReplyError("The reply of the camera's control queue has no place. Check its firmware, or turn the queue off.")
+        raise CameraReplyError(
+            "The camera did not report a position in its control queue. Check the camera's firmware, or turn the queue off."
+        )
     return QueuePlace(numbers[0], numbers[1], max(1, numbers[2]))
 
 
 def check_done(body: bytes) -> None:
-    """Raise ``VapixError`` if a command was refused. The reply to a successful command is empty."""
+    """Raise ``VapixError`` if the reply is not empty, which means that the device refused the command."""
     if body.strip():
-        text_of(body)
+        decode_text(body)
 
 
-def _lower(values: dict[str, str]) -> dict[str, str]:
+def _lower_keys(values: dict[str, str]) -> dict[str, str]:
     return {name.lower(): value for name, value in values.items()}
 
 
-def _number(values: dict[str, str], name: str) -> float:
-    number = _optional(values, name)
+def _required_number(values: dict[str, str], name: str) -> float:
+    number = _optional_number(values, name)
     if number is None:
-        raise CameraReplyError(f"The camera reports no {name}. Check that it is an AXIS camera with pan, tilt and zoom.")
+        raise CameraReplyError(f"The reply contains no {name}. Check that the device is an AXIS camera with pan, tilt and zoom.")
     return number
 
 
-def _optional(values: dict[str, str], name: str) -> float | None:
+def _optional_number(values: dict[str, str], name: str) -> float | None:
     try:
         number = float(values[name])
     except (KeyError, ValueError):
@@ -211,7 +211,7 @@ def _optional(values: dict[str, str], name: str) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _flag(values: dict[str, str], name: str) -> bool | None:
+def _parse_flag(values: dict[str, str], name: str) -> bool | None:
     return {"on": True, "off": False}.get(values.get(name, "").lower())
 
 

@@ -1,4 +1,4 @@
-"""Build VAPIX requests, which are paths and queries, from checked values. This module sends nothing.
+"""Build VAPIX requests (a path and a query) from validated values. This module does not send them.
 
 Sources: the pan/tilt/zoom, video streaming and parameter management chapters of the VAPIX library.
 """
@@ -30,7 +30,7 @@ class VapixRequest:
     Attributes:
         path: The path on the device.
         query: Query parameters, not yet URL-encoded.
-        repeat: Whether the request may be sent again after a lost connection. This is safe if a second copy has no further effect.
+        repeat: Whether the request may be sent again after a lost connection. This is safe only if it is idempotent.
     """
 
     path: str
@@ -41,7 +41,7 @@ class VapixRequest:
 def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> VapixRequest:
     """Move to an absolute position. Angles are in degrees; zoom is in the device's units (1 to 19999)."""
     _check_finite(pan_deg=pan_deg, tilt_deg=tilt_deg)
-    query = {"pan": _number(_clamp(pan_deg, 180.0)), "tilt": _number(_clamp(tilt_deg, 180.0))}
+    query = {"pan": _format_number(_clamp(pan_deg, 180.0)), "tilt": _format_number(_clamp(tilt_deg, 180.0))}
     return _ptz(channel, **query, zoom=str(min(max(zoom_units, 1), 19999)))
 
 
@@ -53,34 +53,34 @@ def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]
         x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
         y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
         percent: The resulting focal length as a percentage of the current one.
-        size: Width and height in pixels of the picture to which the request's coordinates refer.
+        size: Width and height in pixels of the picture to which the coordinates in the request refer.
     """
     width, height = size
-    at, within = f"{round(x * width)},{round(y * height)}", {"imagewidth": str(width), "imageheight": str(height)}
-    command = {"center": at} if percent == 100 else {"areazoom": f"{at},{max(percent, 1)}"}
-    return replace(_ptz(channel, **command, **within), repeat=False)
+    point, size_fields = f"{round(x * width)},{round(y * height)}", {"imagewidth": str(width), "imageheight": str(height)}
+    command = {"center": point} if percent == 100 else {"areazoom": f"{point},{max(percent, 1)}"}
+    return replace(_ptz(channel, **command, **size_fields), repeat=False)
 
 
 def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool = False) -> VapixRequest:
-    """Pan and tilt continuously, at velocities from -100 to 100.
+    """Pan and tilt continuously at velocities from -100 to 100.
 
     Args:
         channel: The video channel.
-        pan: Velocity of pan, positive to the right.
-        tilt: Velocity of tilt, positive upwards.
-        proportional: Whether the device scales velocities with the zoom by default; the request turns this off.
+        pan: Pan velocity, positive to the right.
+        tilt: Tilt velocity, positive upwards.
+        proportional: Whether the device scales velocities with zoom by default; the request turns this off.
     """
     extra = {"proportionalspeed": "disabled"} if proportional else {}
-    return _ptz(channel, continuouspantiltmove=f"{_speed(pan)},{_speed(tilt)}", **extra)
+    return _ptz(channel, continuouspantiltmove=f"{_clamp_speed(pan)},{_clamp_speed(tilt)}", **extra)
 
 
 def continuous_zoom(channel: int, zoom: int) -> VapixRequest:
-    """Zoom continuously, at a velocity from -100 to 100, positive to zoom in."""
-    return _ptz(channel, continuouszoommove=str(_speed(zoom)))
+    """Zoom continuously at a velocity from -100 to 100, positive to zoom in."""
+    return _ptz(channel, continuouszoommove=str(_clamp_speed(zoom)))
 
 
 def stop(channel: int) -> tuple[VapixRequest, ...]:
-    """Stop all axes, whether they move continuously or to a position."""
+    """Stop all axes, whether they are moving continuously or to a position."""
     return continuous_pan_tilt(channel, 0, 0), continuous_zoom(channel, 0), _ptz(channel, move="stop")
 
 
@@ -98,11 +98,11 @@ def save_preset(channel: int, name: str) -> VapixRequest:
     """Save the current position as a preset.
 
     Raises:
-        InputError: AXIS cameras do not allow the name.
+        InputError: The name is invalid, or contains characters that AXIS cameras do not allow.
     """
     check_preset_name(name)
-    if found := sorted(set(name) & set(_INVALID_PRESET_CHARS)):
-        raise InputError(f"A preset name of an AXIS camera may not contain {' '.join(found)}. Choose another name.")
+    if invalid := sorted(set(name) & set(_INVALID_PRESET_CHARS)):
+        raise InputError(f"An AXIS preset name may not contain {' '.join(invalid)}. Choose another name.")
     return VapixRequest(CONFIGURATION_PATH, {"camera": _channel(channel), "setserverpresetname": name})
 
 
@@ -113,36 +113,36 @@ def remove_preset(channel: int, name: str) -> VapixRequest:
 
 def autofocus(channel: int, *, on: bool) -> VapixRequest:
     """Turn autofocus on or off."""
-    return _ptz(channel, autofocus=_switch(on))
+    return _ptz(channel, autofocus=_on_or_off(on))
 
 
 def autoiris(channel: int, *, on: bool) -> VapixRequest:
     """Turn the automatic iris on or off."""
-    return _ptz(channel, autoiris=_switch(on))
+    return _ptz(channel, autoiris=_on_or_off(on))
 
 
 def relative_focus(channel: int, steps: int) -> VapixRequest:
-    """Move the focus by steps, positive to focus farther away."""
-    return replace(_ptz(channel, rfocus=str(_steps(steps))), repeat=False)
+    """Move the focus by a number of steps, positive to focus farther away."""
+    return replace(_ptz(channel, rfocus=str(_clamp_steps(steps))), repeat=False)
 
 
 def relative_iris(channel: int, steps: int) -> VapixRequest:
-    """Move the iris by steps, positive to open it."""
-    return replace(_ptz(channel, riris=str(_steps(steps))), repeat=False)
+    """Move the iris by a number of steps, positive to open it."""
+    return replace(_ptz(channel, riris=str(_clamp_steps(steps))), repeat=False)
 
 
-def query(channel: int, what: Literal["position", "limits", "presetposcam", "speed"]) -> VapixRequest:
+def query(channel: int, topic: Literal["position", "limits", "presetposcam", "speed"]) -> VapixRequest:
     """Read the position, the limits, the presets or the speed."""
-    return _ptz(channel, query=what)
+    return _ptz(channel, query=topic)
 
 
 def attributes(channel: int, group: Literal["zoom", "speed"]) -> VapixRequest:
-    """Read the calibration table of the zoom or of the speeds."""
+    """Read the calibration table for zoom or speed."""
     return _ptz(channel, query="attributes", group=group, format="json")
 
 
 def control_queue(channel: int, action: Literal["request", "drop", "query"]) -> VapixRequest:
-    """Request PTZ control, release it, or read this client's place in the queue."""
+    """Request PTZ control, release it, or read this client's position in the queue."""
     return VapixRequest(QUEUE_PATH, {"camera": _channel(channel), "control": action})
 
 
@@ -164,7 +164,7 @@ def mjpeg(channel: int, width: int, height: int, rate_hz: float, *, compression:
 
 
 def rtsp_path(channel: int, width: int, height: int, rate_hz: float) -> str:
-    """Return the path and query of an H.264 stream."""
+    """Return the path and query for an H.264 stream."""
     rate = min(max(math.ceil(rate_hz), 1), 60)
     return f"{RTSP_PATH}?camera={_channel(channel)}&videocodec=h264&resolution={width}x{height}&fps={rate}"
 
@@ -189,18 +189,18 @@ def _clamp(value: float, limit: float) -> float:
     return min(max(value, -limit), limit)
 
 
-def _number(value: float) -> str:
-    """Format a number without an exponent, which devices cannot parse, and without a negative zero."""
+def _format_number(value: float) -> str:
+    """Format a number without an exponent, which devices cannot parse, and without a minus sign on zero."""
     return f"{value:.4f}".rstrip("0").rstrip(".").replace("-0", "0", 1) if abs(value) < 5e-5 else f"{value:.4f}"
 
 
-def _speed(value: int) -> int:
+def _clamp_speed(value: int) -> int:
     return min(max(value, -100), 100)
 
 
-def _steps(value: int) -> int:
+def _clamp_steps(value: int) -> int:
     return min(max(value, -9999), 9999)
 
 
-def _switch(on: bool) -> str:
+def _on_or_off(on: bool) -> str:
     return "on" if on else "off"

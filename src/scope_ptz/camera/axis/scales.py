@@ -1,4 +1,4 @@
-"""Convert the units of AXIS devices: zoom positions to magnifications, and speeds from -100 to 100 to degrees per second."""
+"""Convert between AXIS units and physical units: zoom positions and magnifications, device speeds and degrees per second."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ OPTICAL_END_UNITS = 9999.0
 
 @dataclass(frozen=True, slots=True)
 class ZoomScale:
-    """A table of zoom positions and magnifications, both increasing, with linear interpolation between the rows.
+    """Converts between zoom positions and magnifications, with linear interpolation between the rows of a table.
 
     Attributes:
-        table: Rows of (zoom position, magnification).
+        table: Rows of (zoom position, magnification), increasing in both columns.
     """
 
     table: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
         if len(self.table) < 2 or any(b[0] <= a[0] or b[1] <= a[1] for a, b in zip(self.table, self.table[1:], strict=False)):
-            raise ValueError("a zoom scale needs two or more increasing rows")
+            raise ValueError("a zoom scale requires at least two rows, increasing in both columns")
 
     @property
     def min_zoom(self) -> float:
@@ -48,10 +48,10 @@ class ZoomScale:
 
 @dataclass(frozen=True, slots=True)
 class SpeedScale:
-    """A table of device speeds from 1 to 100 and degrees per second, both increasing.
+    """Converts degrees per second to device speeds, with linear interpolation between the rows of a table.
 
     Attributes:
-        table: Rows of (speed, degrees per second).
+        table: Rows of (device speed from 1 to 100, degrees per second), increasing in both columns.
     """
 
     table: tuple[tuple[float, float], ...]
@@ -71,32 +71,32 @@ class SpeedScale:
         return int(math.copysign(max(1, round(speed)), dps))
 
 
-def zoom_scale(
+def build_zoom_scale(
     rows: tuple[tuple[float, float], ...], min_units: float, max_units: float, widest: float, closest: float
 ) -> ZoomScale:
-    """Return the zoom scale of a device.
+    """Return the zoom scale of a device, from its own table or from its fields of view.
 
     Args:
         rows: The device's own table of (zoom position, magnification); empty if it has none.
         min_units: The lowest zoom position.
         max_units: The highest zoom position.
-        widest: Horizontal field of view in degrees at the widest zoom. It is used only if the device has no table.
-        closest: The same at the closest zoom.
+        widest: Horizontal field of view in degrees at the widest zoom; used only if the table has fewer than two usable rows.
+        closest: Horizontal field of view in degrees at the closest zoom; used only if the table has fewer than two usable rows.
     """
     max_units = min(max_units, OPTICAL_END_UNITS)
-    kept = tuple(row for row in rows if min_units <= row[0] <= max_units)
-    if len(kept) >= 2:
-        return ZoomScale(kept)
+    usable = tuple(row for row in rows if min_units <= row[0] <= max_units)
+    if len(usable) >= 2:
+        return ZoomScale(usable)
     ratio = math.tan(math.radians(widest) / 2) / math.tan(math.radians(closest) / 2)
     return ZoomScale(((min_units, 1.0), (max_units, ratio)))
 
 
-def optics_of(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
-    """Return the optics with the given fields of view. Between them, the focal length grows linearly with magnification.
+def build_optics(scale: ZoomScale, fields: tuple[tuple[float, float], ...]) -> Optics:
+    """Return the optics for a zoom scale and its fields of view. Between rows, the focal length grows linearly with magnification.
 
     Args:
         scale: The zoom scale.
-        fields: Rows of (fraction of the range of magnification, horizontal field of view in degrees), from fraction 0 to 1.
+        fields: Rows of (fraction of the magnification range, horizontal field of view in degrees), from fraction 0 to 1.
     """
     span = scale.max_zoom - scale.min_zoom
     return Optics(tuple((scale.min_zoom + fraction * span, hfov_deg) for fraction, hfov_deg in fields))

@@ -1,1 +1,1 @@
-"""The open scene of a Blender window as a camera. The add-on (``scope_addon``) runs in that Blender and carries out requests."""
+"""A camera in the scene that is open in a Blender window. Blender's add-on (``scope_addon``) carries out its requests."""

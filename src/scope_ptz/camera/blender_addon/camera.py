@@ -1,4 +1,4 @@
-"""The camera in the open scene of a Blender window. The add-on sets poses and takes frames; the agent runs outside Blender."""
+"""A camera in the scene that is open in a Blender window. The add-on sets the pose and renders the frames."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Perspective, Pose
 
 COMMAND_TIMEOUT_S = 30.0
-"""Seconds for which a command waits for Blender, whose main thread may be busy."""
+"""Maximum time in seconds to wait for a command, because Blender's main thread may be busy."""
 
 FRAME_TIMEOUT_S = 600.0
-"""Seconds for which a picture may take to render."""
+"""Maximum time in seconds to wait for a picture."""
 
 _PNG_START = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 
 
 class BlenderWindowCamera(Camera):
-    """A pan-tilt-zoom camera in the scene that is open in a Blender window. Moves to a pose take no time.
+    """A pan-tilt-zoom camera in the scene that is open in a Blender window. Moves to a pose are instantaneous.
 
-    The conventions are those of ``BlenderCamera`` for a .blend file: each camera of the scene is a viewpoint and a preset. Presets
-    are stored in the scene. If Blender disconnects, all methods raise ``CameraError`` until a Blender connects again.
+    As with ``BlenderCamera`` and a .blend file, each camera in the scene is a viewpoint and a preset. Saved presets are stored in
+    the scene. If Blender disconnects, all methods raise ``CameraError`` until a Blender instance connects again.
 
     Args:
-        slot: Holds the connection. A Blender must be connected.
+        slot: The slot that holds the connection to a Blender instance.
 
     Raises:
-        CameraError: No Blender is connected.
+        CameraError: No Blender instance is connected.
     """
 
     clock: WallClock
@@ -64,7 +64,7 @@ class BlenderWindowCamera(Camera):
 
     @property
     def viewpoint(self) -> str:
-        """Name of the current optical centre."""
+        """Name of the current viewpoint."""
         return self._viewpoint
 
     async def pose(self) -> Pose:
@@ -89,7 +89,7 @@ class BlenderWindowCamera(Camera):
         connection = self._current_connection()
         existing = self._scene.presets.get(name)
         if existing is not None and not existing.saved:
-            raise CameraError(f"The preset '{name}' is a camera of the scene and cannot be replaced. Choose another name.")
+            raise CameraError(f"The preset '{name}' is a camera in the scene and cannot be replaced. Choose another name.")
         view = self._view(self._viewpoint, await self.pose())
         await self._edit(connection, "save_preset", {"name": name, "description": description, **view})
         return self._preset(name).info
@@ -97,7 +97,7 @@ class BlenderWindowCamera(Camera):
     async def remove_preset(self, name: str) -> None:
         connection = self._current_connection()
         if not self._preset(name).saved:
-            raise CameraError(f"The preset '{name}' is a camera of the scene. Remove the camera in Blender instead.")
+            raise CameraError(f"The preset '{name}' is a camera in the scene. Remove the camera in Blender instead.")
         await self._edit(connection, "remove_preset", {"name": name})
 
     async def go_to_preset(self, name: str) -> Arrival:
@@ -126,7 +126,10 @@ class BlenderWindowCamera(Camera):
         self._slot.end()
 
     def _current_connection(self) -> AddOnConnection:
-        """Return the connection. If its scene has changed, adopt the new one; the pose is kept if the viewpoint still exists."""
+        """Return the connection. If its scene has changed, adopt the new one.
+
+        The pose is kept if the viewpoint still exists and the optics have not changed.
+        """
         connection = self._slot.connection
         if connection.description is not self._scene.description:
             before, self._scene = self._scene, window_scene(connection.description)
@@ -139,7 +142,7 @@ class BlenderWindowCamera(Camera):
 
     async def _go(self, connection: AddOnConnection, viewpoint: str, pose: Pose) -> Arrival:
         end, clamped = self._info.limits.clamp(pose)
-        # The pose changes first, so that a concurrent command, such as ``stop``, refers to it while Blender is still busy.
+        # Update the pose first, so that concurrent commands such as ``stop`` use it while Blender is still busy.
         self._viewpoint = viewpoint
         self._motion.jump_to(end, self.clock.now_s())
         await connection.request("look", self._view(viewpoint, end), timeout_s=COMMAND_TIMEOUT_S)
@@ -151,18 +154,18 @@ class BlenderWindowCamera(Camera):
         return self._scene.presets[name]
 
     def _view(self, viewpoint: str, pose: Pose) -> dict[str, Any]:
-        """Return a view in the scene's coordinates, as the add-on expects it."""
-        place = self._scene.viewpoint(viewpoint)
+        """Return a view in scene coordinates, in the form that the add-on expects."""
+        viewpoint_camera = self._scene.viewpoint(viewpoint)
         return {
             "viewpoint": viewpoint,
-            "position_m": list(place.position_m),
-            "bearing_deg": place.bearing_deg + pose.pan_deg,
+            "position_m": list(viewpoint_camera.position_m),
+            "bearing_deg": viewpoint_camera.bearing_deg + pose.pan_deg,
             "tilt_deg": pose.tilt_deg,
             "hfov_deg": self._info.optics.hfov_deg(pose.zoom),
         }
 
     async def _edit(self, connection: AddOnConnection, operation: str, arguments: dict[str, Any]) -> None:
-        """Change the presets in the scene, and adopt the description that the add-on returns."""
+        """Edit the presets in the scene, and adopt the scene description that the add-on returns."""
         reply = await connection.request(operation, arguments, timeout_s=COMMAND_TIMEOUT_S)
         try:
             description = SceneDescription.model_validate(reply)
@@ -171,11 +174,11 @@ class BlenderWindowCamera(Camera):
         self._slot.update(connection, description)
         self._current_connection()
 
-    async def _image(self, connection: AddOnConnection, view: Perspective, place: dict[str, Any]) -> NDArray[np.uint8]:
-        """Have Blender take a picture, or return the last one if neither the view nor the scene has changed since."""
+    async def _image(self, connection: AddOnConnection, view: Perspective, view_fields: dict[str, Any]) -> NDArray[np.uint8]:
+        """Request a picture from Blender, or return the last one if neither the view nor the scene has changed."""
         key = (connection.id, self._viewpoint, view, self._scene.description)
         version = self._last[1] if self._last is not None and self._last[0] == key else ""
-        arguments = {**place, "width": view.width, "height": view.height, "version": version}
+        arguments = {**view_fields, "width": view.width, "height": view.height, "version": version}
         reply = await connection.request("frame", arguments, timeout_s=FRAME_TIMEOUT_S)
         if isinstance(reply, Picture):
             image = await to_thread.run_sync(_decode, reply.png, view.width, view.height)
@@ -200,13 +203,13 @@ def _info(scene: WindowScene) -> CameraInfo:
 
 
 def _decode(png: bytes, width: int, height: int) -> NDArray[np.uint8]:
-    """Decode a picture. Its size is checked first, so that a small file cannot fill the memory.
+    """Decode a picture. Its dimensions are checked first, so that a small file cannot exhaust memory.
 
     Raises:
         CameraError: The picture is damaged or has the wrong size.
     """
     if not png.startswith(_PNG_START) or struct.unpack(">II", png[16:24]) != (width, height):
-        raise CameraError(f"Blender sent a picture that is not a PNG file of {width} x {height} pixels.")
+        raise CameraError(f"Blender sent a picture that is not a {width} x {height} pixel PNG file.")
     image = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
     if image is None:
         raise CameraError("Blender sent a damaged picture.")

@@ -1,7 +1,7 @@
 """The connection between a server and the add-on in a Blender instance: requests to the add-on, and its replies.
 
-The add-on opens the connection and reads requests from a stream. It sends each reply, which may be a picture, in a separate HTTP
-request.
+The add-on opens the connection and reads requests from a stream. It sends each reply, which may be a picture, in a separate
+HTTP request.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from scope_ptz.camera.blender_addon.scene import SceneDescription
 from scope_ptz.errors import CameraError
 
 HEARTBEAT_S = 5.0
-"""Seconds without a request after which the stream of requests contains a heartbeat, so that both ends notice a lost connection."""
+"""Interval in seconds between heartbeats on an idle request stream. They let both ends notice a lost connection."""
 
 MAX_PENDING = 100
-"""Maximum number of requests that Blender has not answered."""
+"""Maximum number of unanswered requests."""
 
 NOT_CONNECTED = "Blender is not connected. In Blender, open the SCOPE tab of the 3D viewport's sidebar and press Connect."
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture as a PNG file. ``version`` identifies the state of the scene that it shows."""
+    """A PNG picture. ``version`` identifies the state of the scene in the picture."""
 
     png: bytes
     version: str
 
 
 Reply = dict[str, Any] | Picture | CameraError
-"""The reply to a request: the result, a picture, or the reason for a failure."""
+"""The reply to a request: a result, a picture, or an error."""
 
 
 @dataclass(slots=True)
@@ -48,7 +48,7 @@ class _PendingRequest:
 
 
 class AddOnConnection:
-    """A connection to the add-on of one Blender.
+    """A connection to the add-on of one Blender instance.
 
     Args:
         description: The scene that is open in Blender.
@@ -65,7 +65,7 @@ class AddOnConnection:
         self._changed = anyio.Event()
 
     async def request(self, operation: str, arguments: dict[str, Any], *, timeout_s: float) -> dict[str, Any] | Picture:
-        """Have the add-on carry out an operation, and return its result.
+        """Ask the add-on to carry out an operation, and return the result.
 
         Args:
             operation: The name of the operation.
@@ -98,7 +98,7 @@ class AddOnConnection:
         return waiting.reply
 
     def answer(self, number: int, reply: Reply) -> bool:
-        """Pass on the reply to a request. Return whether the request is still waiting for it."""
+        """Deliver the reply to a request. Return False if the request is no longer waiting for one."""
         waiting = self._waiting.get(number)
         if waiting is None or waiting.arrived.is_set():
             return False
@@ -109,7 +109,7 @@ class AddOnConnection:
     async def requests(self) -> AsyncGenerator[dict[str, Any] | None]:
         """Yield the requests for the add-on, and None as a heartbeat, until the connection ends.
 
-        When the consumer stops, the connection is lost, and all waiting requests fail.
+        When the consumer stops, the connection ends and all pending requests fail.
         """
         try:
             while not self.lost:
@@ -122,7 +122,7 @@ class AddOnConnection:
             self.end()
 
     def end(self) -> None:
-        """End the connection. Waiting requests fail."""
+        """End the connection. Pending requests fail."""
         self.lost = True
         self._unsent.clear()
         self._wake()
@@ -135,10 +135,10 @@ class AddOnConnection:
 
 
 class AddOnSlot:
-    """Holds the current connection between a camera and the add-on in a Blender instance. One Blender at a time can be connected.
+    """Holds the current connection to a Blender add-on. Only one Blender instance can be connected at a time.
 
     Attributes:
-        changes: Number of times that the connection or its scene has changed so far.
+        changes: Number of times that the connection or its scene has changed.
     """
 
     def __init__(self) -> None:
@@ -147,22 +147,22 @@ class AddOnSlot:
 
     @property
     def current(self) -> AddOnConnection | None:
-        """The connection; None if no Blender is connected."""
+        """The connection; None if no Blender instance is connected."""
         return None if self._current is None or self._current.lost else self._current
 
     @property
     def connection(self) -> AddOnConnection:
-        """The connection.
+        """The connection, which must exist.
 
         Raises:
-            CameraError: No Blender is connected.
+            CameraError: No Blender instance is connected.
         """
         if self.current is None:
             raise CameraError(NOT_CONNECTED)
         return self.current
 
     def connect(self, description: SceneDescription, owner: str) -> AddOnConnection:
-        """Create the connection to a Blender instance. An earlier one ends."""
+        """Create a connection to a Blender instance, and end any previous one."""
         if self._current is not None:
             self._current.end()
         self._current = AddOnConnection(description, owner)
@@ -170,7 +170,7 @@ class AddOnSlot:
         return self._current
 
     def update(self, connection: AddOnConnection, description: SceneDescription) -> None:
-        """Replace the description of a connection's scene, for example after another file was opened."""
+        """Replace a connection's scene description, for example after another file has been opened."""
         connection.description = description
         self.changes += 1
 

@@ -1,4 +1,4 @@
-"""The description of an open Blender scene, as the add-on sends it, and the pan-tilt-zoom camera that it defines."""
+"""The scene description that the add-on sends, and the pan-tilt-zoom camera that it defines."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ MAX_CAMERAS = 500
 MAX_WIDTH, MAX_HEIGHT = 3840, 2160  # of a picture, in pixels
 
 
-def _number(given: object) -> object:
-    """Convert an integer to a float; JSON does not distinguish the two."""
-    return float(given) if isinstance(given, int) and not isinstance(given, bool) else given
+def _number(value: object) -> object:
+    """Convert an integer to a float, because JSON does not distinguish the two."""
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 Name = Annotated[str, Field(min_length=1, max_length=80)]
@@ -32,17 +32,17 @@ class _Model(BaseModel):
 
 
 class SceneCamera(_Model):
-    """A camera of the scene.
+    """A camera in the scene.
 
     Attributes:
         name: Its name, unique in the scene.
         title: Its name in Blender.
-        position_m: Its position.
-        bearing_deg: The direction of its view, clockwise from above, from the scene's y axis.
-        tilt_deg: The tilt of its view; positive is up.
+        position_m: Its position in scene coordinates.
+        bearing_deg: Its bearing, measured clockwise (seen from above) from the scene's y axis.
+        tilt_deg: Its tilt; positive is up.
         hfov_deg: Its horizontal field of view.
         viewpoint: For a preset, the name of the camera whose optical centre it shares; None for a camera that is its own viewpoint.
-        saved: Whether it was saved as a preset through SCOPE, and can therefore be replaced and removed.
+        saved: Whether it is a preset saved through SCOPE, which can be replaced and removed.
     """
 
     name: Name
@@ -56,11 +56,11 @@ class SceneCamera(_Model):
 
 
 class SceneDescription(_Model):
-    """The open scene of a Blender: its cameras, the active one, and the size of a picture in pixels.
+    """The scene that is open in a Blender instance: its cameras, the active one, and the picture size in pixels.
 
     Raises:
-        InputError: The names of the cameras contradict each other. The error is not a ``ValidationError``, because a JSON schema
-            cannot express this rule.
+        InputError: The camera names are inconsistent. This is not a ``ValidationError``, because a JSON schema cannot express
+            these rules.
     """
 
     name: Name
@@ -75,12 +75,12 @@ class SceneDescription(_Model):
     def _check_names(self) -> Self:
         names = [camera.name for camera in self.cameras]
         if len(set(names)) != len(names):
-            raise InputError("Two cameras of the scene have the same name.")
+            raise InputError("Two cameras in the scene have the same name.")
         viewpoints = {camera.name for camera in self.cameras if camera.viewpoint is None}
         if self.active not in viewpoints:
-            raise InputError("The active camera must be one of the cameras of the scene, and its own viewpoint.")
+            raise InputError("The active camera must be a camera in the scene that is its own viewpoint.")
         if any(camera.viewpoint not in viewpoints for camera in self.cameras if camera.viewpoint is not None):
-            raise InputError("The viewpoint of a preset must be a camera of the scene that is its own viewpoint.")
+            raise InputError("The viewpoint of a preset must be a camera in the scene that is its own viewpoint.")
         return self
 
 
@@ -88,7 +88,7 @@ class SceneDescription(_Model):
 class WindowPreset:
     """A preset: a pose at a viewpoint.
 
-    ``saved`` is True if it was saved through SCOPE, and can therefore be replaced and removed.
+    ``saved`` is True for presets saved through SCOPE, which can be replaced and removed.
     """
 
     info: PresetInfo
@@ -99,13 +99,13 @@ class WindowPreset:
 
 @dataclass(frozen=True, slots=True)
 class WindowScene:
-    """The cameras of an open scene as one pan-tilt-zoom camera, with the conventions of ``blender:FILE.blend``.
+    """The cameras in an open scene, combined into one pan-tilt-zoom camera as for ``blender:FILE.blend``.
 
     Attributes:
-        description: The description from which it was created.
+        description: The scene description from which this was created.
         optics: The optics. Zoom 1 is the widest field of view among the cameras.
         limits: The limits of motion.
-        presets: The presets by name: the cameras of the scene, and the presets that were saved through SCOPE.
+        presets: The presets by name: the cameras in the scene, and the presets saved through SCOPE.
     """
 
     description: SceneDescription
@@ -115,34 +115,34 @@ class WindowScene:
 
     @property
     def home(self) -> WindowPreset:
-        """The preset of the scene's active camera."""
+        """The preset for the scene's active camera."""
         return self.presets[self.description.active]
 
     def viewpoint(self, name: str) -> SceneCamera:
-        """Return the camera that is a viewpoint."""
+        """Return the camera at a viewpoint."""
         return next(camera for camera in self.description.cameras if camera.name == name)
 
 
 def window_scene(description: SceneDescription) -> WindowScene:
     """Return the pan-tilt-zoom camera that a scene defines."""
-    own = [camera for camera in description.cameras if camera.viewpoint is None]
-    combined = _combine(description, own)
-    viewpoints = {camera.name: camera for camera in own}
+    viewpoint_cameras = [camera for camera in description.cameras if camera.viewpoint is None]
+    combined = _combine(description, viewpoint_cameras)
+    viewpoints = {camera.name: camera for camera in viewpoint_cameras}
     presets = {}
-    for camera in (*own, *(each for each in description.cameras if each.viewpoint is not None)):
-        at = viewpoints[camera.viewpoint or camera.name]
+    for camera in (*viewpoint_cameras, *(camera for camera in description.cameras if camera.viewpoint is not None)):
+        origin = viewpoints[camera.viewpoint or camera.name]
         pose = Pose(
-            wrap_pan_deg(camera.bearing_deg - at.bearing_deg), camera.tilt_deg, combined.optics.zoom_for_hfov(camera.hfov_deg)
+            wrap_pan_deg(camera.bearing_deg - origin.bearing_deg), camera.tilt_deg, combined.optics.zoom_for_hfov(camera.hfov_deg)
         )
         info = PresetInfo(camera.name, camera.title)
-        presets[camera.name] = WindowPreset(info, at.name, pose, camera.saved)
+        presets[camera.name] = WindowPreset(info, origin.name, pose, camera.saved)
     return WindowScene(description, combined.optics, combined.limits, presets)
 
 
-def _combine(description: SceneDescription, own: list[SceneCamera]) -> FileCameras:
-    """Return optics and limits by the rules for .blend files. The cameras are numbered, because their names may be free text."""
-    cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(own)]
-    active = next(number for number, camera in enumerate(own) if camera.name == description.active)
+def _combine(description: SceneDescription, viewpoint_cameras: list[SceneCamera]) -> FileCameras:
+    """Return optics and limits by the rules for .blend files. Numbers replace the camera names, which may be free text."""
+    cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(viewpoint_cameras)]
+    active = next(number for number, camera in enumerate(viewpoint_cameras) if camera.name == description.active)
     return file_cameras(
         {
             "name": "window",

@@ -1,1 +1,1 @@
-"""Capture a twin of a site: sweep a camera, register the pictures, and write a pack without ground truth."""
+"""Capture a site from a real camera: sweep it, register the pictures, and write a pack without ground truth."""

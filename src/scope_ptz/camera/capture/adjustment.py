@@ -1,10 +1,10 @@
-"""Bundle adjustment of a capture: find the rotations and fields of view that best explain all matches.
+"""Bundle adjustment for a capture: find the rotations and fields of view that best explain all matches.
 
-The camera turns about its optical centre, so a match between two frames means that two rays have the same direction. The unknowns
-are a small rotation of each frame and a factor on the focal length at each zoom level. The matches determine the poses relative to
-each other, and the reported poses determine the absolute orientation. Reported poses are assumed to have an independent error per
-frame and a slow drift that starts at zero. This is a bundle adjustment with rotations only (Brown and Lowe,
-"Automatic panoramic image stitching using invariant features", 2007), solved by Gauss-Newton steps with Huber weights.
+The camera rotates about its optical centre, so matching points in two frames lie in the same direction. The unknowns are a small
+rotation per frame and a correction factor for the focal length at each zoom level. The matches determine the relative poses, and
+the reported poses determine the absolute orientation. Reported poses are assumed to have an independent error per frame and a
+slow drift that starts at zero. This is rotation-only bundle adjustment (Brown and Lowe, "Automatic panoramic image stitching using
+invariant features", 2007), solved by Gauss-Newton iteration with Huber weights.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ POSE_SIGMA_DEG = 0.5
 """Assumed standard error of a reported pose, in degrees."""
 
 DRIFT_SIGMA_DEG = 3.0
-"""Assumed standard deviation of the drift of pan or tilt over the whole capture, in degrees."""
+"""Assumed standard deviation of the pan or tilt drift over the whole capture, in degrees."""
 
 SIGNIFICANCE_FACTOR = 3.0
-"""A drift is accepted if it exceeds this multiple of its standard error."""
+"""A drift counts as significant if it exceeds this multiple of its standard error."""
 
 FOCAL_SIGMA = 0.05
 """Assumed relative standard error of the reported focal length."""
 
 MATCH_SIGMA_PX = 0.7
-"""Assumed standard error of the position of a feature, in pixels."""
+"""Assumed standard error of a feature position, in pixels."""
 
 REJECT_PX = 2.5
-"""Matches whose error in the first solution exceeds this many pixels are excluded from the second one."""
+"""Maximum error of a match in pixels; matches with larger errors are treated as outliers."""
 
 MAX_PAUSE_S = 60.0
-"""Maximum seconds between two frames that count towards the drift. A longer gap, such as an interruption, counts as this many."""
+"""Maximum drift time in seconds between two frames. Longer gaps, such as interruptions, are truncated to this value."""
 
 SAME_FOCAL_TOLERANCE = 0.004
-"""Frames whose focal lengths differ by less than this fraction share one correction."""
+"""Frames whose focal lengths differ by less than this fraction share one correction factor."""
 
 STEPS = 6
 """Maximum number of Gauss-Newton steps per solution."""
@@ -58,8 +58,9 @@ class Adjustment:
         axes: The right, up and forward axes of each frame, as the rows of a (3, 3) matrix.
         focal_px: Focal length of each frame in pixels.
         registered: Whether each frame has enough matches to determine its pose.
-        residual_px: Root mean square error of the matches, in pixels of the coarser frame of each pair; None without matches.
-        matches: Number of matches that were used.
+        residual_px: Root mean square error of the matches, in pixels of the coarser frame of each pair; None if there are no
+            matches.
+        matches: Number of matches used.
     """
 
     axes: tuple[Floats, ...]
@@ -75,31 +76,34 @@ def adjust(views: Sequence[Perspective], matches: Sequence[PairMatches], times_s
     Args:
         views: The frames at their reported poses, in the order in which they were taken.
         matches: Matches between pairs of frames.
-        times_s: The time at which each frame was taken, for the drift; None for equal intervals.
+        times_s: The time at which each frame was taken, used to model the drift; None for equal intervals.
     """
     problem = _Problem(views, _progress(np.array(range(len(views)) if times_s is None else times_s, np.float64)))
-    used = list(matches)
+    inliers = list(matches)
     for _ in range(2):
         for _ in range(STEPS):
-            if problem.step(used) < 1e-7:
+            if problem.step(inliers) < 1e-7:
                 break
-        used = problem.without_outliers(used)
+        inliers = problem.exclude_outliers(inliers)
     problem.drop_insignificant_drift()
     for _ in range(2):
-        problem.step(used)
+        problem.step(inliers)
     counts = np.zeros(len(views))
-    for pair in used:
+    for pair in inliers:
         counts[[pair.first, pair.second]] += len(pair.first_px)
     registered = tuple(bool(count >= MIN_INLIERS) for count in counts)
-    residual = problem.residual_px(used)
+    residual = problem.residual_px(inliers)
     return Adjustment(tuple(problem.axes), tuple(map(float, problem.focals())), registered, residual, int(counts.sum() // 2))
 
 
 class _Problem:
-    """The current solution, and the normal equations that improve it.
+    """The least-squares problem and its current solution.
 
-    The unknowns are three numbers per frame (a rotation vector in world coordinates), one per group of frames with the same field
-    of view (the logarithm of a factor on the focal length), and two for the drift of pan and tilt over the capture, in radians.
+    The unknowns are:
+
+    - three numbers per frame: a rotation vector in world coordinates;
+    - one number per group of frames with the same field of view: the logarithm of the focal-length correction factor;
+    - two numbers for the pan and tilt drift over the whole capture, in radians.
     """
 
     def __init__(self, views: Sequence[Perspective], progress: Floats) -> None:
@@ -110,26 +114,26 @@ class _Problem:
         self.turns = np.zeros((len(views), 3))
         self.drift = np.zeros(2)
         self.drift_sigma = np.full(2, math.radians(DRIFT_SIGMA_DEG))
-        # A drift of pan rotates about the vertical, clockwise as seen from above.
-        # A drift of tilt rotates about the frame's right axis.
+        # Pan drift rotates the frame about the vertical axis, clockwise seen from above; tilt drift rotates it about its right
+        # axis.
         self._progress = progress
-        self._whole_bases = [np.column_stack([(0.0, 0.0, -1.0), axes[0]]) for axes in self.axes]
-        self.drift_bases = [part * basis for part, basis in zip(progress, self._whole_bases, strict=True)]
+        self._full_drift_bases = [np.column_stack([(0.0, 0.0, -1.0), axes[0]]) for axes in self.axes]
+        self.drift_bases = [part * basis for part, basis in zip(progress, self._full_drift_bases, strict=True)]
 
     def focals(self) -> Floats:
         """Return the focal length of each frame in pixels."""
         return np.array([view.focal_px for view in self.views]) * np.exp(self.log_factor[self.groups])
 
     def step(self, matches: Sequence[PairMatches]) -> float:
-        """Take one Gauss-Newton step and return its largest rotation in radians."""
+        """Take one Gauss-Newton step and return the largest component of its rotation vectors, in radians."""
         n, g = len(self.views), len(self.log_factor)
         size = 3 * n + g + 2
-        normal, right = np.zeros((size, size)), np.zeros(size)
+        normal, rhs = np.zeros((size, size)), np.zeros(size)
         focals = self.focals()
         for pair in matches:
-            self._add_pair(normal, right, pair, focals)
-        self._add_priors(normal, right)
-        change = np.linalg.solve(normal, right)
+            self._add_pair(normal, rhs, pair, focals)
+        self._add_priors(normal, rhs)
+        change = np.linalg.solve(normal, rhs)
         turns = change[: 3 * n].reshape(n, 3)
         for k in range(n):
             self.axes[k] = self.axes[k] @ rotation_matrix(turns[k]).T
@@ -138,8 +142,8 @@ class _Problem:
         self.drift += change[3 * n + g :]
         return float(np.abs(turns).max(initial=0.0))
 
-    def _add_pair(self, normal: Floats, right: Floats, pair: PairMatches, focals: Floats) -> None:
-        """Add the matches of a pair to the normal equations."""
+    def _add_pair(self, normal: Floats, rhs: Floats, pair: PairMatches, focals: Floats) -> None:
+        """Add a pair's matches to the normal equations."""
         i, j, n = pair.first, pair.second, len(self.views)
         (rays_i, slopes_i), (rays_j, slopes_j) = (
             _rays(points, float(focals[k]), self.axes[k]) for k, points in ((i, pair.first_px), (j, pair.second_px))
@@ -155,56 +159,56 @@ class _Problem:
         )
         weighted = jacobian * weights[:, None, None]
         np.add.at(normal, (columns[:, None], columns[None, :]), np.einsum("nki,nkj->ij", weighted, jacobian))
-        np.add.at(right, columns, -np.einsum("nki,nk->i", weighted, residuals))
+        np.add.at(rhs, columns, -np.einsum("nki,nk->i", weighted, residuals))
 
-    def _add_priors(self, normal: Floats, right: Floats) -> None:
+    def _add_priors(self, normal: Floats, rhs: Floats) -> None:
         """Add the priors, which keep ``turn - basis @ drift``, the drift and the focal factors small."""
         n, g = len(self.views), len(self.log_factor)
         weight = 1 / math.radians(POSE_SIGMA_DEG) ** 2
-        last = slice(3 * n + g, 3 * n + g + 2)
+        drift_rows = slice(3 * n + g, 3 * n + g + 2)
         for k, basis in enumerate(self.drift_bases):
             frame = slice(3 * k, 3 * k + 3)
             residual = self.turns[k] - basis @ self.drift
             normal[frame, frame] += weight * np.eye(3)
-            normal[frame, last] -= weight * basis
-            normal[last, frame] -= weight * basis.T
-            normal[last, last] += weight * basis.T @ basis
-            right[frame] -= weight * residual
-            right[last] += weight * basis.T @ residual
-        normal[last, last] += np.diag(1 / self.drift_sigma**2)
-        right[last] -= self.drift / self.drift_sigma**2
-        middle = slice(3 * n, 3 * n + g)
-        normal[middle, middle] += np.eye(g) / FOCAL_SIGMA**2
-        right[middle] -= self.log_factor / FOCAL_SIGMA**2
+            normal[frame, drift_rows] -= weight * basis
+            normal[drift_rows, frame] -= weight * basis.T
+            normal[drift_rows, drift_rows] += weight * basis.T @ basis
+            rhs[frame] -= weight * residual
+            rhs[drift_rows] += weight * basis.T @ residual
+        normal[drift_rows, drift_rows] += np.diag(1 / self.drift_sigma**2)
+        rhs[drift_rows] -= self.drift / self.drift_sigma**2
+        focal_rows = slice(3 * n, 3 * n + g)
+        normal[focal_rows, focal_rows] += np.eye(g) / FOCAL_SIGMA**2
+        rhs[focal_rows] -= self.log_factor / FOCAL_SIGMA**2
 
     def drop_insignificant_drift(self) -> None:
-        """Make the next steps set a drift to zero if errors of individual poses can explain it.
+        """Constrain a drift to zero in later steps if independent pose errors can explain it.
 
         This makes the absolute orientation more accurate.
         """
         count = len(self.views)
-        # The components of each turn along a drift of pan and a drift of tilt over the whole capture.
-        parts = np.array([basis.T @ turn for basis, turn in zip(self._whole_bases, self.turns, strict=True)]).reshape(count, 2)
+        # The components of each rotation along the full pan drift and the full tilt drift.
+        parts = np.array([basis.T @ turn for basis, turn in zip(self._full_drift_bases, self.turns, strict=True)]).reshape(count, 2)
         noise = np.std(parts - self._progress[:, None] * self.drift, axis=0)
         standard_error = noise * math.sqrt(12 / max(count, 1))
         self.drift_sigma[np.abs(self.drift) < SIGNIFICANCE_FACTOR * standard_error] = math.radians(1e-4)
 
     def _distances_px(self, pair: PairMatches, focals: Floats) -> Floats:
-        one, _ = _rays(pair.first_px, float(focals[pair.first]), self.axes[pair.first])
-        two, _ = _rays(pair.second_px, float(focals[pair.second]), self.axes[pair.second])
-        return np.asarray(np.linalg.norm(one - two, axis=1) * min(focals[pair.first], focals[pair.second]))
+        rays_1, _ = _rays(pair.first_px, float(focals[pair.first]), self.axes[pair.first])
+        rays_2, _ = _rays(pair.second_px, float(focals[pair.second]), self.axes[pair.second])
+        return np.asarray(np.linalg.norm(rays_1 - rays_2, axis=1) * min(focals[pair.first], focals[pair.second]))
 
-    def without_outliers(self, matches: Sequence[PairMatches]) -> list[PairMatches]:
-        """Return the matches that agree with the solution, without pairs that have too few of them."""
+    def exclude_outliers(self, matches: Sequence[PairMatches]) -> list[PairMatches]:
+        """Return the matches that agree with the solution, omitting pairs with too few of them."""
         focals, inliers = self.focals(), []
         for pair in matches:
-            good = self._distances_px(pair, focals) < REJECT_PX
-            if good.sum() >= MIN_INLIERS // 2:
-                inliers.append(PairMatches(pair.first, pair.second, pair.first_px[good], pair.second_px[good]))
+            agreeing = self._distances_px(pair, focals) < REJECT_PX
+            if agreeing.sum() >= MIN_INLIERS // 2:
+                inliers.append(PairMatches(pair.first, pair.second, pair.first_px[agreeing], pair.second_px[agreeing]))
         return inliers
 
     def residual_px(self, matches: Sequence[PairMatches]) -> float | None:
-        """Return the root mean square error of matches in pixels; None without matches."""
+        """Return the root mean square error of the matches in pixels; None if there are no matches."""
         if not matches:
             return None
         focals = self.focals()
@@ -213,7 +217,7 @@ class _Problem:
 
 
 def rotation_matrix(vector: Floats) -> Floats:
-    """Return the (3, 3) rotation matrix of a rotation vector (3,), whose length is the angle in radians (Rodrigues)."""
+    """Return the (3, 3) rotation matrix for a rotation vector (3,), whose length is the angle in radians (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
     if angle < 1e-12:
         return np.eye(3)
@@ -228,14 +232,14 @@ def turn_deg(a: Floats, b: Floats) -> float:
 
 
 def _progress(times_s: Floats) -> Floats:
-    """Return when each frame was taken, from 0 (start of the capture) to 1 (end). A pause counts as at most ``MAX_PAUSE_S``."""
+    """Return the frame times scaled to 0 (start of the capture) to 1 (end), with gaps truncated to ``MAX_PAUSE_S``."""
     steps = np.clip(np.diff(times_s, prepend=times_s[:1]), 0.0, MAX_PAUSE_S)
-    passed = np.cumsum(steps)
-    return np.asarray(passed / passed[-1] if len(passed) and passed[-1] > 0 else np.zeros(len(passed)), np.float64)
+    elapsed = np.cumsum(steps)
+    return np.asarray(elapsed / elapsed[-1] if len(elapsed) and elapsed[-1] > 0 else np.zeros(len(elapsed)), np.float64)
 
 
 def _rays(points_px: Floats, focal_px: float, axes: Floats) -> tuple[Floats, Floats]:
-    """Return unit rays (n, 3) in world coordinates, and their derivatives with respect to the logarithm of the focal length."""
+    """Return unit rays (n, 3) in world coordinates and their derivatives with respect to the logarithm of the focal length."""
     local = np.column_stack([points_px, np.full(len(points_px), focal_px)])
     length = np.linalg.norm(local, axis=1, keepdims=True)
     unit = local / length

@@ -1,4 +1,4 @@
-"""Choose close-ups where the wide pictures show the finest detail, such as signs and small distant objects."""
+"""Choose poses for close-ups where the wide pictures show fine detail, such as signs and small distant objects."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from scope_ptz.camera.capture.session import CaptureSession
 from scope_ptz.geometry import Perspective, Pose
 
 CELL_DEG = 1.0
-"""Size of the cells in which detail is counted, in degrees."""
+"""Size in degrees of the cells in which detail is measured."""
 
 STRONG_EDGE = 24.0
-"""Minimum local contrast of an edge that is counted as detail, on a scale of 0 to 255. Noise and fine texture have less."""
+"""Minimum local contrast of detail, on a scale of 0 to 255. Noise and fine texture have less contrast."""
 
 HORIZON_DEG, FALLOFF_DEG = -4.0, 22.0
-"""Centre and width, in degrees of tilt, of the bell curve that weights detail.
+"""Centre and width of the bell curve by which detail is weighted, in degrees of tilt.
 
-It favours directions near the horizon, because distant objects look small.
+It favours directions near the horizon, where objects are distant and look small.
 """
 
 Floats = NDArray[np.float64]
 
 
 def choose_close_ups(session: CaptureSession, info: CameraInfo, candidates: Sequence[Pose], limit: int) -> list[Pose]:
-    """Return at most ``limit`` candidates: those that show the most detail, in their original order.
+    """Return the candidates that show the most detail, at most ``limit`` of them, in their original order.
 
     Args:
         session: The capture, with its wide frames.
         info: The camera.
-        candidates: Possible poses of close-ups.
+        candidates: Possible close-up poses.
         limit: Maximum number of poses.
     """
     detail = _detail_map(session)
@@ -49,7 +49,7 @@ def _view(info: CameraInfo, pose: Pose) -> Perspective:
 
 
 def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
-    """Return the weighted fraction of strong, fine edges in each cell of one degree.
+    """Return the weighted fraction of strong, fine edges in each one-degree cell.
 
     The shape is (180, 360). Rows start at the zenith, and columns at pan -180.
     """
@@ -71,23 +71,23 @@ def _detail_map(session: CaptureSession) -> NDArray[np.float32]:
         view = Perspective(shot.pan_deg, shot.tilt_deg, shot.hfov_deg, width, height)
         xs, ys = ((np.arange(n) + 0.5) / n for n in small.shape[::-1])
         rays = view.directions(np.stack(np.meshgrid(xs, ys), axis=-1))
-        rows, columns = _cells(rays)
+        rows, columns = _cell_indices(rays)
         np.add.at(sums, (rows, columns), small)
         np.add.at(counts, (rows, columns), 1.0)
     tilts = 89.5 - np.arange(180)
-    near = np.exp(-(((tilts - HORIZON_DEG) / FALLOFF_DEG) ** 2))
-    return np.asarray(sums / np.maximum(counts, 1.0) * near[:, None], np.float32)
+    horizon_weights = np.exp(-(((tilts - HORIZON_DEG) / FALLOFF_DEG) ** 2))
+    return np.asarray(sums / np.maximum(counts, 1.0) * horizon_weights[:, None], np.float32)
 
 
 def _detail_in(detail: NDArray[np.float32], view: Perspective) -> float:
     """Return the mean detail in a view."""
     xs, ys = ((np.arange(n) + 0.5) / n for n in (16, 9))
-    rows, columns = _cells(view.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
+    rows, columns = _cell_indices(view.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
     return float(detail[rows, columns].mean())
 
 
-def _cells(rays: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the rows and the columns of the cells to which directions belong."""
+def _cell_indices(rays: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the row and column indices of the cells that contain the given directions."""
     pan = np.degrees(np.arctan2(rays[..., 0], rays[..., 1]))
     tilt = np.degrees(np.arcsin(np.clip(rays[..., 2], -1.0, 1.0)))
     return np.clip((90.0 - tilt).astype(np.int64), 0, 179), (pan + 180.0).astype(np.int64) % 360

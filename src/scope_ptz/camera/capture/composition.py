@@ -1,8 +1,8 @@
-"""Compose a picture from overlapping frames: match their tone, remove moving objects, and blend them in two bands.
+"""Compose a picture from overlapping frames: match their tone, remove moving objects, and blend two frequency bands.
 
-Large structures are blended over the whole overlap, which hides the edges of frames. Fine detail comes from the frame whose centre
-is nearest, so that small pose errors do not blur it (Brown and Lowe, 2007). Where three or more frames show a direction, those
-that differ from the median contain a moving object and are excluded.
+The low band is blended over the whole overlap, which hides the seams. Fine detail comes from the frame whose centre is nearest,
+so that small pose errors do not blur it (Brown and Lowe, 2007). Where at least three frames overlap, a frame that differs from
+the median shows a moving object there and is excluded.
 """
 
 from __future__ import annotations
@@ -21,39 +21,41 @@ from scope_ptz.geometry import Equirectangular, Perspective, angle_between_deg
 from scope_ptz.simulator.mapping.grid import Grid
 
 UNSEEN = (64, 64, 64)
-"""RGB colour of pixels that no frame shows."""
+"""RGB colour of pixels that no frame covers."""
 
 BLOCK = (192, 384)
-"""Rows and columns of the blocks in which a picture is composed."""
+"""Height and width in pixels of the blocks in which a picture is composed."""
 
-MARGIN_PX = 24  # width of the margin around a block; it makes neighbouring blocks detect the same moving objects
+MARGIN_PX = 24  # width of the margin around a block, so that neighbouring blocks detect the same moving objects
 LOW_SCALE = 8  # the low band has one value per 8 x 8 pixels of a frame
 WEIGHT_SCALE = 4  # weights have one value per 4 x 4 pixels of a frame
 COARSE_PX = 4  # weights and low bands are evaluated at every fourth pixel of a block
-NEGLIGIBLE_WEIGHT = 2e-3  # a frame whose weight is below this in a whole block adds no detail to it
+NEGLIGIBLE_WEIGHT = 2e-3  # frames whose weight is below this throughout a block add no detail to it
 MOTION_DIFFERENCE = 14.0
-"""Difference from the median after smoothing, on a scale of 0 to 255, above which a frame shows a moving object."""
+"""Minimum difference of a moving object from the median after smoothing, on a scale of 0 to 255."""
 
 MIXED_ZOOM_CELLS, MIXED_ZOOM_DIFFERENCE = 2.5, 20.0
-"""Values for comparing frames with different zooms, which never look exactly the same. The first is the smoothing, in cells of
-``LOW_SCALE`` pixels of the coarsest frame. The second is used instead of ``MOTION_DIFFERENCE``."""
+"""Smoothing and threshold for comparing frames at different zooms, which never look exactly the same.
+
+The smoothing is in cells of ``LOW_SCALE`` pixels in the coarsest frame. The threshold replaces ``MOTION_DIFFERENCE``.
+"""
 
 SHARP_POWER, SOFT_POWER = 12, 2
-"""Exponents of the weight, which decreases from the centre of a frame to its edge: for fine detail, and for large structures."""
+"""Exponents applied to the weight of a frame, for fine detail and for the low band."""
 
 MIN_FINE_DENSITY = 0.8
-"""Minimum pixel density of a "fine" frame, relative to the densest frame of a block.
+"""Minimum pixel density of a "fine" frame, relative to the densest frame in a block.
 
-Coarser frames help to detect moving objects, and fill the areas that no fine frame shows.
+Coarser frames help to detect moving objects and fill the areas that no fine frame covers.
 """
 
 FINE_EDGE = 0.06
-"""Weight of the best fine frame below which coarse frames gradually replace it."""
+"""Weight below which coarse frames gradually replace the best fine frame."""
 
 MIN_WEIGHT = 1e-7  # weight at the edge of a frame
 MAX_CACHED_FRAMES = 40
 _STEP = 8  # distance in pixels between the points at which directions are computed exactly
-GREY = np.array([0.299, 0.587, 0.114], np.float32)  # weights of red, green and blue in the brightness
+GREY = np.array([0.299, 0.587, 0.114], np.float32)  # luma weights for red, green and blue
 
 View = Equirectangular | Perspective
 
@@ -67,9 +69,9 @@ class FramePicture:
     """The pixels of a frame.
 
     Attributes:
-        image: Array of shape ``(H, W, 3)``, RGB, in the common tone.
+        image: Array of shape ``(H, W, 3)``, RGB, with the gains applied.
         low: The low band of the image, reduced by ``LOW_SCALE`` in both directions.
-        weight: The weight, reduced by ``WEIGHT_SCALE``: 1 in the centre, 0 at the edge and at hidden parts.
+        weight: The weight, reduced by ``WEIGHT_SCALE``: 1 at the centre, 0 at the edges and in hidden parts.
     """
 
     image: Picture
@@ -78,8 +80,8 @@ class FramePicture:
 
 
 def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]) -> FramePicture:
-    """Prepare the pixels of a frame, (H, W, 3) RGB, for composition: apply the gains, and compute low band and weights."""
-    toned = image if np.allclose(gain, 1.0, atol=1e-3) else _with_gain(image, gain)
+    """Prepare a frame, (H, W, 3) RGB, for composition: apply the gains, and compute the low band and the weights."""
+    toned = image if np.allclose(gain, 1.0, atol=1e-3) else _apply_gain(image, gain)
     height, width = image.shape[:2]
     low = cv2.resize(toned, (max(1, width // LOW_SCALE), max(1, height // LOW_SCALE)), interpolation=cv2.INTER_AREA)
     low = cv2.GaussianBlur(low.astype(np.float32), (0, 0), 1.0, borderType=cv2.BORDER_REPLICATE)
@@ -87,20 +89,20 @@ def frame_picture(image: Picture, hidden: Mask | None, gain: NDArray[np.float64]
     y, x = ((np.arange(n) + 0.5) / n for n in (rows, columns))
     share = (np.minimum(y, 1 - y)[:, None] * 2) * (np.minimum(x, 1 - x)[None, :] * 2)
     if hidden is not None:
-        open_ = cv2.resize((~hidden).astype(np.uint8), (columns, rows), interpolation=cv2.INTER_AREA)
+        visible = cv2.resize((~hidden).astype(np.uint8), (columns, rows), interpolation=cv2.INTER_AREA)
         fine = cv2.erode((~hidden).astype(np.uint8), np.ones((9, 9), np.uint8))
-        open_ = np.minimum(open_, cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_NEAREST))
-        share = share * np.clip(cv2.distanceTransform(open_, cv2.DIST_L2, 3) / 12, 0, 1)
+        visible = np.minimum(visible, cv2.resize(fine, (columns, rows), interpolation=cv2.INTER_NEAREST))
+        share = share * np.clip(cv2.distanceTransform(visible, cv2.DIST_L2, 3) / 12, 0, 1)
     return FramePicture(toned, low, share.astype(np.float32))
 
 
-def _with_gain(image: Picture, gain: NDArray[np.float64]) -> Picture:
+def _apply_gain(image: Picture, gain: NDArray[np.float64]) -> Picture:
     tables = np.clip(np.arange(256)[:, None] * gain, 0, 255).round().astype(np.uint8)
     return np.asarray(cv2.merge([cv2.LUT(np.ascontiguousarray(image[..., k]), tables[:, k]) for k in range(3)]))
 
 
 class Composer:
-    """Composes pictures from frames on the sphere.
+    """Composes pictures from frames placed on the sphere.
 
     Args:
         frames: The frames.
@@ -119,7 +121,7 @@ class Composer:
         chosen: Sequence[int],
         progress: Callable[[int, int], None] = lambda *_: None,
     ) -> tuple[Picture, Mask]:
-        """Compose a picture in a given projection from some of the frames.
+        """Compose a picture in the given projection from some of the frames.
 
         Args:
             projection: The projection of the picture.
@@ -127,60 +129,61 @@ class Composer:
             progress: Called with the number of finished blocks and the total number of blocks.
 
         Returns:
-            The picture, (H, W, 3) RGB, and the mask (H, W) of the pixels that a frame shows.
+            The picture, (H, W, 3) RGB, and the mask (H, W) of the pixels that some frame covers.
         """
         picture = np.empty((projection.height, projection.width, 3), np.uint8)
         picture[:] = UNSEEN
         seen = np.zeros(picture.shape[:2], bool)
         blocks = list(_blocks(projection.height, projection.width))
         for number, (rows, columns) in enumerate(blocks):
-            self._block(projection, rows, columns, chosen, picture, seen)
+            self._compose_block(projection, rows, columns, chosen, picture, seen)
             progress(number + 1, len(blocks))
         return picture, seen
 
-    def _block(
+    def _compose_block(
         self, projection: View, rows: slice, columns: slice, chosen: Sequence[int], out: Picture, seen: Mask
     ) -> None:  # fmt: skip
-        whole = (
+        extended = (
             slice(max(0, rows.start - MARGIN_PX), min(projection.height, rows.stop + MARGIN_PX)),
             slice(max(0, columns.start - MARGIN_PX), min(projection.width, columns.stop + MARGIN_PX)),
         )
-        grid = Grid(projection, _STEP, whole)
+        grid = Grid(projection, _STEP, extended)
         rays = grid.directions()
-        layers = [layer for k in self._near(rays, chosen) if (layer := self._layer(k, grid, rays)) is not None]
+        layers = [layer for k in self._frames_near(rays, chosen) if (layer := self._layer(k, grid, rays)) is not None]
         if not layers:
             return
-        image, found = _blend(layers, projection.pixels_per_radian)
-        top, left = rows.start - whole[0].start, columns.start - whole[1].start
+        image, shown_mask = _blend(layers, projection.pixels_per_radian)
+        top, left = rows.start - extended[0].start, columns.start - extended[1].start
         inner = slice(top, top + rows.stop - rows.start), slice(left, left + columns.stop - columns.start)
-        part, shown = image[inner], found[inner]
+        part, shown = image[inner], shown_mask[inner]
         out[rows, columns][shown] = part[shown]
         seen[rows, columns] = shown
 
-    def _near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
-        """Return the indices of the chosen frames that may show some of the directions."""
+    def _frames_near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
+        """Return the indices of the chosen frames that may cover any of the directions."""
         indices = np.array(chosen, dtype=np.int64)
         middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
         reach = float(angle_between_deg(rays, middle).max())
-        apart = angle_between_deg(self._middles[indices], middle)
-        return [int(k) for k in indices[apart < reach + self._reach_deg[indices]]]
+        separations_deg = angle_between_deg(self._middles[indices], middle)
+        return [int(k) for k in indices[separations_deg < reach + self._reach_deg[indices]]]
 
     def _layer(self, index: int, grid: Grid, rays: NDArray[np.float64]) -> _Layer | None:
-        """Return a frame, resampled to a block; None if it shows no part of the block."""
+        """Return a frame resampled to a block; None if it covers no part of the block."""
         frame = self._frames[index]
         nodes = frame.points(rays)
         if not np.any(np.all((nodes > -0.1) & (nodes < 1.1), axis=-1)):
             return None
         size = np.array([frame.width, frame.height])
-        spots = grid.to_pixels(np.nan_to_num(np.clip(nodes, -3.0, 4.0), nan=-3.0) * size - 0.5)
-        inside = np.all((spots >= 0) & (spots <= (size - 1).astype(np.float32)), axis=-1)
-        coarse = spots[_every(spots.shape[0])[:, None], _every(spots.shape[1])[None, :]] + np.float32(0.5)
+        source_px = grid.to_pixels(np.nan_to_num(np.clip(nodes, -3.0, 4.0), nan=-3.0) * size - 0.5)
+        inside = np.all((source_px >= 0) & (source_px <= (size - 1).astype(np.float32)), axis=-1)
+        rows, columns = (_coarse_indices(length) for length in source_px.shape[:2])
+        coarse = source_px[rows[:, None], columns[None, :]] + np.float32(0.5)
         pixels = self._pixels(index)
         share = _look_up(pixels.weight, coarse / WEIGHT_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
         if not share.any() or not inside.any():
             return None
         low = _look_up(pixels.low, coarse / LOW_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE)
-        return _Layer(pixels.image, spots, inside, low, share, frame.focal_px)
+        return _Layer(pixels.image, source_px, inside, low, share, frame.focal_px)
 
     def _pixels(self, index: int) -> FramePicture:
         if index not in self._pictures:
@@ -193,19 +196,19 @@ class Composer:
 
 @dataclass(frozen=True, slots=True)
 class _Layer:
-    """A frame, resampled to a block of ``(H, W)`` pixels.
+    """A frame resampled to a block of ``(H, W)`` pixels.
 
     Attributes:
         image: The frame.
-        spots: The frame's pixel coordinates for each pixel of the block, ``(H, W, 2)``.
-        inside: Whether the frame shows each pixel, ``(H, W)``.
+        source_px: Coordinates in the frame for each pixel of the block, ``(H, W, 2)``.
+        inside: Whether the frame covers each pixel, ``(H, W)``.
         low: Its low band on the coarse grid, ``(H / 4, W / 4, 3)``.
         weight: Its weight on the coarse grid, ``(H / 4, W / 4)``.
         focal_px: Its focal length in pixels, which is its density in pixels per radian.
     """
 
     image: Picture
-    spots: Floats
+    source_px: Floats
     inside: Mask
     low: Floats
     weight: Floats
@@ -213,21 +216,21 @@ class _Layer:
 
 
 def _blend(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
-    """Blend the layers of a block. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer shows.
+    """Blend the layers of a block. Return the picture (H, W, 3) and the mask (H, W) of the pixels that any layer covers.
 
     Args:
         layers: The layers of a block.
-        density: Density of the picture in pixels per radian.
+        density: Pixel density of the picture in pixels per radian.
     """
     densest = max(layer.focal_px for layer in layers)
-    trust, disputed = _votes(layers, density)
+    trust, disputed = _trust_maps(layers, density)
     fine = [layer.focal_px >= MIN_FINE_DENSITY * densest for layer in layers]
     shares = [layer.weight * weight for layer, weight in zip(layers, trust, strict=True)]
     peaked = [share**SHARP_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
     wide = [share**SOFT_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
     best = np.max([share for share, good in zip(shares, fine, strict=True) if good], axis=0)
-    peaked, wide = _by_fineness(peaked, fine, best), _by_fineness(wide, fine, best)
-    # Where frames disagree, the low band comes from one frame too, because a mixture would show ghosts.
+    peaked, wide = _normalise_by_fineness(peaked, fine, best), _normalise_by_fineness(wide, fine, best)
+    # Where frames disagree, the low band also comes from a single frame, because mixing them would cause ghosting.
     mixed = [soft + disputed * (sharp - soft) for soft, sharp in zip(wide, peaked, strict=True)]
     low = np.zeros_like(layers[0].low)
     for layer, weight in zip(layers, mixed, strict=True):
@@ -240,29 +243,29 @@ def _blend(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
         shown |= layer.inside & (_enlarge(layer.weight, height, width) > 0)
         if weight.max() < NEGLIGIBLE_WEIGHT:
             continue
-        amount = _enlarge(weight, height, width) * layer.inside
-        full = cv2.remap(layer.image, layer.spots, None, cv2.INTER_LANCZOS4, borderMode=cv2.BORDER_REPLICATE)
-        details += amount[..., None] * (full - _enlarge(layer.low, height, width))
-        total += amount
+        detail_weight = _enlarge(weight, height, width) * layer.inside
+        full = cv2.remap(layer.image, layer.source_px, None, cv2.INTER_LANCZOS4, borderMode=cv2.BORDER_REPLICATE)
+        details += detail_weight[..., None] * (full - _enlarge(layer.low, height, width))
+        total += detail_weight
     picture += details / np.maximum(total, 1e-6)[..., None]
     return np.clip(np.rint(picture), 0, 255).astype(np.uint8), shown
 
 
-def _by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) -> list[Floats]:
-    """Normalise weights so that they sum to 1. Coarse frames get weight only where the fine frames have little or none."""
+def _normalise_by_fineness(weights: Sequence[Floats], fine: Sequence[bool], best: Floats) -> list[Floats]:
+    """Normalise weights to sum to 1. Coarse frames get weight only where fine frames have little or none."""
     totals = {
-        kind: sum((weight for weight, good in zip(weights, fine, strict=True) if good is kind), np.zeros_like(best))
-        for kind in (True, False)
+        is_fine: sum((weight for weight, fine_flag in zip(weights, fine, strict=True) if fine_flag is is_fine), np.zeros_like(best))
+        for is_fine in (True, False)
     }
-    here = np.where(totals[False] > 0, np.clip(best / FINE_EDGE, 0, 1), 1)
-    shares = {True: here, False: 1 - here}
+    fine_share = np.where(totals[False] > 0, np.clip(best / FINE_EDGE, 0, 1), 1)
+    shares = {True: fine_share, False: 1 - fine_share}
     return [
-        np.asarray(weight / np.maximum(totals[good], 1e-30) * shares[good], np.float32)
-        for weight, good in zip(weights, fine, strict=True)
+        np.asarray(weight / np.maximum(totals[fine_flag], 1e-30) * shares[fine_flag], np.float32)
+        for weight, fine_flag in zip(weights, fine, strict=True)
     ]
 
 
-def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floats]:
+def _trust_maps(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floats]:
     """Return the trust in each layer, and the disagreement between trusted layers, both from 0 to 1 on the coarse grid.
 
     A layer is trusted except where it shows a moving object.
@@ -278,37 +281,37 @@ def _votes(layers: Sequence[_Layer], density: float) -> tuple[list[Floats], Floa
     greys = np.where(absent, np.nan, greys)
     order = np.sort(greys, axis=0)  # NaN comes last
     count = (~absent).sum(axis=0)
-    take = np.clip(count - 1, 0, None)
-    middle = (_at(order, take // 2) + _at(order, (take + 1) // 2)) / 2
-    away = np.nan_to_num(np.abs(greys - middle))
-    moved = np.stack([_grow(each, limit) for each in np.where(count >= 3, away, 0)])
-    trust = [1 - (1 - 1e-3) * _spread(each) for each in moved]
-    trusted = np.where(moved, np.nan, greys)
+    last_index = np.clip(count - 1, 0, None)
+    middle = (_take_along(order, last_index // 2) + _take_along(order, (last_index + 1) // 2)) / 2
+    differences = np.nan_to_num(np.abs(greys - middle))
+    moving = np.stack([_moving_areas(layer_map, limit) for layer_map in np.where(count >= 3, differences, 0)])
+    trust = [1 - (1 - 1e-3) * _soften(layer_map) for layer_map in moving]
+    trusted = np.where(moving, np.nan, greys)
     order = np.sort(trusted, axis=0)
     count = (~np.isnan(trusted)).sum(axis=0)
-    spread = np.nan_to_num(_at(order, np.clip(count - 1, 0, None)) - order[0])
-    return trust, _spread(spread > limit)
+    spread = np.nan_to_num(_take_along(order, np.clip(count - 1, 0, None)) - order[0])
+    return trust, _soften(spread > limit)
 
 
 def _smooth(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
-    """Smooth a brightness to ``cells`` cells of the coarsest frame, so that a difference in sharpness is not taken for motion."""
+    """Smooth a grey picture to ``cells`` cells of the coarsest frame, so that differences in sharpness do not look like motion."""
     target, current = (LOW_SCALE * density / focal / COARSE_PX for focal in (coarsest_px, focal_px))
     sigma = math.sqrt(max(0.0, (cells * target) ** 2 - current**2))
     return grey if sigma < 0.3 else np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
 
 
-def _at(stack: Floats, index: NDArray[np.int64]) -> Floats:
+def _take_along(stack: Floats, index: NDArray[np.int64]) -> Floats:
     return np.asarray(np.take_along_axis(stack, index[None], axis=0)[0])
 
 
-def _grow(away: Floats, limit: float) -> Mask:
-    """Return the mask of the connected areas whose differences all exceed a third of a limit and somewhere exceed the limit."""
-    _, labels = cv2.connectedComponents((away > limit / 3).astype(np.uint8))
-    above = np.unique(labels[away > limit])
+def _moving_areas(differences: Floats, limit: float) -> Mask:
+    """Return the mask of moving areas: connected areas above a third of the limit that exceed the limit somewhere."""
+    _, labels = cv2.connectedComponents((differences > limit / 3).astype(np.uint8))
+    above = np.unique(labels[differences > limit])
     return np.isin(labels, above[above > 0])
 
 
-def _spread(mask: Mask) -> Floats:
+def _soften(mask: Mask) -> Floats:
     """Enlarge a mask and soften its edges. Return values from 0 to 1."""
     if not mask.any():
         return np.zeros(mask.shape, np.float32)
@@ -316,13 +319,13 @@ def _spread(mask: Mask) -> Floats:
     return np.asarray(cv2.GaussianBlur(grown, (5, 5), 0))
 
 
-def _look_up(picture: Floats, spots: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
-    """Return the values of a picture at pixel coordinates (H, W, 2)."""
-    return np.asarray(cv2.remap(picture, spots, None, kind, borderMode=border))
+def _look_up(picture: Floats, source_px: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
+    """Sample a picture at pixel coordinates (H, W, 2)."""
+    return np.asarray(cv2.remap(picture, source_px, None, kind, borderMode=border))
 
 
-def _every(length: int) -> NDArray[np.int64]:
-    """Return the rows or columns of the coarse grid: the middle one of every four."""
+def _coarse_indices(length: int) -> NDArray[np.int64]:
+    """Return the row or column indices of the coarse grid, one near the middle of every four pixels."""
     return np.minimum(np.arange(-(-length // COARSE_PX)) * COARSE_PX + COARSE_PX // 2, length - 1)
 
 
@@ -333,7 +336,7 @@ def _enlarge(coarse: Floats, height: int, width: int) -> Floats:
 
 
 def _blocks(height: int, width: int) -> Iterator[tuple[slice, slice]]:
-    """Yield the rows and columns of blocks, column by column, so that consecutive blocks use the same frames."""
+    """Yield blocks as row and column slices, column by column, so that consecutive blocks use the same frames."""
     for left in range(0, width, BLOCK[1]):
         for top in range(0, height, BLOCK[0]):
             yield slice(top, min(top + BLOCK[0], height)), slice(left, min(left + BLOCK[1], width))

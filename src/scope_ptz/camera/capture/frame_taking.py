@@ -12,7 +12,8 @@ from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera
 from scope_ptz.camera.capture.close_ups import choose_close_ups
-from scope_ptz.camera.capture.plan import OVERLAP, Ranges, plan_poses, without_repeats
+from scope_ptz.camera.capture.plan import OVERLAP, Ranges, exclude_known_poses, plan_poses
+from scope_ptz.camera.capture.progress import Progress
 from scope_ptz.camera.capture.session import CaptureSession, CaptureSettings
 from scope_ptz.camera.control import ControlHeldError
 from scope_ptz.camera.guard.guarded_camera import GuardedCamera, KeepOutError
@@ -23,22 +24,19 @@ from scope_ptz.errors import CameraError, InputError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 
 CLOSE_UP_ZOOM = 4.0
-"""Magnification of close-ups. If the camera's maximum magnification is lower, that is used instead."""
+"""Magnification of close-ups, unless the camera's maximum magnification is lower."""
 
 CLOSE_UPS = 40
 """Default maximum number of close-ups."""
 
 RETURN_S = 30.0
-"""Seconds allowed for returning the camera to its original pose after a failed or cancelled capture."""
+"""Maximum time in seconds to return the camera to its original pose after a failed or cancelled capture."""
 
 ATTEMPTS, RETRY_S = 3, 2.0
-"""Maximum number of attempts to take a picture when the camera fails, and seconds between attempts."""
+"""Maximum number of attempts to take a picture, and seconds to wait between attempts."""
 
 HOME = "home"
 """Key of the frame at the camera's home position."""
-
-Progress = Callable[[str, int, int], None]
-"""A function that is called with the name of a phase, its number of finished steps, and its total number of steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +45,9 @@ class CaptureOptions:
 
     Attributes:
         ranges: The part of the camera's range to capture.
-        zooms: Magnifications at which the whole range is captured, in addition to the widest one.
+        zooms: Additional magnifications at which to capture the whole range.
         close_ups: Maximum number of close-ups of areas with fine detail.
-        overlap: Fraction of a frame that the next one also shows.
+        overlap: Fraction of a frame that overlaps the next one.
     """
 
     ranges: Ranges = field(default_factory=Ranges)
@@ -58,8 +56,8 @@ class CaptureOptions:
     overlap: float = OVERLAP
 
 
-def settings_of(camera: Camera, options: CaptureOptions) -> CaptureSettings:
-    """Return the settings of a capture.
+def capture_settings(camera: Camera, options: CaptureOptions) -> CaptureSettings:
+    """Return the settings for a capture.
 
     Raises:
         InputError: A range, zoom or number is invalid, or the camera's field of view is unknown.
@@ -68,13 +66,13 @@ def settings_of(camera: Camera, options: CaptureOptions) -> CaptureSettings:
     if "field of view" in info.assumed:
         raise InputError(
             f"The field of view of {info.name} is unknown, so its pictures cannot be stitched. Measure it with "
-            "`scope camera calibrate`, or give it in the spec: ?hfov_wide=...&hfov_tele=..."
+            "`scope camera calibrate`, or add it to the camera spec: ?hfov_wide=...&hfov_tele=..."
         )
     limits = options.ranges.within(info.limits)
     for zoom in options.zooms:
         if not limits.min_zoom < zoom <= limits.max_zoom:
             raise InputError(
-                f"A zoom to capture must be above {limits.min_zoom:g} and at most {limits.max_zoom:g}; got {zoom:g}. "
+                f"Each zoom must be above {limits.min_zoom:g} and at most {limits.max_zoom:g}; got {zoom:g}. "
                 f"The widest zoom is always captured."
             )
     if options.close_ups < 0:
@@ -96,12 +94,12 @@ def settings_of(camera: Camera, options: CaptureOptions) -> CaptureSettings:
         overlap=options.overlap,
         keep_out=rules.keep_out,
         masks=rules.masks,
-        rolled=_may_roll(camera),
+        rolled=_has_rolled_frames(camera),
     )
 
 
-def limits_of(settings: CaptureSettings) -> Limits:
-    """Return the captured limits."""
+def captured_limits(settings: CaptureSettings) -> Limits:
+    """Return the limits of the captured range."""
     return Limits(
         *settings.pan_range_deg, *settings.tilt_range_deg, *settings.zoom_range, pan_endless=settings.pan_endless
     )  # fmt: skip
@@ -109,11 +107,11 @@ def limits_of(settings: CaptureSettings) -> Limits:
 
 @dataclass(frozen=True, slots=True)
 class PlannedSweep:
-    """A planned sweep of a capture.
+    """A planned sweep.
 
     Attributes:
-        zoom: Its magnification.
-        pictures: The number of its pictures.
+        zoom: Magnification.
+        pictures: Number of pictures.
     """
 
     zoom: float
@@ -121,14 +119,14 @@ class PlannedSweep:
 
 
 def planned_sweeps(camera: Camera, settings: CaptureSettings) -> list[PlannedSweep]:
-    """Return the sweeps of a capture in order. Close-ups are not included, because they depend on the pictures."""
-    limits = limits_of(settings)
+    """Return the planned sweeps in order, without close-ups, which depend on the pictures."""
+    limits = captured_limits(settings)
     zooms = (limits.min_zoom, *settings.zooms)
     return [PlannedSweep(zoom, len(plan_poses(camera.info, limits, zoom, settings.overlap))) for zoom in zooms]
 
 
 def close_up_zoom(settings: CaptureSettings) -> float | None:
-    """Return the magnification of close-ups; None if the capture has none."""
+    """Return the magnification for close-ups; None if none are to be taken."""
     lowest, highest = settings.zoom_range
     zoom = min(CLOSE_UP_ZOOM, highest)
     return zoom if settings.close_ups and zoom >= 1.2 * lowest else None
@@ -137,35 +135,35 @@ def close_up_zoom(settings: CaptureSettings) -> float | None:
 async def take_frames(
     camera: Camera, session: CaptureSession, progress: Progress, *, holder: str, presets: Sequence[str] | None = None
 ) -> None:
-    """Take the missing frames of a capture. The camera returns to its original pose, even after an error or a cancellation.
+    """Take the frames that a capture still lacks. The camera returns to its original pose, even after an error or cancellation.
 
     Args:
         camera: The camera.
         session: The capture, which stores the frames.
         progress: Called after every frame.
-        holder: The name that other clients see as the camera's controller.
-        presets: Names of the presets at which to take pictures; None for all.
+        holder: The name shown to other clients as the holder of control.
+        presets: Names of the presets at which to take pictures; None for all of them.
 
     Raises:
         ControlHeldError: Another client controls the camera.
-        CameraError: The camera fails. Frames that were already taken remain stored.
+        CameraError: The camera failed. Frames that were already taken remain stored.
         OutputError: A frame cannot be stored.
     """
     async with camera.control(holder), _return_afterwards(camera):
-        taker = _Taker(camera, session, progress)
-        await taker.presets([preset.name for preset in await camera.presets()] if presets is None else presets)
-        limits = limits_of(session.settings)
+        frame_taker = _FrameTaker(camera, session, progress)
+        await frame_taker.presets([preset.name for preset in await camera.presets()] if presets is None else presets)
+        limits = captured_limits(session.settings)
         wide = plan_poses(camera.info, limits, limits.min_zoom, session.settings.overlap)
-        await taker.sweep("Wide pictures", _name(limits.min_zoom), wide)
+        await frame_taker.sweep("Wide pictures", _zoom_name(limits.min_zoom), wide)
         for zoom in session.settings.zooms:
-            await taker.sweep(
-                f"Pictures at {zoom:g}x", _name(zoom), plan_poses(camera.info, limits, zoom, session.settings.overlap)
+            await frame_taker.sweep(
+                f"Pictures at {zoom:g}x", _zoom_name(zoom), plan_poses(camera.info, limits, zoom, session.settings.overlap)
             )
-        await taker.close_ups(limits)
+        await frame_taker.close_ups(limits)
     session.finish()
 
 
-class _Taker:
+class _FrameTaker:
     def __init__(self, camera: Camera, session: CaptureSession, progress: Progress) -> None:
         self._camera, self._session, self._progress = camera, session, progress
 
@@ -174,17 +172,17 @@ class _Taker:
         camera = self._camera
         for number, name in enumerate(("", *names)):
             go = partial(camera.go_to_preset, name) if name else camera.go_home
-            await self._shoot(f"preset-{name}" if name else HOME, go, preset=name)
+            await self._take(f"preset-{name}" if name else HOME, go, preset=name)
             self._progress("Presets", number + 1, len(names) + 1)
 
     async def sweep(self, part: str, name: str, poses: Sequence[Pose]) -> None:
         """Take a picture at each pose."""
         for number, pose in enumerate(poses):
-            await self._shoot(f"{name}-{number:03d}", partial(self._camera.move, pose))
+            await self._take(f"{name}-{number:03d}", partial(self._camera.move, pose))
             self._progress(part, number + 1, len(poses))
 
-    async def _shoot(self, key: str, go: Callable[[], Awaitable[Arrival]], preset: str = "") -> None:
-        """Go to a pose and store a picture, unless it is already stored. After a camera failure, wait and try again."""
+    async def _take(self, key: str, go: Callable[[], Awaitable[Arrival]], preset: str = "") -> None:
+        """Go to a pose and store a picture, unless one is already stored. After a camera error, wait and try again."""
         if self._session.find(key) is not None:
             return
         for attempt in range(ATTEMPTS):
@@ -215,20 +213,20 @@ class _Taker:
             hfov_deg = info.optics.hfov_deg(zoom)
             candidates = plan_poses(info, limits, zoom, 0.12)
             captured = [shot.pose for shot in session.shots]
-            fresh = without_repeats(candidates, captured, hfov_deg)
-            poses = await to_thread.run_sync(choose_close_ups, session, info, fresh, session.settings.close_ups)
+            new_poses = exclude_known_poses(candidates, captured, hfov_deg)
+            poses = await to_thread.run_sync(choose_close_ups, session, info, new_poses, session.settings.close_ups)
             session.store_close_ups(poses)
         await self.sweep("Close-ups", "close-up", poses)
 
 
 @asynccontextmanager
 async def _return_afterwards(camera: Camera) -> AsyncIterator[None]:
-    """Return a context that moves the camera back to its original pose at the end. After an error, it stops the camera first."""
+    """Return a context manager that moves the camera back to its original pose on exit, after stopping it if there was an error."""
     start = await camera.pose()
     try:
         yield
     except BaseException:
-        # After a failure, the camera may not answer. The original error is raised in any case.
+        # The camera may not respond after a failure. Raise the original error in any case.
         with anyio.move_on_after(RETURN_S, shield=True):
             try:
                 await camera.stop()
@@ -239,9 +237,9 @@ async def _return_afterwards(camera: Camera) -> AsyncIterator[None]:
     await camera.move(start)
 
 
-def _may_roll(camera: Camera) -> bool:
-    return any(isinstance(each, MountedCamera) for each in layers(camera))
+def _has_rolled_frames(camera: Camera) -> bool:
+    return any(isinstance(layer, MountedCamera) for layer in layers(camera))
 
 
-def _name(zoom: float) -> str:
+def _zoom_name(zoom: float) -> str:
     return f"{zoom:g}x"

@@ -1,4 +1,4 @@
-"""The hidden parts of a captured frame: keep-out regions, masks, and corners without content."""
+"""The hidden parts of a captured frame: keep-out regions, masks, and black corners."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from scope_ptz.camera.guard.rules import Region
 from scope_ptz.geometry import Perspective, Projection
 
 MARGIN_DEG = 0.3
-"""Margin in degrees by which keep-out regions are enlarged in the pack, because reported poses are not exact."""
+"""Margin in degrees added to keep-out regions in the pack, because reported poses are inexact."""
 
 DILATION_PX = 5
-"""Margin in pixels by which hidden parts of frames are enlarged, so that their blurred borders are not used."""
+"""Margin in pixels added to the hidden parts of frames, so that their blurred borders are not used."""
 
 Mask = NDArray[np.bool_]
 
@@ -34,12 +34,12 @@ def hidden_mask(settings: CaptureSettings, shot: Shot, image: NDArray[np.uint8])
 
 
 def keep_out_mask(settings: CaptureSettings, projection: Projection) -> Mask | None:
-    """Return the mask (H, W) of the pixels of a pack's picture that are in or near a keep-out region; None if none are."""
+    """Return the mask (H, W) of the pixels in or near a keep-out region in a pack's picture; None if there are none."""
     return hidden_pixels(projection, tuple(_enlarge(region) for region in settings.keep_out))
 
 
 def _enlarge(region: Region) -> Region:
-    """Return a region that is larger by ``MARGIN_DEG`` on every side."""
+    """Return the region enlarged by ``MARGIN_DEG`` on every side."""
     (left, right), (bottom, top) = region.pan_deg, region.tilt_deg
     if region.width_deg < 360.0 - 2 * MARGIN_DEG:
         left, right = (left - MARGIN_DEG + 180.0) % 360.0 - 180.0, (right + MARGIN_DEG + 180.0) % 360.0 - 180.0
@@ -50,7 +50,7 @@ def _enlarge(region: Region) -> Region:
 
 
 def _black_corners(image: NDArray[np.uint8]) -> Mask:
-    """Return the mask of the black areas in the corners, which remain after a frame is turned upright."""
+    """Return the mask of the black corners that remain after a frame has been turned upright."""
     height, width = image.shape[:2]
     black = np.zeros((height + 2, width + 2), np.uint8)
     dark = (image.max(axis=2) <= 2).astype(np.uint8)

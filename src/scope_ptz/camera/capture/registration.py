@@ -1,9 +1,8 @@
-"""Register the frames of a capture: determine their poses, fields of view and tone from the pictures."""
+"""Register the frames of a capture: determine their poses, fields of view and gains from the pictures."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +12,11 @@ from scope_ptz.camera.capture.adjustment import Adjustment, adjust, turn_deg
 from scope_ptz.camera.capture.hidden_parts import hidden_mask
 from scope_ptz.camera.capture.matching import Features, find_features, match_frames, overlapping_pairs
 from scope_ptz.camera.capture.placed_frames import PlacedFrame
+from scope_ptz.camera.capture.progress import Progress
 from scope_ptz.camera.capture.session import CaptureSession, Shot
-from scope_ptz.camera.capture.tone import cells_of, gains
+from scope_ptz.camera.capture.tone import cell_means, gains
 from scope_ptz.geometry import Optics, Perspective
 from scope_ptz.geometry.sphere import camera_axes
-
-Steps = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +26,10 @@ class Registration:
     Attributes:
         shots: The frames.
         placed: Each frame with its adjusted orientation and focal length.
-        gains: The gain of each frame and colour channel, ``(n, 3)``.
-        registered: Whether each frame has enough matches to determine its pose; otherwise, its pose relies on the reported one.
+        gains: The gain for each frame and colour channel, ``(n, 3)``.
+        registered: Whether each frame has enough matches to determine its pose; if not, its pose relies on the reported one.
         corrections_deg: Angle between the reported and the adjusted orientation of each frame.
-        residual_px: Root mean square error of the matches in pixels; None without matches.
+        residual_px: Root mean square error of the matches in pixels; None if there are no matches.
         matches: Number of matches.
     """
 
@@ -45,20 +43,20 @@ class Registration:
 
     @property
     def focal_factors(self) -> list[tuple[float, float]]:
-        """The magnification and the ratio of measured to reported focal length of each registered frame."""
+        """The magnification, and the ratio of measured to reported focal length, for each registered frame."""
         return [
-            (shot.zoom, place.focal_px / _focal_px(shot, place.width))
-            for shot, place, good in zip(self.shots, self.placed, self.registered, strict=True)
-            if good
+            (shot.zoom, placed_frame.focal_px / _focal_px(shot, placed_frame.width))
+            for shot, placed_frame, is_registered in zip(self.shots, self.placed, self.registered, strict=True)
+            if is_registered
         ]
 
 
-def register(session: CaptureSession, steps: Steps) -> Registration:
+def register(session: CaptureSession, progress: Progress) -> Registration:
     """Register the frames of a capture.
 
     Args:
         session: The capture.
-        steps: Called with the name of a phase, its number of finished steps, and its total number of steps.
+        progress: Called with the name of a phase, the number of finished steps, and the total number of steps.
 
     Raises:
         OutputError: A stored frame is missing or damaged.
@@ -72,9 +70,9 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
         image = session.image(shot)
         hidden = hidden_mask(settings, shot, image)
         features.append(find_features(image, hidden))
-        cells.append(cells_of(image, hidden))
-        steps("Features", number + 1, len(shots))
-    matches = match_frames(views, features.__getitem__, lambda done, total: steps("Matches", done, total))
+        cells.append(cell_means(image, hidden))
+        progress("Features", number + 1, len(shots))
+    matches = match_frames(views, features.__getitem__, lambda done, total: progress("Matches", done, total))
     adjustment = adjust(views, matches, [shot.taken_s for shot in shots])
     placed = tuple(PlacedFrame(axes, focal, *size) for axes, focal in zip(adjustment.axes, adjustment.focal_px, strict=True))
     return Registration(
@@ -89,11 +87,11 @@ def register(session: CaptureSession, steps: Steps) -> Registration:
 
 
 def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optics:
-    """Return the optics, with the zoom table corrected by measured focal lengths.
+    """Return the optics with the zoom table corrected by the measured focal lengths.
 
     Args:
         optics: The reported optics.
-        factors: Pairs of magnification and the ratio of measured to reported focal length; empty if nothing was measured.
+        factors: Pairs of a magnification and the ratio of measured to reported focal length; empty if nothing was measured.
     """
     if not factors:
         return optics
@@ -101,7 +99,7 @@ def measured_optics(optics: Optics, factors: list[tuple[float, float]]) -> Optic
     means = [float(np.mean([factor for other, factor in factors if other == zoom])) for zoom in zooms]
     focals = [optics.focal(zoom) * float(np.interp(zoom, zooms, means)) for zoom, _ in optics.table]
     if sorted(set(focals)) != focals:
-        return optics  # measurements at neighbouring zoom levels contradict each other
+        return optics  # the measurements at neighbouring zoom levels contradict each other
     table = [
         (zoom, math.degrees(2 * math.atan(1 / focal))) for (zoom, _), focal in zip(optics.table, focals, strict=True)
     ]  # fmt: skip

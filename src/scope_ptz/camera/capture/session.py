@@ -1,4 +1,4 @@
-"""An unfinished capture on disk: its settings, frames and poses. Running the same command again resumes it."""
+"""An unfinished capture on disk: its settings, frames and poses. Running the command again resumes it."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ class CaptureSettings(_StoredModel):
 
     Attributes:
         camera: Name of the camera, including its address.
-        frame_width: Width of its frames in pixels.
-        frame_height: Height of its frames in pixels.
-        pan_range_deg: Captured range of pan in degrees.
-        tilt_range_deg: Captured range of tilt in degrees.
-        zoom_range: Limits of the magnification.
+        frame_width: Width of a frame in pixels.
+        frame_height: Height of a frame in pixels.
+        pan_range_deg: Captured pan range in degrees.
+        tilt_range_deg: Captured tilt range in degrees.
+        zoom_range: Lowest and highest magnification.
         pan_endless: Whether pan has no stops.
         zoom_table: Rows of magnification and reported horizontal field of view in degrees.
-        zooms: Magnifications at which the whole range is captured, in addition to the widest one.
+        zooms: Additional magnifications at which the whole range is captured.
         close_ups: Maximum number of close-ups.
-        overlap: Fraction of a frame that the next one also shows.
+        overlap: Fraction of a frame that overlaps the next one.
         keep_out: Regions that must not be shown.
         masks: Rectangles that are hidden in every frame.
         rolled: Whether frames were turned upright and have black corners.
@@ -64,13 +64,13 @@ class CaptureSettings(_StoredModel):
 
 
 class Shot(_StoredModel):
-    """A frame of a capture, or a pose that the rules of the site do not permit.
+    """A captured frame, or a pose that the site's rules do not permit.
 
     Attributes:
-        key: Its name in the plan, such as ``1x-007``; unique in a capture.
-        file: File of the picture; empty if there is none.
-        pan_deg: Reported pan at exposure in degrees.
-        tilt_deg: Reported tilt at exposure in degrees.
+        key: Its name in the plan, such as ``1x-007``; unique within a capture.
+        file: Name of the picture file; empty if there is none.
+        pan_deg: Reported pan in degrees at the time of exposure.
+        tilt_deg: Reported tilt in degrees at the time of exposure.
         zoom: Reported magnification.
         hfov_deg: Reported horizontal field of view in degrees.
         preset: Name of the preset at which it was taken; empty if none.
@@ -102,12 +102,12 @@ class CaptureSession:
     """The folder of an unfinished capture.
 
     Args:
-        folder: The folder. It is created if needed.
+        folder: The folder, which is created if needed.
         settings: The settings of the capture.
         started_at: The time at which it began, in UTC as ISO 8601. A resumed capture keeps its original time.
 
     Raises:
-        OutputError: The folder contains a capture with other settings, or cannot be read or written.
+        OutputError: The folder contains a capture with different settings, or cannot be read or written to.
     """
 
     def __init__(self, folder: Path, settings: CaptureSettings, started_at: str) -> None:
@@ -126,37 +126,39 @@ class CaptureSession:
         return self._state.started_at
 
     @property
-    def complete(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether every frame has been taken."""
         return self._state.complete
 
     @property
     def shots(self) -> tuple[Shot, ...]:
-        """The frames so far, in the order in which they were taken."""
+        """The frames taken so far, in order."""
         return tuple(shot for shot in self._shots.values() if shot.file)
 
     @property
     def refused(self) -> int:
-        """Number of poses that the rules of the site did not permit."""
+        """Number of poses that the site's rules did not permit."""
         return sum(not shot.file for shot in self._shots.values())
 
     def find(self, key: str) -> Shot | None:
-        """Return the frame, or the refused pose, with a key; None if there is none yet."""
+        """Return the frame or refused pose with a key; None if there is none."""
         return self._shots.get(key)
 
     def add(self, key: str, frame: Frame, preset: str = "") -> Shot:
         """Store a frame.
 
         Raises:
-            CameraError: The frame is not a perspective view, or its size differs from that of the capture.
+            CameraError: The frame is not a perspective view, has a different size from the capture's, or cannot be encoded.
             OutputError: The frame cannot be written.
         """
         size = (self.settings.frame_width, self.settings.frame_height)
         if not isinstance(frame.projection, Perspective):
-            raise CameraError("A capture needs perspective frames, but the camera returned a panorama. Use a perspective stream.")
+            raise CameraError(
+                "A capture requires perspective frames, but the camera returned a panorama. Use a perspective stream."
+            )
         if (frame.width, frame.height) != size:
             raise CameraError(
-                f"The camera changed its picture from {size[0]}x{size[1]} to {frame.width}x{frame.height} pixels during the "
+                f"The camera's picture size changed from {size[0]}x{size[1]} to {frame.width}x{frame.height} pixels during the "
                 "capture. Set a fixed picture size in the camera, and run the same command again."
             )
         view = frame.projection
@@ -180,7 +182,7 @@ class CaptureSession:
         return shot
 
     def add_refused(self, key: str, pose: Pose) -> None:
-        """Record that the rules of the site do not permit a pose."""
+        """Record a pose that the site's rules do not permit."""
         self._append(Shot(key=key, pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom, hfov_deg=0.0))
 
     def image(self, shot: Shot) -> NDArray[np.uint8]:
@@ -191,11 +193,13 @@ class CaptureSession:
         """
         picture = cv2.imread(str(self.folder / shot.file), cv2.IMREAD_COLOR_RGB)
         if picture is None or picture.shape[:2] != (self.settings.frame_height, self.settings.frame_width):
-            raise OutputError(f"{self.folder / shot.file} is missing or damaged. Remove {self.folder} and capture again.")
+            raise OutputError(
+                f"{self.folder / shot.file} is missing or damaged. Remove {self.folder}, and capture the scene again."
+            )
         return np.asarray(picture, np.uint8)
 
     def close_ups(self) -> list[Pose] | None:
-        """Return the stored poses of close-ups; None if they have not been chosen yet."""
+        """Return the stored close-up poses; None if they have not been chosen yet."""
         path = self.folder / CLOSE_UPS
         if not path.exists():
             return None
@@ -205,7 +209,7 @@ class CaptureSession:
             return None  # the close-ups are chosen again
 
     def store_close_ups(self, poses: Sequence[Pose]) -> None:
-        """Store the poses of close-ups."""
+        """Store the close-up poses."""
         self._write(CLOSE_UPS, json.dumps([(pose.pan_deg, pose.tilt_deg, pose.zoom) for pose in poses]))
 
     def finish(self) -> None:
@@ -223,7 +227,7 @@ class CaptureSession:
             lines = (self.folder / FRAMES).read_text(encoding="utf-8").splitlines() if (self.folder / FRAMES).exists() else []
         except (OSError, ValidationError, UnicodeDecodeError) as error:
             raise OutputError(
-                f"{self.folder} does not contain a capture that can be resumed. Remove it, and run the command again."
+                f"{self.folder} does not contain a capture that can be resumed. Remove the folder, and run the command again."
             ) from error
         changed = [name for name, value in state.settings if value != getattr(self.settings, name)]
         if changed:
@@ -236,7 +240,7 @@ class CaptureSession:
             try:
                 shot = Shot.model_validate_json(line)
             except ValidationError:
-                continue  # the program was killed while it wrote this line, so the frame is taken again
+                continue  # the process was killed while writing this line, so the frame will be taken again
             if not shot.file or (self.folder / shot.file).is_file():
                 self._shots[shot.key] = shot
         self._next_number = max((int(shot.file[:5]) + 1 for shot in self._shots.values() if shot.file), default=0)
@@ -249,7 +253,7 @@ class CaptureSession:
             with path.open("a", encoding="utf-8") as file:
                 file.write(("\n" if truncated else "") + shot.model_dump_json() + "\n")
         except OSError as error:
-            raise self._unwritable(error) from error
+            raise self._write_error(error) from error
 
     def _write(self, name: str, content: str | bytes) -> None:
         """Write a file atomically."""
@@ -260,7 +264,7 @@ class CaptureSession:
             temporary.write_bytes(data)
             temporary.replace(self.folder / name)
         except OSError as error:
-            raise self._unwritable(error) from error
+            raise self._write_error(error) from error
 
-    def _unwritable(self, error: OSError) -> OutputError:
+    def _write_error(self, error: OSError) -> OutputError:
         return OutputError(f"The capture cannot be stored in {self.folder}: {error.strerror or error}.")

@@ -1,4 +1,4 @@
-"""A camera that reports what it would do and never moves."""
+"""A camera wrapper that reports commands instead of carrying them out."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ HELD_BACK_UNKNOWN = "the dry run: only the camera knows the pose there"
 class DryRunCamera(CameraWrapper):
     """A camera whose commands are reported but not executed.
 
-    ``pose`` returns the target of the last ``move``, or else the real pose. Frames are real and keep their real
-    pose, as the camera does not move. Every ``Arrival`` names the dry run in ``limited_by``, so that tool results and traces
-    show it.
+    ``pose`` returns the target of the last ``move``, or the real pose if there was none. Frames are real and keep their real pose,
+    because the camera does not move. Each ``Arrival`` mentions the dry run in ``limited_by``, so that it appears in tool results
+    and traces.
 
     Args:
         camera: The wrapped camera.
-        report: Called with one sentence for each command.
+        report: A function that is called with a description of each command.
     """
 
     def __init__(self, camera: Camera, report: Callable[[str], None]) -> None:
@@ -46,11 +46,11 @@ class DryRunCamera(CameraWrapper):
         limited_by = ""
         if isinstance(self.inner, GuardedCamera):
             target, clamped, limited_by = self.inner.nearest_permitted(pose)
-        where, self._pose = target.as_dict(), target
-        held = limited_by or f"the {' and '.join(clamped)} limit" if clamped else limited_by
-        note = f", held back by {held}" if held else ""
-        self._report(f"would move to pan {where['pan_deg']:g}, tilt {where['tilt_deg']:g}, zoom {where['zoom']:g}x{note}")
-        return Arrival(target, clamped, f"{held}, and by {HELD_BACK}" if held else HELD_BACK)
+        rounded, self._pose = target.as_dict(), target
+        reason = limited_by or f"the {' and '.join(clamped)} limit" if clamped else limited_by
+        note = f", held back by {reason}" if reason else ""
+        self._report(f"would move to pan {rounded['pan_deg']:g}, tilt {rounded['tilt_deg']:g}, zoom {rounded['zoom']:g}x{note}")
+        return Arrival(target, clamped, f"{reason}, and by {HELD_BACK}" if reason else HELD_BACK)
 
     async def go_to_preset(self, name: str) -> Arrival:
         if name not in (known := [preset.name for preset in await self.presets()]):
@@ -87,7 +87,7 @@ class DryRunCamera(CameraWrapper):
         return await self.lens()
 
     async def stop(self) -> None:
-        """Do nothing, because the camera does not move."""
+        """Do nothing, because the camera is not moving."""
 
 
 def _step_text(action: str, step: float) -> str:

@@ -1,4 +1,4 @@
-"""Black out the masked parts of a frame."""
+"""Black out the keep-out regions and masks in a frame."""
 
 from __future__ import annotations
 
@@ -12,39 +12,39 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.camera.guard.rules import PixelMask, Region
 from scope_ptz.geometry import Projection, direction
 
-_STEP_DEG = 0.5  # distance between the points of a region's outline
+_STEP_DEG = 0.5  # distance in degrees between the points of a region's outline
 _GRID = 4
-"""Regions are drawn on a grid of every fourth pixel and enlarged by one cell, so that no pixel of a region stays visible."""
+"""Size of a grid cell in pixels. Regions are drawn on this grid and enlarged by one cell, so that they are hidden completely."""
 
 
 def mask_frame(frame: Frame, regions: tuple[Region, ...], masks: tuple[PixelMask, ...]) -> Frame:
-    """Return a frame in which the regions and masks are black. A frame that shows none of them is returned unchanged."""
+    """Return the frame with the regions and masks blacked out, or the frame itself if it shows none of them."""
     hidden = hidden_pixels(frame.projection, regions, masks)
     if hidden is None:
         return frame
     image = frame.image.copy()
     image[hidden] = 0
-    # The ground truth of hidden parts must be hidden too.
+    # Without an origin, the frame gives no access to the ground truth of the hidden parts.
     return replace(frame, image=image, origin=None)
 
 
 def hidden_pixels(
     projection: Projection, regions: tuple[Region, ...], masks: tuple[PixelMask, ...] = ()
 ) -> NDArray[np.bool_] | None:
-    """Return the mask (H, W) of the pixels that show a region or lie under a pixel mask; None if no pixel does."""
-    hidden = _in_regions(projection, regions) if regions else None
+    """Return the mask (H, W) of the pixels in a region or under a pixel mask; None if there are none."""
+    hidden = _region_pixels(projection, regions) if regions else None
     if not masks:
         return hidden
-    found = np.zeros((projection.height, projection.width), bool) if hidden is None else hidden
+    combined = np.zeros((projection.height, projection.width), bool) if hidden is None else hidden
     for mask in masks:
         rows = slice(int(mask.top * projection.height), int(np.ceil(mask.bottom * projection.height)))
         columns = slice(int(mask.left * projection.width), int(np.ceil(mask.right * projection.width)))
-        found[rows, columns] = True
-    return found
+        combined[rows, columns] = True
+    return combined
 
 
-def _in_regions(projection: Projection, regions: tuple[Region, ...]) -> NDArray[np.bool_] | None:
-    """Return the mask (H, W) of the pixels that show a region; None if no pixel does."""
+def _region_pixels(projection: Projection, regions: tuple[Region, ...]) -> NDArray[np.bool_] | None:
+    """Return the mask (H, W) of the pixels in a region; None if there are none."""
     width, height = projection.width, projection.height
     xs = np.append(np.arange(0, width, _GRID), width) / width
     ys = np.append(np.arange(0, height, _GRID), height) / height
@@ -59,19 +59,19 @@ def _in_regions(projection: Projection, regions: tuple[Region, ...]) -> NDArray[
         _add_outline(nodes, projection, region)
     if not nodes.any():
         return None
-    grown = cv2.dilate(nodes, np.ones((3, 3), np.uint8))
-    large = np.repeat(np.repeat(grown, _GRID, axis=0), _GRID, axis=1)
+    enlarged = cv2.dilate(nodes, np.ones((3, 3), np.uint8))
+    large = np.repeat(np.repeat(enlarged, _GRID, axis=0), _GRID, axis=1)
     return np.asarray(large[:height, :width] > 0)
 
 
 def _add_outline(nodes: NDArray[np.uint8], projection: Projection, region: Region) -> None:
-    """Mark the grid cells under a region's outline, so that a region smaller than a cell is hidden too."""
+    """Mark the grid cells under a region's outline, so that regions smaller than a cell are hidden too."""
     left, right = region.pan_deg[0], region.pan_deg[0] + region.width_deg
     bottom, top = region.tilt_deg
-    along = np.linspace(left, right, max(2, int((right - left) / _STEP_DEG) + 1))
-    up = np.linspace(bottom, top, max(2, int((top - bottom) / _STEP_DEG) + 1))
-    edges = [(along, np.full_like(along, bottom)), (along, np.full_like(along, top))]
-    edges += [(np.full_like(up, left), up), (np.full_like(up, right), up)]
+    pans = np.linspace(left, right, max(2, int((right - left) / _STEP_DEG) + 1))
+    tilts = np.linspace(bottom, top, max(2, int((top - bottom) / _STEP_DEG) + 1))
+    edges = [(pans, np.full_like(pans, bottom)), (pans, np.full_like(pans, top))]
+    edges += [(np.full_like(tilts, left), tilts), (np.full_like(tilts, right), tilts)]
     for pan, tilt in edges:
         points = projection.points(direction(pan, tilt))
         points = points[~np.isnan(points).any(axis=-1)]

@@ -1,4 +1,4 @@
-"""Arithmetic with velocities, poses and axes for a guarded camera."""
+"""Calculations with velocities, poses and axes for a guarded camera."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def velocity_fields(velocity: Velocity) -> dict[str, float]:
 
 
 def cap_velocity(velocity: Velocity, top: Velocity) -> Velocity:
-    """Return a velocity, capped at the top speed on each axis."""
+    """Return the velocity capped at the top speed of each axis."""
 
     def cap(speed: float, limit: float) -> float:
         return math.copysign(min(abs(speed), limit), speed)
@@ -26,23 +26,23 @@ def cap_velocity(velocity: Velocity, top: Velocity) -> Velocity:
 
 
 def scale_velocity(velocity: Velocity, factor: float) -> Velocity:
-    """Return a velocity scaled by a factor."""
+    """Return the velocity scaled by a factor."""
     return Velocity(velocity.pan_dps * factor, velocity.tilt_dps * factor, velocity.zoom_rate * factor)
 
 
 def pose_after(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
-    """Return the pose of a camera after some time at a velocity."""
+    """Return the pose after moving at a velocity for some time."""
     zoom = pose.zoom * 2.0 ** max(-10.0, min(10.0, velocity.zoom_rate * seconds))
     return Pose(pose.pan_deg + velocity.pan_dps * seconds, pose.tilt_deg + velocity.tilt_dps * seconds, zoom)
 
 
-def changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
-    """Return, for pan and for tilt, whether the two poses differ."""
+def axis_changes(start: Pose, end: Pose) -> tuple[tuple[Axis, bool], ...]:
+    """Return pan and tilt, each with a flag for whether the two poses differ on that axis."""
     return ("pan", start.pan_deg != end.pan_deg), ("tilt", start.tilt_deg != end.tilt_deg)
 
 
 def merge_axes(*axes: Any) -> tuple[Axis, ...]:
     """Return the union of several groups of axes, in the order pan, tilt, zoom."""
-    found = {axis for group in axes for axis in group}
+    merged = {axis for group in axes for axis in group}
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
-    return tuple(axis for axis in order if axis in found)
+    return tuple(axis for axis in order if axis in merged)

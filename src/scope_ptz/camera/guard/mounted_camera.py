@@ -1,4 +1,4 @@
-"""A camera whose base hangs from a ceiling or leans. Its poses and pictures are converted to upright ones."""
+"""A wrapper for cameras mounted upside down or on a leaning base, which converts their poses and pictures to upright ones."""
 
 from __future__ import annotations
 
@@ -19,35 +19,47 @@ from scope_ptz.geometry import Axis, Limits, Perspective, Pose, direction
 from scope_ptz.geometry.sphere import camera_axes, pan_tilt_deg
 
 _LEVEL_DEG = 0.05
-"""A picture that is rolled by less than this many degrees is not rotated."""
+"""Minimum roll in degrees at which a picture is rotated."""
 
 
 class MountedCamera(CameraWrapper):
-    """A camera in world coordinates: pan turns about the vertical, and tilt 0 is the horizon.
+    """A camera in world coordinates: pan is a rotation about the vertical, and tilt 0 is the horizon.
 
     Args:
-        camera: The camera in its own coordinates.
-        mounting: How its base is mounted.
+        camera: The wrapped camera, in its own coordinates.
+        mounting: How the camera is mounted.
     """
 
     def __init__(self, camera: Camera, mounting: Mounting) -> None:
         super().__init__(camera)
         upside_down = np.diag([-1.0, 1.0, -1.0]) if mounting.position == "ceiling" else np.eye(3)
-        lean = math.radians(mounting.tilt_deg)
-        leaned = np.array([[1.0, 0.0, 0.0], [0.0, math.cos(lean), -math.sin(lean)], [0.0, math.sin(lean), math.cos(lean)]])
-        self._to_world: NDArray[np.float64] = leaned @ upside_down
-        self._ceiling, self._lean_deg = mounting.position == "ceiling", abs(mounting.tilt_deg)
+        lean_rad = math.radians(mounting.tilt_deg)
+        lean_rotation = np.array(
+            [[1.0, 0.0, 0.0], [0.0, math.cos(lean_rad), -math.sin(lean_rad)], [0.0, math.sin(lean_rad), math.cos(lean_rad)]]
+        )
+        self._to_world: NDArray[np.float64] = lean_rotation @ upside_down
+        self._upside_down, self._lean_deg = mounting.position == "ceiling", abs(mounting.tilt_deg)
 
     @property
     def info(self) -> CameraInfo:
-        """Information about the camera. If the base leans, the tilt limits are those that hold at every pan."""
+        """Information about the camera. If the base leans, the tilt limits are those that apply at every pan."""
         info = self.inner.info
-        own = info.limits
-        tilts = (-own.max_tilt_deg, -own.min_tilt_deg) if self._ceiling else (own.min_tilt_deg, own.max_tilt_deg)
-        pans = (-own.max_pan_deg, -own.min_pan_deg) if self._ceiling else (own.min_pan_deg, own.max_pan_deg)
+        device_limits = info.limits
+        tilts = (
+            (-device_limits.max_tilt_deg, -device_limits.min_tilt_deg)
+            if self._upside_down
+            else (device_limits.min_tilt_deg, device_limits.max_tilt_deg)
+        )
+        pans = (
+            (-device_limits.max_pan_deg, -device_limits.min_pan_deg)
+            if self._upside_down
+            else (device_limits.min_pan_deg, device_limits.max_pan_deg)
+        )
         middle = (tilts[0] + tilts[1]) / 2
         low, high = min(tilts[0] + self._lean_deg, middle), max(tilts[1] - self._lean_deg, middle)
-        return replace(info, limits=Limits(*pans, low, high, own.min_zoom, own.max_zoom, own.pan_endless))
+        return replace(
+            info, limits=Limits(*pans, low, high, device_limits.min_zoom, device_limits.max_zoom, device_limits.pan_endless)
+        )
 
     async def pose(self) -> Pose:
         return self.world_pose(await self.inner.pose())
@@ -55,11 +67,11 @@ class MountedCamera(CameraWrapper):
     async def move(self, pose: Pose) -> Arrival:
         target, clamped = self.info.limits.clamp(pose)
         arrival = await self.inner.move(self._device_pose(target))
-        # If the base leans, the device's axes are not those of the world, so the distance from the target shows which
-        # axes were clamped.
+        # If the base leans, the device's axes differ from the world's, so the differences from the target show which axes were
+        # clamped.
         world = self._world_arrival(arrival)
         if self._lean_deg and arrival.clamped:
-            return replace(world, clamped=tuple(dict.fromkeys((*clamped, *_differences(target, world.pose)))))
+            return replace(world, clamped=tuple(dict.fromkeys((*clamped, *_different_axes(target, world.pose)))))
         return replace(world, clamped=tuple(dict.fromkeys((*clamped, *arrival.clamped))))
 
     async def go_to_preset(self, name: str) -> Arrival:
@@ -69,8 +81,8 @@ class MountedCamera(CameraWrapper):
         return self._world_arrival(await self.inner.go_home())
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
-        """Drive the device's own axes, with signs as in world coordinates. If the base leans, they are not exactly pan and tilt."""
-        sign = -1.0 if self._ceiling else 1.0
+        """Drive the device's own axes, with signs as in world coordinates. On a leaning base, they are not exactly pan and tilt."""
+        sign = -1.0 if self._upside_down else 1.0
         await self.inner.drive(sign * pan_dps, sign * tilt_dps, zoom_rate, timeout_s=timeout_s)
 
     async def frame(self) -> Frame:
@@ -82,7 +94,7 @@ class MountedCamera(CameraWrapper):
                 yield self._world_frame(frame)
 
     def world_pose(self, device: Pose) -> Pose:
-        """Convert a pose of the device to world coordinates."""
+        """Convert a device pose to world coordinates."""
         pan, tilt = pan_tilt_deg(self._to_world @ direction(device.pan_deg, device.tilt_deg))
         return Pose(float(pan), float(tilt), device.zoom)
 
@@ -107,7 +119,7 @@ class MountedCamera(CameraWrapper):
 
 
 def _rotate(image: NDArray[np.uint8], roll_deg: float) -> NDArray[np.uint8]:
-    """Rotate a picture clockwise about its centre. Corners without content become black."""
+    """Rotate a picture clockwise about its centre. Empty corners become black."""
     if abs(roll_deg) < _LEVEL_DEG:
         return image
     if abs(abs(roll_deg) - 180.0) < _LEVEL_DEG:
@@ -117,12 +129,12 @@ def _rotate(image: NDArray[np.uint8], roll_deg: float) -> NDArray[np.uint8]:
     return np.asarray(cv2.warpAffine(image, turn, (width, height), flags=cv2.INTER_LINEAR), np.uint8)
 
 
-def _differences(target: Pose, reached: Pose) -> tuple[Axis, ...]:
-    found: list[Axis] = []
+def _different_axes(target: Pose, reached: Pose) -> tuple[Axis, ...]:
+    axes: list[Axis] = []
     if abs(target.pan_deg - reached.pan_deg) > 1e-3:
-        found.append("pan")
+        axes.append("pan")
     if abs(target.tilt_deg - reached.tilt_deg) > 1e-3:
-        found.append("tilt")
+        axes.append("tilt")
     if abs(target.zoom - reached.zoom) > 1e-3:
-        found.append("zoom")
-    return tuple(found)
+        axes.append("zoom")
+    return tuple(axes)

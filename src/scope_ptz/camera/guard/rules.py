@@ -17,10 +17,10 @@ class _Rules(BaseModel):
 
 
 class Region(_Rules):
-    """A rectangle of pan and tilt, such as the windows of a neighbour. The pan range may cross 180, for example from 170 to -170.
+    """A rectangle in pan and tilt, such as a neighbour's windows. The pan range may cross 180, for example from 170 to -170.
 
     Attributes:
-        name: Its name, for messages.
+        name: Name of the region, used in messages.
         pan_deg: The left and right edges; the region extends clockwise from left to right.
         tilt_deg: The bottom and top edges.
     """
@@ -39,11 +39,11 @@ class Region(_Rules):
 
     @property
     def width_deg(self) -> float:
-        """Width in degrees of pan, above 0 and at most 360."""
+        """Width in degrees, above 0 and at most 360."""
         return (self.pan_deg[1] - self.pan_deg[0]) % 360.0 or 360.0
 
     def contains(self, pan_deg: float, tilt_deg: float) -> bool:
-        """Return whether a direction lies inside the region; its edges are outside."""
+        """Return whether a direction is inside the region, excluding its edges."""
         turn = (pan_deg - self.pan_deg[0]) % 360.0
         return self.tilt_deg[0] < tilt_deg < self.tilt_deg[1] and (self.width_deg == 360.0 or 0.0 < turn < self.width_deg)
 
@@ -64,7 +64,7 @@ class PixelMask(_Rules):
 
 
 class SoftLimits(_Rules):
-    """Limits that narrow those of the device. None keeps the device's own limit."""
+    """Limits that narrow the device's own limits. None keeps the device's limit."""
 
     min_pan_deg: Degrees | None = None
     max_pan_deg: Degrees | None = None
@@ -73,10 +73,10 @@ class SoftLimits(_Rules):
     max_zoom: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
 
     def within(self, device: Limits) -> Limits:
-        """Return the device's limits, narrowed by these. With a pan limit, an endless pan is no longer endless.
+        """Return the device's limits narrowed by these. Pan is not endless if it has a soft limit.
 
         Raises:
-            ValueError: A minimum is not below its maximum.
+            ValueError: A minimum would be above its maximum.
         """
         low_pan, high_pan = device.min_pan_deg, device.max_pan_deg
         limits = Limits(
@@ -94,19 +94,19 @@ class SoftLimits(_Rules):
             ("zoom", limits.min_zoom, limits.max_zoom),
         ):
             if low > high:
-                raise ValueError(f"the soft limits leave no {name}: the device's are {low:g} to {high:g}")
+                raise ValueError(f"the soft limits leave no {name} range: the minimum would be {low:g} and the maximum {high:g}")
         return limits
 
 
 class CameraRules(_Rules):
-    """The rules that a site may set for a camera.
+    """The rules that a site sets for a camera.
 
     Attributes:
-        soft_limits: Limits inside those of the device.
-        keep_out: Regions that no frame shows and at which the camera is never aimed.
-        masks: Rectangles of the picture that are black in every frame, such as a text overlay.
-        dead_zone_deg: Smaller turns are skipped, which reduces wear on the motors. Zooming is never skipped.
-        min_interval_s: Minimum time between two moves. A move that is requested earlier waits.
+        soft_limits: Limits that narrow the device's own limits.
+        keep_out: Regions at which the camera is not aimed and which are black in every frame.
+        masks: Rectangles that are black in every frame, for example to hide a text overlay.
+        dead_zone_deg: Turns smaller than this are skipped, which reduces wear on the motors. Zooming is never skipped.
+        min_interval_s: Minimum time in seconds between two moves. A move requested earlier has to wait.
     """
 
     soft_limits: SoftLimits = SoftLimits()
@@ -116,16 +116,16 @@ class CameraRules(_Rules):
     min_interval_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
 
     def region_at(self, pose: Pose) -> Region | None:
-        """Return the keep-out region at which a pose aims; None if it aims at none."""
+        """Return the keep-out region at which a pose aims; None if there is none."""
         return next((region for region in self.keep_out if region.contains(pose.pan_deg, pose.tilt_deg)), None)
 
 
 class Mounting(_Rules):
-    """The mounting of the device.
+    """How a device is mounted.
 
     Attributes:
-        position: ``upright``, or ``ceiling`` for a device that hangs upside down and does not turn its own picture.
-        tilt_deg: The lean of the base in degrees, at most 30; positive if the device points up by this angle at its pan 0.
+        position: ``upright``, or ``ceiling`` for a device that hangs upside down and does not rotate its picture itself.
+        tilt_deg: Lean of the base in degrees, from -30 to 30; positive if the device points upwards at its own pan 0 and tilt 0.
     """
 
     position: Literal["upright", "ceiling"] = "upright"
@@ -133,10 +133,10 @@ class Mounting(_Rules):
 
 
 def nearest_outside(pose: Pose, regions: tuple[Region, ...], limits: Limits) -> Pose | None:
-    """Return the permitted pose that is nearest to a pose inside a region.
+    """Return the nearest permitted pose to a pose inside a region.
 
-    It lies on an edge of the region, within the limits, and in no other region. Return None if there is no such pose. A pose
-    that is in no region is returned unchanged.
+    The result is on an edge of the region, within the limits, and in no other region; None if there is no such pose. A pose outside
+    all regions is returned unchanged.
     """
     region = next((r for r in regions if r.contains(pose.pan_deg, pose.tilt_deg)), None)
     if region is None:

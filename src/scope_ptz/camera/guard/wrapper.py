@@ -1,4 +1,4 @@
-"""A camera that delegates every call to another one. Subclasses override the methods that they change."""
+"""A base class for cameras that wrap another camera."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from scope_ptz.geometry import Pose
 
 
 class CameraWrapper(Camera):
-    """A camera that behaves like the wrapped one.
+    """A camera that delegates every call to another camera. Subclasses override the methods that they change.
 
-    ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so subclasses that override these also affect ``centre_on``.
+    ``centre_on`` is not delegated. It uses ``pose`` and ``move``, so overriding these also affects ``centre_on``.
 
     Args:
-        camera: The wrapped camera. It is closed with the wrapper.
+        camera: The wrapped camera. Closing the wrapper closes it too.
     """
 
     def __init__(self, camera: Camera) -> None:
@@ -90,7 +90,7 @@ class CameraWrapper(Camera):
 
 
 def layers(camera: Camera) -> Iterator[Camera]:
-    """Yield a camera and the cameras inside its wrappers, from the outermost to the innermost."""
+    """Yield a camera and the cameras that it wraps, from the outermost to the innermost."""
     yield camera
     while isinstance(camera, CameraWrapper):
         camera = camera.inner

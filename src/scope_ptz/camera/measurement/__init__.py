@@ -1,1 +1,1 @@
-"""Measure a camera from its own pictures (rotations, fields of view, latency and settling), and store the results in a profile."""
+"""Measure a camera from its own pictures (rotations, fields of view, latency, settling times), and store a profile."""

@@ -24,7 +24,7 @@ class _Record(BaseModel):
 
 
 class MeasuredField(_Record):
-    """A field of view: the magnification, its position in the zoom range (0 to 1), and the stated and measured angles."""
+    """A field of view: the magnification, its position in the zoom range (0 to 1), and the reported and measured angles."""
 
     zoom: float = Field(gt=0)
     share: float = Field(ge=0, le=1)
@@ -33,9 +33,9 @@ class MeasuredField(_Record):
 
 
 class CalibrationRecord(_Record):
-    """A calibration, with the ranges of pan and tilt that its scales refer to.
+    """A calibration, with the pan and tilt ranges to which its scales refer.
 
-    ``replaces`` names the values that the driver only assumed. The measurements are used instead of them.
+    ``replaces`` names the values that the driver only assumed, and which the measurements therefore replace.
     """
 
     measured_at: str
@@ -91,13 +91,13 @@ class ProbeRecord(_Record):
 
 
 class CameraProfile(_Record):
-    """The stored results for a camera, without passwords and user names.
+    """The stored results for a camera, without user names or passwords.
 
     Attributes:
-        version: Version of the format.
+        version: Version of the file format.
         camera: The camera's driver and address, such as ``onvif 10.0.0.7:80``.
-        probe: The values that it reports.
-        calibration: The measurements.
+        probe: The reported values; None if the camera has not been probed.
+        calibration: The measurements; None if the camera has not been calibrated.
     """
 
     version: int = VERSION
@@ -106,10 +106,10 @@ class CameraProfile(_Record):
     calibration: CalibrationRecord | None = None
 
 
-def record_of(
+def calibration_record(
     calibration: Calibration, pan_range_deg: tuple[float, float], tilt_range_deg: tuple[float, float], assumed: tuple[str, ...]
 ) -> CalibrationRecord:
-    """Convert a calibration to the record that is stored."""
+    """Convert a calibration to a record that can be stored."""
     return CalibrationRecord(
         measured_at=now(),
         pan_scale=calibration.pan.scale,
@@ -118,8 +118,13 @@ def record_of(
         pan_range_deg=pan_range_deg,
         tilt_range_deg=tilt_range_deg,
         fields=tuple(
-            MeasuredField(zoom=each.zoom, share=each.position, stated_deg=each.stated_deg, measured_deg=each.measured_deg)
-            for each in calibration.fields
+            MeasuredField(
+                zoom=field_of_view.zoom,
+                share=field_of_view.position,
+                stated_deg=field_of_view.stated_deg,
+                measured_deg=field_of_view.measured_deg,
+            )
+            for field_of_view in calibration.fields
         ),
         snapshot_s=calibration.snapshot_s,
         move_s=calibration.move_s,
@@ -136,31 +141,33 @@ def now() -> str:
 
 
 def profile_path(folder: Path, camera: str) -> Path:
-    """Return the file of a camera's profile."""
+    """Return the path of a camera's profile."""
     words = re.sub(r"[^A-Za-z0-9.-]+", "-", camera).strip("-.")[:60]
     return folder / f"{words}-{hashlib.sha256(camera.encode()).hexdigest()[:8]}.json"
 
 
 def load_profile(folder: Path, camera: str) -> CameraProfile | None:
-    """Return the profile of a camera; None if there is none.
+    """Load a camera's profile; None if there is none.
 
     Raises:
-        PackError: The file is damaged.
+        PackError: The file cannot be read, is damaged, or has the wrong version or camera.
     """
     path = profile_path(folder, camera)
     try:
-        found = CameraProfile.model_validate_json(path.read_bytes())
+        profile = CameraProfile.model_validate_json(path.read_bytes())
     except FileNotFoundError:
         return None
     except (OSError, ValidationError) as error:
         raise PackError(f"The camera profile {path} cannot be read. Delete it and measure the camera again.") from error
-    if found.version != VERSION or found.camera != camera:
-        raise PackError(f"The camera profile {path} belongs to another version or camera. Delete it and measure the camera again.")
-    return found
+    if profile.version != VERSION or profile.camera != camera:
+        raise PackError(
+            f"The camera profile {path} is from another version or for another camera. Delete it and measure the camera again."
+        )
+    return profile
 
 
 def save_profile(folder: Path, profile: CameraProfile) -> Path:
-    """Write the profile of a camera. Readers never see a partial file.
+    """Save a camera's profile atomically.
 
     Raises:
         OutputError: The file cannot be written.

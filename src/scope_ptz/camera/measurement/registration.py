@@ -1,7 +1,8 @@
-"""Measure the rotation of a camera between two overlapping pictures, from matched features.
+"""Measure a camera's rotation between two overlapping pictures from matched features.
 
-When a camera turns about its optical centre, its focal length and rotation map one picture to the other. If the rotation is large
-enough, both can be computed from the pictures alone. If one of them is known, the other can be computed from smaller rotations.
+When a camera turns about its optical centre, its rotation and focal length determine how one picture maps to the other. If the
+rotation is large enough, both can be computed from the pictures alone. If the angle is known, the focal length can be computed
+from a smaller rotation, and vice versa.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MIN_MATCHES = 24
-"""Minimum number of matches for a registration; fewer may agree by chance."""
+"""Minimum number of matches for a registration. A smaller number could agree by chance."""
 
 _RATIO = 0.75  # Lowe's ratio test
-_RANSAC_PX = 2.0  # maximum error, in pixels, of a match that agrees with the others
+_RANSAC_PX = 2.0  # maximum error of an inlier in pixels
 _MAX_FEATURES = 3000  # per picture
 
 
@@ -33,11 +34,11 @@ class RegistrationError(CameraError):
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Points that show the same directions in two pictures of a camera that turned between them.
+    """Points that show the same directions in two pictures, between which the camera turned.
 
     Attributes:
-        first: Array of shape ``(N, 2)``: pixels from the picture's centre, with right and up positive.
-        second: The same directions in the second picture.
+        first: Array of shape ``(N, 2)``: offsets in pixels from the centre of the first picture, with right and up positive.
+        second: The corresponding points in the second picture.
         width: Width of the pictures in pixels.
     """
 
@@ -48,13 +49,13 @@ class Matches:
 
 @dataclass(frozen=True, slots=True)
 class Rotation:
-    """The rotation of a camera between two pictures.
+    """A camera's rotation between two pictures.
 
     Attributes:
         right_deg: Degrees to the right, about the camera's own up axis.
         up_deg: Degrees upwards, about its own right axis.
         roll_deg: Degrees about its line of sight.
-        residual_px: Root mean square error of the matches, in pixels.
+        residual_px: Root mean square error of the matches in pixels.
     """
 
     right_deg: float
@@ -64,62 +65,64 @@ class Rotation:
 
     @property
     def angle_deg(self) -> float:
-        """The angle of the whole rotation in degrees."""
+        """The total rotation angle in degrees."""
         return math.hypot(self.right_deg, self.up_deg, self.roll_deg)
 
 
 def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
-    """Match features between two pictures. Matches on moving objects are rejected.
+    """Match features between two pictures, rejecting matches on moving objects.
 
     Args:
         first: A picture, ``(H, W, 3)`` uint8 RGB.
         second: A picture of the same size.
 
     Raises:
-        RegistrationError: The pictures have too little in common.
+        RegistrationError: The pictures differ in size or have too few matches.
     """
     import cv2
 
     if first.shape != second.shape:
-        raise RegistrationError("Two pictures of a camera have different sizes.")
+        raise RegistrationError("Two pictures from the camera have different sizes.")
     sift = cv2.SIFT_create(nfeatures=_MAX_FEATURES)  # type: ignore[attr-defined]
-    (points_1, kinds_1), (points_2, kinds_2) = (
+    (points_1, descriptors_1), (points_2, descriptors_2) = (
         sift.detectAndCompute(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), None) for image in (first, second)
     )
     if min(len(points_1), len(points_2)) < MIN_MATCHES:
-        raise _too_little()
-    pairs = cv2.BFMatcher().knnMatch(kinds_1, kinds_2, k=2)
-    good = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < _RATIO * pair[1].distance]
-    if len(good) < MIN_MATCHES:
-        raise _too_little()
-    one = np.array([points_1[m.queryIdx].pt for m in good], np.float64)
-    two = np.array([points_2[m.trainIdx].pt for m in good], np.float64)
-    _, mask = cv2.findHomography(one, two, cv2.RANSAC, _RANSAC_PX)
+        raise _overlap_error()
+    pairs = cv2.BFMatcher().knnMatch(descriptors_1, descriptors_2, k=2)
+    good_matches = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < _RATIO * pair[1].distance]
+    if len(good_matches) < MIN_MATCHES:
+        raise _overlap_error()
+    pixels_1 = np.array([points_1[m.queryIdx].pt for m in good_matches], np.float64)
+    pixels_2 = np.array([points_2[m.trainIdx].pt for m in good_matches], np.float64)
+    _, mask = cv2.findHomography(pixels_1, pixels_2, cv2.RANSAC, _RANSAC_PX)
     if mask is None or int(mask.sum()) < MIN_MATCHES:
-        raise _too_little()
-    kept = mask.ravel().astype(bool)
-    return Matches(_centred(one[kept], first.shape), _centred(two[kept], first.shape), int(first.shape[1]))
+        raise _overlap_error()
+    inliers = mask.ravel().astype(bool)
+    return Matches(
+        _centre_pixels(pixels_1[inliers], first.shape), _centre_pixels(pixels_2[inliers], first.shape), int(first.shape[1])
+    )
 
 
 def rotation(matches: Matches, focal_px: float) -> Rotation:
     """Return the rotation that best maps the matches onto each other, given the focal length in pixels."""
-    one, two = _directions(matches.first, focal_px), _directions(matches.second, focal_px)
-    u, _, vt = np.linalg.svd(two.T @ one)
-    turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt  # maps directions of the first picture to those of the second
-    predicted = one @ turn.T
+    directions_1, directions_2 = _directions(matches.first, focal_px), _directions(matches.second, focal_px)
+    u, _, vt = np.linalg.svd(directions_2.T @ directions_1)
+    turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt  # maps directions from the first picture to the second
+    predicted = directions_1 @ turn.T
     back = predicted[:, :2] / predicted[:, 2:] * focal_px
     residual = float(np.sqrt(np.mean(np.sum((back - matches.second) ** 2, axis=1))))
     vector = _rotation_vector(turn)
-    # Directions turn opposite to the camera: when it turns right, the world turns left. Axes: right, up, forward.
+    # Directions rotate opposite to the camera: when it turns right, the world turns left. The axes are right, up and forward.
     right_deg, up_deg, roll_deg = np.degrees([-vector[1], vector[0], -vector[2]])
     return Rotation(float(right_deg), float(up_deg), float(roll_deg), residual)
 
 
 def focal_from(pairs: list[Matches]) -> float:
-    """Return the focal length in pixels that explains all pairs best.
+    """Return the focal length in pixels that best explains all pairs.
 
-    Each pair must be a turn by a large part of the field of view, because the focal length is computed from perspective, which a
-    small turn does not show.
+    The turn between the pictures of each pair must be a large fraction of the field of view, because the focal length is computed
+    from perspective effects, which small turns do not show.
     """
     width = pairs[0].width
     fields = np.geomspace(4.0, 130.0, 48)
@@ -130,14 +133,14 @@ def focal_from(pairs: list[Matches]) -> float:
     logs = np.log(width / 2 / np.tan(np.radians(fields) / 2))
     best = int(np.argmin([misfit(value) for value in logs]))
     low, high = logs[min(best + 1, len(logs) - 1)], logs[max(best - 1, 0)]
-    return math.exp(_minimum(misfit, float(low), float(high)))
+    return math.exp(_minimise(misfit, float(low), float(high)))
 
 
 def focal_for_angle(matches: Matches, angle_deg: float) -> float:
-    """Return the focal length in pixels at which the rotation has a known angle.
+    """Return the focal length in pixels at which the rotation between two pictures has a known angle.
 
     Raises:
-        RegistrationError: No focal length gives the angle.
+        RegistrationError: No focal length gives this angle.
     """
     low, high = matches.width / 2 / math.tan(math.radians(160.0) / 2), matches.width / 2 / math.tan(math.radians(0.5) / 2)
     target_deg = abs(angle_deg)
@@ -164,7 +167,7 @@ def focal_px(hfov: float, width: int) -> float:
     return width / 2 / math.tan(math.radians(hfov) / 2)
 
 
-def _centred(points: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _centre_pixels(points: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
     height, width = shape[:2]
     return (points - [(width - 1) / 2, (height - 1) / 2]) * [1.0, -1.0]
 
@@ -175,15 +178,15 @@ def _directions(points: NDArray[np.float64], focal: float) -> NDArray[np.float64
 
 
 def _rotation_vector(turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the axis times the angle in radians. The right-hand rule applies, with right, up and forward as x, y and z."""
+    """Return the rotation axis scaled by the angle in radians, following the right-hand rule for the axes right, up and forward."""
     axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
     sine = float(np.linalg.norm(axis))
     angle = math.atan2(sine, (float(np.trace(turn)) - 1) / 2)
     return axis * (angle / sine if sine > 1e-12 else 1.0)
 
 
-def _minimum(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return the argument that minimises a function of one number, by golden-section search."""
+def _minimise(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return the argument that minimises a function between two bounds, by golden-section search."""
     golden = (math.sqrt(5) - 1) / 2
     left, right = high - golden * (high - low), low + golden * (high - low)
     at_left, at_right = function(left), function(right)
@@ -199,7 +202,8 @@ def _minimum(function: Callable[[float], float], low: float, high: float) -> flo
     return (low + high) / 2
 
 
-def _too_little() -> RegistrationError:
+def _overlap_error() -> RegistrationError:
     return RegistrationError(
-        "Two pictures have too little in common to measure between them. Aim the camera at a scene with detail and good light."
+        "Two pictures have too few matching features to measure the turn between them. "
+        "Aim the camera at a well-lit scene with plenty of detail."
     )

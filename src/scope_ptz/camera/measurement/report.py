@@ -1,4 +1,4 @@
-"""A report on a camera for the table of tested devices. It identifies the model, but not the owner or the location."""
+"""Camera reports for the table of tested devices. A report identifies the model, but not the owner or the location."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ if TYPE_CHECKING:
 _IDENTIFIERS = re.compile(
     r"(?:\d{1,3}\.){3}\d{1,3}(?::\d+)?"  # IPv4 addresses
     r"|(?:[0-9A-Fa-f]{2}[:-]){5}[0-9A-Fa-f]{2}"  # MAC addresses
-    r"|\b(?=[0-9A-Fa-f]*\d)[0-9A-Fa-f]{12}\b"  # the same without separators, which is the form of AXIS serial numbers
+    r"|\b(?=[0-9A-Fa-f]*\d)[0-9A-Fa-f]{12}\b"  # MAC addresses without separators, which AXIS uses as serial numbers
     r"|\S+@\S+"
 )
 
 
 def report_text(probe: ProbeRecord, calibration: CalibrationRecord | None = None) -> str:
-    """Return a report as Markdown: a row for the table of tested devices, and the details as JSON.
+    """Return a camera report as Markdown: a row for the table of tested devices, and details as JSON.
 
-    It contains only selected fields, which hold no addresses, accounts or serial numbers. If a device puts one into its model name,
-    it is redacted. Presets are only counted, because their names may reveal places.
+    The report contains only selected fields, without addresses, accounts or serial numbers. An identifier that a device includes in
+    its model name is redacted. Presets are only counted, because their names may reveal the location.
 
     Args:
-        probe: The values that the camera reports.
+        probe: The reported values.
         calibration: The measurements; None if there are none.
     """
-    offers = {
+    feature_flags = {
         "drive": probe.drives,
         "presets": probe.edits_presets,
         f"focus ({', '.join(probe.focus_actions)})": bool(probe.focus_actions),
         f"iris ({', '.join(probe.iris_actions)})": bool(probe.iris_actions),
     }
-    can = ", ".join(name for name, offered in offers.items() if offered) or "poses and pictures only"
+    features = ", ".join(name for name, present in feature_flags.items() if present) or "poses and pictures only"
     measured = "no" if calibration is None else "contradictions" if calibration.contradictions else "yes"
-    row = (probe.model, probe.firmware or "not reported", probe.driver, can, measured)
+    row = (probe.model, probe.firmware or "not reported", probe.driver, features, measured)
     details = {
         "scope_ptz": _version(),
         "model": probe.model,
@@ -55,7 +55,7 @@ def report_text(probe: ProbeRecord, calibration: CalibrationRecord | None = None
         "focus": probe.focus_actions,
         "iris": probe.iris_actions,
         "assumed": probe.assumed,
-        "calibration": None if calibration is None else _measured(calibration),
+        "calibration": None if calibration is None else _calibration_fields(calibration),
     }
     table = "| Model | Firmware | Driver | Can | Calibrated |\n|---|---|---|---|---|\n"
     cells = " | ".join(text.replace("|", "/").replace("\n", " ") for text in row)
@@ -65,16 +65,16 @@ def report_text(probe: ProbeRecord, calibration: CalibrationRecord | None = None
 
 def report_name(probe: ProbeRecord) -> str:
     """Return the file name of a report."""
-    words = re.sub(r"[^a-z0-9]+", "-", _IDENTIFIERS.sub("", probe.model).lower()).strip("-")[:60]
-    return f"camera-report-{words or 'camera'}.md"
+    model_slug = re.sub(r"[^a-z0-9]+", "-", _IDENTIFIERS.sub("", probe.model).lower()).strip("-")[:60]
+    return f"camera-report-{model_slug or 'camera'}.md"
 
 
-def _measured(record: CalibrationRecord) -> dict[str, object]:
+def _calibration_fields(record: CalibrationRecord) -> dict[str, object]:
     return {
         "pan_scale": round(record.pan_scale, 4),
         "tilt_scale": round(record.tilt_scale, 4),
         "tilt_offset_deg": round(record.tilt_offset_deg, 2),
-        "hfov_deg_by_zoom": [(round(each.zoom, 3), round(each.measured_deg, 2)) for each in record.fields],
+        "hfov_deg_by_zoom": [(round(field.zoom, 3), round(field.measured_deg, 2)) for field in record.fields],
         "move_s": round(record.move_s, 2),
         "settling_s": round(record.settling_s, 2),
         "residual_px": round(record.residual_px, 2),

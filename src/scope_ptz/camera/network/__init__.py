@@ -1,1 +1,1 @@
-"""Code that network camera drivers share: HTTP with safe credentials, pictures, streams, settling, and a dead man's switch."""
+"""Code shared by network camera drivers: HTTP with protected credentials, pictures, streams, settling, and a dead man's switch."""

@@ -1,4 +1,4 @@
-"""Base class of network cameras: moves that wait for arrival, continuous moves with a timeout, stops, and pictures with poses."""
+"""The base class for network cameras: moves that wait for arrival, continuous moves with a timeout, stops, and frames."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.camera.capabilities import check_drive
 from scope_ptz.camera.clocks import WallClock
 from scope_ptz.camera.network.drive_watch import DriveWatch
 from scope_ptz.camera.network.errors import CameraSignInError, PositionNotReachedError
-from scope_ptz.camera.network.settling import Settling, is_stationary, wait_for_still_picture, wait_until_stationary
+from scope_ptz.camera.network.settling import SettlingCriteria, is_stationary, wait_for_still_picture, wait_until_stationary
 from scope_ptz.errors import CameraError, InputError
 from scope_ptz.geometry import angle_between_deg, direction
 
@@ -26,32 +26,32 @@ if TYPE_CHECKING:
     from scope_ptz.geometry import Axis, Pose
 
 STOP_CHECKS = 40
-"""Number of position readings after a stop before the stop is sent again."""
+"""Maximum number of position readings after a stop command before the command is sent again."""
 
 MAX_OFF_CENTRE = 0.05
-"""Maximum error of a centred point, as a fraction of the picture's width, and maximum relative error of the zoom."""
+"""Maximum error of a centred point as a fraction of the field of view, and maximum relative error of the zoom."""
 
 Command = Callable[[], Awaitable[None]]
 """A function that sends a command to the device."""
 
 
 class NetworkCamera(Camera):
-    """A camera on the network. Drivers implement how commands are sent; this class decides when, and waits for their effect.
+    """A camera on the network. Drivers send the commands; this class decides when to send them and waits for their effect.
 
-    Every command gets a number. If a newer command exists, an older one is not sent, or its effect is no longer awaited.
+    Commands are numbered. Once there is a newer command, an older one is not sent, or its effect is no longer awaited.
 
     Args:
         info: The camera's properties and capabilities.
         pictures: The source of its pictures.
-        settling: The criteria for when the camera counts as settled.
-        watchdog: The process that stops the camera if this program is killed.
+        settling: The criteria for deciding that the camera has settled.
+        watchdog: The process that stops the camera if this process is killed.
     """
 
-    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: Settling, watchdog: StopProcess) -> None:
+    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: SettlingCriteria, watchdog: StopProcess) -> None:
         self.clock = WallClock()
         self._info, self._pictures, self._settling = info, pictures, settling
         self._commands = self._sent = 0
-        self._sending: anyio.CancelScope | None = None
+        self._send_scope: anyio.CancelScope | None = None
         self._watch = DriveWatch(info.name, self._send_stop_blocking, watchdog=watchdog)
 
     @property
@@ -68,7 +68,7 @@ class NetworkCamera(Camera):
 
     @abstractmethod
     async def _start_drive(self, number: int, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Send the velocities with ``_send``, and pass ``number``, the number of the command, to it."""
+        """Send the velocities with ``_send``, passing the command number on to it."""
 
     @abstractmethod
     async def _send_stop(self) -> None:
@@ -76,54 +76,55 @@ class NetworkCamera(Camera):
 
     @abstractmethod
     def _send_stop_blocking(self) -> None:
-        """Stop all axes from a thread, over a separate connection, and return when the device has acknowledged it."""
+        """Stop all axes from a thread, over a separate connection, and return once the device has acknowledged the command."""
 
     @abstractmethod
     async def _disconnect(self) -> None:
-        """Close the connections. It must not raise ``CameraError``."""
+        """Close the connections. Implementations must not raise ``CameraError``."""
 
     def _check_may_move(self) -> None:
         """Raise ``CameraError`` if the device is known to refuse moves."""
 
-    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:  # noqa: ARG002 - for drivers
-        """Return the device's own command that centres a point of the picture; None if the device has none.
+    def _centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Command | None:  # noqa: ARG002 - for drivers
+        """Return the device's own command for centring a point of the picture; None if it has none.
 
         Args:
-            here: The current pose.
+            current: The current pose.
             target: The pose that the command should reach, computed from the camera's optics.
             x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
             y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
         """
         return None
 
-    async def _explain_miss(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
-        """Return the axes that stopped at a limit that the device had not reported before.
+    async def _axes_at_limits(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
+        """Return the axes that stopped at a limit which is not in ``info``.
 
         Raises:
             PositionNotReachedError: No limit explains the camera's position.
         """
-        axis = self._settling.farthest(reached, target)
-        raise self._not_reached(reached, target, f"The {axis} motor may be blocked or limited, or somebody else moved the camera.")
+        axis = self._settling.farthest_axis(reached, target)
+        reason = f"The {axis} motor may be blocked or limited, or someone else may have moved the camera."
+        raise self._not_reached(reached, target, reason)
 
     async def move(self, pose: Pose) -> Arrival:
         target, clamped = self._info.limits.clamp(pose)
         reached = await self._travel(lambda: self._start_move(target), target)
         if reached is None:  # another command has replaced this one
             return Arrival(await self.pose(), clamped)
-        if not self._settling.near(reached, target):
-            stopped = {*clamped, *await self._explain_miss(reached, target)}
+        if not self._settling.is_near(reached, target):
+            stopped = {*clamped, *await self._axes_at_limits(reached, target)}
             clamped = tuple(axis for axis in ("pan", "tilt", "zoom") if axis in stopped)
         return Arrival(reached, clamped)
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Centre a point of the picture with the device's own command, and check the resulting pose.
+        """Centre a point of the picture with the device's own command, which is based on exact knowledge of the lens.
 
-        The device knows its lens best. If the resulting pose is wrong, the camera is moved to the pose computed from its optics.
+        If the device has no such command, or the resulting pose is wrong, the camera moves to the pose computed from its optics.
         """
-        here = await self.pose()
-        requested = self._info.towards(here, x, y, zoom_factor)
+        current = await self.pose()
+        requested = self._info.towards(current, x, y, zoom_factor)
         target, clamped = self._info.limits.clamp(requested)
-        command = None if clamped else self._centring_command(here, target, x, y)
+        command = None if clamped else self._centring_command(current, target, x, y)
         if command is None:
             return await self.move(requested)
         reached = await self._travel(command, None)
@@ -160,13 +161,13 @@ class NetworkCamera(Camera):
         if not self._info.capabilities.drives:
             raise CameraError(f"{self._info.name} cannot be driven at a velocity; move it to a pose.")
         self._check_may_move()
-        driven, sent = self._watch.armed, self._sent
-        self._watch.arm(timeout_s)  # before the command, because a command whose reply is lost must be stopped too
-        number = self._next()
+        driven, sent = self._watch.is_armed, self._sent
+        self._watch.arm(timeout_s)  # before the command, because a drive must be stopped even if its reply is lost
+        number = self._next_number()
         try:
             await self._start_drive(number, pan_dps, tilt_dps, zoom_rate, timeout_s)
         except CameraSignInError:
-            # An account that may not move the camera may not stop it either, but then nothing is moving.
+            # An account without permission to move the camera cannot stop it either, but then nothing is moving.
             if driven or self._sent != sent:
                 self._watch.stop_now()
             else:
@@ -176,18 +177,18 @@ class NetworkCamera(Camera):
             self._watch.stop_now()
             raise
         if self._commands == number:
-            self._watch.arm(timeout_s)  # the timeout starts when the camera has received the command
+            self._watch.arm(timeout_s)  # the timeout starts once the camera has received the command
 
     async def stop(self) -> None:
-        """Stop any motion and return when the camera is stationary.
+        """Stop any motion and return once the camera is stationary.
 
         Raises:
-            CameraError: The stop command did not reach the camera, or the camera does not stop. The dead man's switch still stops a
-                driven camera as soon as it can be reached.
+            CameraError: The stop command did not reach the camera, or the camera did not stop. If the camera is being driven, the
+                dead man's switch keeps trying to stop it.
         """
-        number = self._next()
-        if self._sending is not None:
-            self._sending.cancel()  # commands in flight must not delay the stop
+        number = self._next_number()
+        if self._send_scope is not None:
+            self._send_scope.cancel()  # commands in flight must not delay the stop
         try:
             for _ in range(3):
                 await self._send_stop()
@@ -199,7 +200,7 @@ class NetworkCamera(Camera):
             self._watch.stop_now()
             raise
         self._watch.stop_now()
-        raise CameraError(f"{self._info.name} does not stop. Check that nobody else is moving it and that no tour is running.")
+        raise CameraError(f"{self._info.name} did not stop. Check that no one else is moving it and that no guard tour is running.")
 
     async def close(self) -> None:
         with anyio.CancelScope(shield=True):
@@ -217,23 +218,23 @@ class NetworkCamera(Camera):
     async def _travel(self, start: Command, target: Pose | None) -> Pose | None:
         """Start a move and wait until the camera has settled. Return None if another command has replaced the move."""
         self._check_may_move()
-        number = self._next()
+        number = self._next_number()
 
-        def superseded() -> bool:
+        def is_superseded() -> bool:
             return self._commands != number
 
         try:
-            if self._watch.armed:  # the dead man's switch must not stop the move
+            if self._watch.is_armed:  # the dead man's switch must not stop this move
                 await self._send_stop()
                 self._watch.disarm()
                 await to_thread.run_sync(self._watch.join)
             if await self._send(number, start):
-                reached = await wait_until_stationary(self.pose, self._settling, target, superseded)
-                if not superseded():
-                    await wait_for_still_picture(lambda: self._pictures.settling_picture(reached), self._settling, superseded)
-                    return None if superseded() else reached
+                reached = await wait_until_stationary(self.pose, self._settling, target, is_superseded)
+                if not is_superseded():
+                    await wait_for_still_picture(lambda: self._pictures.settling_picture(reached), self._settling, is_superseded)
+                    return None if is_superseded() else reached
         except BaseException:
-            if not superseded():
+            if not is_superseded():
                 with anyio.move_on_after(3.0, shield=True), suppress(CameraError):
                     await self.stop()
             raise
@@ -242,20 +243,20 @@ class NetworkCamera(Camera):
         return None
 
     async def _send(self, number: int, command: Command) -> bool:
-        """Send a command unless another one has replaced it. Return whether it was sent."""
+        """Send a command unless a newer one exists. Return whether it was sent."""
         if self._commands != number:
             return False
         with anyio.CancelScope() as scope:
-            self._sending = scope
+            self._send_scope = scope
             try:
                 await command()
                 self._sent += 1
             finally:
-                if self._sending is scope:
-                    self._sending = None
+                if self._send_scope is scope:
+                    self._send_scope = None
         return not scope.cancelled_caught
 
-    def _next(self) -> int:
+    def _next_number(self) -> int:
         self._commands += 1
         return self._commands
 
@@ -271,9 +272,9 @@ class NetworkCamera(Camera):
 
     def _not_reached(self, reached: Pose, target: Pose, reason: str) -> PositionNotReachedError:
         return PositionNotReachedError(
-            f"{self._info.name} is at {_text(reached)} but was sent to {_text(target)}: the position never arrived. {reason}"
+            f"{self._info.name} was sent to {_pose_text(target)} but stopped at {_pose_text(reached)}. {reason}"
         )
 
 
-def _text(pose: Pose) -> str:
+def _pose_text(pose: Pose) -> str:
     return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f}, zoom {pose.zoom:.2f}x"

@@ -1,4 +1,4 @@
-"""The account with which a driver signs in to a camera."""
+"""The credentials for signing in to a camera."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Credentials:
-    """A user name and a password. The password does not appear in ``repr``."""
+    """A user name and a password, which is hidden from ``repr``."""
 
     user: str
     password: str = field(repr=False)

@@ -13,23 +13,23 @@ from scope_ptz.camera.network.stop_process import StopProcess
 from scope_ptz.errors import CameraError
 
 LONGEST_PAUSE_S = 2.0
-"""Maximum pause, in seconds, between two attempts to stop a camera."""
+"""Maximum pause in seconds between attempts to stop a camera."""
 
 _LOG = logging.getLogger(__name__)
 
 
 class DriveWatch:
-    """Stops a camera when a drive is not renewed in time, and when the process exits.
+    """Stops a driven camera when the drive is not renewed in time or the process exits.
 
-    It runs in a thread with a separate connection, so it works even if the event loop is busy, blocked or closed. The thread
-    exists only while the camera is being driven. If the process is killed, ``watchdog`` stops the camera. Nothing stops it if the
-    machine loses power.
+    It runs in a thread and uses a separate connection, so it works even if the event loop is busy, blocked or closed. The thread
+    exists only while the camera is being driven. If the process is killed, ``watchdog`` stops the camera. If the machine loses
+    power, nothing stops the camera.
 
     Args:
         name: The camera's name, for the log.
-        send_stop: Sends the stop command and returns when the camera has acknowledged it. It is called in the thread.
+        send_stop: A blocking function that sends the stop command and waits for the acknowledgement. It is called from the thread.
         watchdog: The process that stops the camera if this process is killed; None if there is none.
-        retry_s: Seconds between the first two attempts while the camera cannot be reached. Later pauses are longer, up to 2 s.
+        retry_s: Seconds before the first retry. The pause doubles with each retry, up to ``LONGEST_PAUSE_S``.
         give_up_s: Seconds after which no further attempt is made.
     """
 
@@ -46,16 +46,16 @@ class DriveWatch:
         self._retry_s, self._give_up_s = retry_s, give_up_s
         self._condition = threading.Condition()
         self._deadline_s: float | None = None
-        self._handed_over = False  # whether only the watchdog process still tries to stop the camera
+        self._handed_over = False  # whether the watchdog process alone is still trying to stop the camera
         self._thread: threading.Thread | None = None
 
     @property
-    def armed(self) -> bool:
+    def is_armed(self) -> bool:
         """Whether the camera may be in a continuous move."""
         return self._deadline_s is not None
 
     def arm(self, timeout_s: float) -> None:
-        """Send a stop after the timeout, unless ``arm`` or ``disarm`` is called first. Call it before the drive is sent."""
+        """Schedule a stop after the timeout, unless ``arm`` or ``disarm`` is called first. Call this before sending the drive."""
         with self._condition:
             if self._watchdog is not None:
                 self._watchdog.arm()
@@ -69,25 +69,25 @@ class DriveWatch:
     def disarm(self) -> None:
         """Record that the camera has acknowledged a stop."""
         with self._condition:
-            self._stopped()
+            self._record_stop()
             self._condition.notify_all()
 
     def stop_now(self) -> None:
-        """Make the thread send a stop immediately. The call does not wait for it."""
+        """Make the thread send a stop immediately, without waiting for it."""
         with self._condition:
             if self._deadline_s is not None:
                 self._deadline_s = monotonic()
                 self._condition.notify_all()
 
     def join(self, timeout_s: float = 5.0) -> None:
-        """Wait until the thread has ended, which it does when the camera has stopped. The call blocks."""
+        """Block until the thread has ended, which it does once the camera has stopped."""
         if (thread := self._thread) is not None:
             thread.join(timeout_s)
 
     def close(self, timeout_s: float = 5.0) -> None:
-        """Stop the camera if it is being driven, and release all resources. The call blocks.
+        """Stop the camera if it is being driven, and release all resources. This call blocks.
 
-        If the camera cannot be reached within the time limit, ``watchdog`` continues to try.
+        If the camera cannot be reached within the timeout, ``watchdog`` keeps trying.
         """
         self.stop_now()
         self.join(timeout_s)
@@ -98,18 +98,18 @@ class DriveWatch:
             self.join(timeout_s)
             self._watchdog.close()
 
-    def _stopped(self) -> None:
+    def _record_stop(self) -> None:
         self._deadline_s = None
         if self._watchdog is not None:
             self._watchdog.disarm()
 
     def _watch(self) -> None:
-        """Wait for each deadline and send stops until one arrives. This runs in the thread."""
+        """Wait for each deadline, and then send stops until one is acknowledged. This runs in the thread."""
         pause_s = self._retry_s
         while True:
             with self._condition:
-                while self._deadline_s is not None and (left_s := self._deadline_s - monotonic()) > 0:
-                    self._condition.wait(left_s)
+                while self._deadline_s is not None and (remaining_s := self._deadline_s - monotonic()) > 0:
+                    self._condition.wait(remaining_s)
                 due_s = self._deadline_s
                 if due_s is None or self._handed_over:
                     self._thread = None
@@ -121,9 +121,9 @@ class DriveWatch:
                     pause_s = self._retry_s
                     continue  # driven again, or stopped by another call
                 if sent:
-                    self._stopped()
+                    self._record_stop()
                 elif monotonic() - due_s > self._give_up_s:
-                    _LOG.error("%s has not answered for %g s and may still be moving.", self._name, self._give_up_s)
+                    _LOG.error("%s has not responded for %g s and may still be moving.", self._name, self._give_up_s)
                     self._deadline_s = None
                 else:
                     self._condition.wait(pause_s)
@@ -133,12 +133,12 @@ class DriveWatch:
         try:
             self._send_stop()
         except CameraError as error:
-            _LOG.log(level, "The stop command for %s did not arrive and will be retried: %s", self._name, error)
+            _LOG.log(level, "The stop command for %s failed and will be retried: %s", self._name, error)
             return False
         return True
 
     def _stop_at_exit(self) -> None:
-        if self.armed:
+        if self.is_armed:
             with suppress(CameraError):
                 self._send_stop()
-                self._stopped()
+                self._record_stop()

@@ -1,15 +1,15 @@
-"""The errors of network cameras. Each message tells the user what to do, and none contains a password.
+"""Network camera errors. Each message tells the user what to do, and none contains a password.
 
 CameraError
-├── CameraUnreachableError   nothing answers at the address, or the connection breaks
-├── CameraTimeoutError       the camera does not answer in time
-├── CameraSignInError        the account is refused, or lacks the right for the request
-├── CameraReplyError         the reply violates the protocol
-├── NotACameraError          something else answers at the address
-├── ForeignAddressError      the reply refers to another host, which never gets credentials
-├── PictureError             a picture is damaged, black, frozen, or has an unexpected size
-├── PositionNotReachedError  a move ends elsewhere, or does not end
-└── PictureNotStillError     the encoders report arrival, but the picture keeps moving
+├── CameraUnreachableError   nothing responds at the address, or the connection was lost
+├── CameraTimeoutError       the camera did not respond in time
+├── CameraSignInError        the credentials were rejected, or the account lacks a permission
+├── CameraReplyError         a reply violates the protocol
+├── NotACameraError          the device at the address is not a camera of the expected type
+├── ForeignAddressError      a reply refers to another host, to which credentials are never sent
+├── PictureError             a picture is damaged, black or frozen, or has an unexpected size
+├── PositionNotReachedError  a move ended at the wrong pose, or did not end in time
+└── PictureNotStillError     the encoders report arrival, but the picture is still moving
 """
 
 from __future__ import annotations
@@ -23,34 +23,34 @@ PictureFault = Literal["truncated", "damaged", "size", "black", "frozen", "stall
 
 
 class CameraUnreachableError(CameraError):
-    """Nothing answers at the camera's address, or the connection breaks."""
+    """Nothing responds at the camera's address, or the connection was lost."""
 
 
 class CameraTimeoutError(CameraError):
-    """The camera does not answer in time."""
+    """The camera did not respond in time."""
 
 
 class CameraSignInError(CameraError):
-    """The camera refuses the account, or the account lacks the right for the request."""
+    """The camera rejected the credentials, or the account lacks permission for the request."""
 
 
 class CameraReplyError(CameraError):
-    """The camera's reply violates its protocol."""
+    """A reply from the camera violates the protocol."""
 
 
 class NotACameraError(CameraError):
-    """Something answers at the address, but it is not a camera of the expected type."""
+    """The device at the address is not a camera of the expected type."""
 
 
 class ForeignAddressError(CameraError):
-    """A reply from the camera refers to another host. Credentials are never sent there."""
+    """A reply from the camera refers to another host, to which credentials are never sent."""
 
 
 class PictureError(CameraError):
-    """A picture is damaged, black, frozen, or has an unexpected size.
+    """A picture is damaged, black or frozen, or has an unexpected size.
 
     Attributes:
-        fault: What is wrong with the picture.
+        fault: The type of fault.
     """
 
     def __init__(self, message: str, fault: PictureFault) -> None:
@@ -59,8 +59,8 @@ class PictureError(CameraError):
 
 
 class PositionNotReachedError(CameraError):
-    """A move ended somewhere else, or did not end in time."""
+    """A move ended at the wrong pose, or did not end in time."""
 
 
 class PictureNotStillError(CameraError):
-    """The encoders report arrival, but the picture keeps moving."""
+    """The encoders report arrival, but the picture is still moving."""

@@ -1,4 +1,4 @@
-"""An HTTP client for one device, with sign-in, time limits, retries of reads, and errors that tell the user what to do."""
+"""An HTTP client for a single device, with authentication, timeouts, retries, and errors that tell the user what to do."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ MAX_BODY_BYTES = 32 * 2**20
 """Maximum size of a reply in bytes. A 4K JPEG is about 4 MB."""
 
 BACKOFF_S = (0.15, 0.4)
-"""Pauses, in seconds, before a read is retried."""
+"""Pauses in seconds before each retry."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceTimeouts:
-    """Time limits in seconds."""
+    """Timeouts in seconds."""
 
     connect_s: float = 4.0
     reply_s: float = 8.0
@@ -44,7 +44,7 @@ class DeviceReply:
     """A reply from a device. Its body is untrusted.
 
     Attributes:
-        status: HTTP status: 2xx, or one that the caller accepts.
+        status: HTTP status code: 2xx, or one that the caller accepts.
         content_type: Media type without parameters, in lower case.
         body: The decompressed body.
     """
@@ -55,13 +55,13 @@ class DeviceReply:
 
 
 class DeviceHttp:
-    """An HTTP client for one device. It follows no redirects and uses no proxy.
+    """An HTTP client for a single device. It does not follow redirects or use proxies.
 
     Args:
         address: The address of the device.
-        credentials: The account that signs in.
-        timeouts: Time limits.
-        verify: Whether to verify the certificate, or the TLS context that verifies it.
+        credentials: The credentials for signing in.
+        timeouts: The timeouts.
+        verify: Whether to verify the certificate, or a TLS context that verifies it.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class DeviceHttp:
             base_url=address.base_url,
             auth=PinnedSignIn(address, credentials),
             timeout=httpx2.Timeout(self._timeouts.reply_s, connect=self._timeouts.connect_s),
-            # A device may close idle connections at any time, and a command must not fail because of it.
+            # A device may close idle connections at any time, and that must not make a command fail.
             limits=httpx2.Limits(max_connections=8, max_keepalive_connections=4, keepalive_expiry=2.0),
             follow_redirects=False,
             trust_env=False,
@@ -92,11 +92,11 @@ class DeviceHttp:
 
     @property
     def tls_context(self) -> ssl.SSLContext | None:
-        """The TLS context that verifies the device's certificate; None if the system's authorities do."""
+        """The TLS context that verifies the device's certificate; None to use the system's certificate authorities."""
         return self._verify if isinstance(self._verify, ssl.SSLContext) else None
 
-    def described(self) -> dict[str, object]:
-        """Return the values that another process needs to create an equal client. They contain the password."""
+    def description(self) -> dict[str, object]:
+        """Return the values from which another process can create an equivalent client, including the password."""
         address, account = self.address, self.credentials
         certificate = self._verify.certificate if isinstance(self._verify, PinnedContext) else None
         return {
@@ -105,11 +105,11 @@ class DeviceHttp:
         }  # fmt: skip
 
     @classmethod
-    def from_description(cls, found: Mapping[str, Any]) -> DeviceHttp:
-        """Create a client from the value that ``described`` returned."""
-        address = DeviceAddress(found["host"], found["port"], found["tls"])
-        verify = True if found["certificate"] is None else PinnedContext.of(found["certificate"])
-        return cls(address, Credentials(found["user"], found["password"]), verify=verify)
+    def from_description(cls, description: Mapping[str, Any]) -> DeviceHttp:
+        """Create a client from a dictionary that ``description`` returned."""
+        address = DeviceAddress(description["host"], description["port"], description["tls"])
+        verify = True if description["certificate"] is None else PinnedContext.of(description["certificate"])
+        return cls(address, Credentials(description["user"], description["password"]), verify=verify)
 
     async def get(
         self, path: str, parameters: Mapping[str, str] | None = None, *, repeat: bool = True, accept: tuple[int, ...] = ()
@@ -119,19 +119,19 @@ class DeviceHttp:
         Args:
             path: The path on the device.
             parameters: The query parameters.
-            repeat: Whether the request may be sent again after a lost connection. It must be false for relative moves, which a
-                second copy would double.
-            accept: Status codes besides 2xx that are returned instead of raised as errors.
+            repeat: Whether the request may be sent again after a lost connection. This must be false for relative moves, because
+                the camera could move twice.
+            accept: Status codes besides 2xx for which to return the reply instead of raising an error.
 
         Raises:
-            CameraError: One of the errors of ``camera.network.errors``.
+            CameraError: One of the errors in ``camera.network.errors``.
         """
         return await self._send("GET", path, parameters, repeat=repeat, accept=accept)
 
     async def post(
         self, path: str, content: bytes, headers: Mapping[str, str], *, repeat: bool, accept: tuple[int, ...] = ()
     ) -> DeviceReply:
-        """Post a message. The arguments are those of ``get``; ``headers`` describe the content."""
+        """Send a POST request. ``headers`` describe the content; the other arguments are those of ``get``."""
         return await self._send("POST", path, None, content=content, headers=headers, repeat=repeat, accept=accept)
 
     async def _send(
@@ -162,14 +162,14 @@ class DeviceHttp:
     async def stream(
         self, path: str, parameters: Mapping[str, str] | None = None
     ) -> AsyncIterator[tuple[str, AsyncIterator[bytes]]]:
-        """Return a context with the content type and the body of an endless reply, as chunks of bytes."""
+        """Return a context manager that provides the content type of an endless reply and its body as chunks of bytes."""
         with connection_errors(self.address):
             async with self._client.stream("GET", path, params=parameters) as response:
                 check_status(self.address, response, ())
                 yield response.headers.get("content-type", ""), response.aiter_raw()
 
     def send_blocking(self, path: str, queries: tuple[Mapping[str, str], ...], *, timeout_s: float = 2.0) -> None:
-        """Send GET requests from a thread, over a separate connection. This works even if the event loop is blocked.
+        """Send GET requests from a thread over a separate connection. This works even if the event loop is blocked.
 
         Raises:
             CameraError: A request failed. The device received the requests before it.
@@ -179,7 +179,7 @@ class DeviceHttp:
                 check_status(self.address, client.get(path, params=query), ())
 
     def post_blocking(self, path: str, content: bytes, headers: Mapping[str, str], *, timeout_s: float = 2.0) -> None:
-        """Post a message from a thread, over a separate connection.
+        """Send a POST request from a thread over a separate connection.
 
         Raises:
             CameraError: The request failed.
@@ -188,7 +188,7 @@ class DeviceHttp:
             check_status(self.address, client.post(path, content=content, headers=dict(headers)), ())
 
     def _blocking_client(self, timeout_s: float) -> httpx2.Client:
-        # The event loop's sign-in counts its requests and is not thread-safe, so this client gets its own.
+        # The sign-in object counts its requests and is not thread-safe, so this client gets its own.
         return httpx2.Client(
             base_url=self.address.base_url, auth=PinnedSignIn(self.address, self.credentials), timeout=timeout_s,
             cookies=self._client.cookies, follow_redirects=False, trust_env=False, verify=self._verify,
@@ -201,35 +201,37 @@ class DeviceHttp:
 
 @contextmanager
 def connection_errors(address: DeviceAddress) -> Iterator[None]:
-    """Return a context that converts transport errors to camera errors.
+    """Return a context manager that converts transport errors to camera errors.
 
-    The original error is dropped, because its request contains headers, and its text may contain an address with credentials.
+    The original error is dropped, because it holds the request's headers, and its text may contain a URL with credentials.
     """
     try:
         yield
     except (httpx2.TimeoutException, TimeoutError) as error:
         if isinstance(error, httpx2.ConnectTimeout):
-            failure: CameraError = CameraUnreachableError(_nobody(address, "nothing answers"))
+            failure: CameraError = CameraUnreachableError(_unreachable_message(address, "there was no response"))
         else:
             failure = CameraTimeoutError(
-                f"The camera at {address} did not answer in time. It may be rebooting; check the network, then try again."
+                f"The camera at {address} did not respond in time. It may be rebooting. Check the network, then try again."
             )
     except httpx2.ConnectError as error:
         text = str(error).lower()
         if "certificate" in text or "ssl" in text:
             failure = CameraUnreachableError(
-                f"The TLS connection to {address} failed. Its certificate is not trusted, or it does not speak TLS at this port. "
-                "If the certificate is self-signed, configure its fingerprint in scope.yaml."
+                f"The TLS connection to {address} failed. Either the camera's certificate is not trusted, or the camera does not "
+                "use TLS on this port. If the certificate is self-signed, set its fingerprint in scope.yaml."
             )
         else:
-            failure = CameraUnreachableError(_nobody(address, "the connection was refused or the name is unknown"))
+            failure = CameraUnreachableError(
+                _unreachable_message(address, "the connection was refused or the host name is unknown")
+            )
     except (httpx2.NetworkError, httpx2.RemoteProtocolError):
         failure = CameraUnreachableError(
-            f"The connection to the camera at {address} broke. It may be rebooting; check the network and try again."
+            f"The connection to the camera at {address} was lost. It may be rebooting. Check the network, then try again."
         )
     except (httpx2.HTTPError, httpx2.InvalidURL, NotImplementedError, ValueError):
         failure = CameraReplyError(
-            f"The camera at {address} sent a reply that is not valid HTTP. Check that this is the port of its web interface."
+            f"The camera at {address} sent an invalid HTTP response. Check that the port is that of its web interface."
         )
     else:
         return
@@ -237,32 +239,32 @@ def connection_errors(address: DeviceAddress) -> Iterator[None]:
 
 
 def check_status(address: DeviceAddress, response: httpx2.Response, accept: tuple[int, ...]) -> None:
-    """Raise the matching camera error if a status is neither 2xx nor accepted."""
+    """Raise the corresponding camera error if the status code is neither 2xx nor accepted."""
     status = response.status_code
     if response.is_success or status in accept:
         return
     if status == 401:
-        raise CameraSignInError(f"The camera at {address} refuses the user name or the password. Check both, then try again.")
+        raise CameraSignInError(f"The camera at {address} rejected the user name or the password. Check both, then try again.")
     if status == 403:
         raise CameraSignInError(
-            f"The account may not do this on the camera at {address}. Moves need the right to control PTZ (an operator), and "
-            "changes of presets an administrator."
+            f"The camera at {address} does not permit this account to do that. Moving the camera requires an operator account with "
+            "PTZ control, and changing presets requires an administrator account."
         )
     if 300 <= status < 400:
-        raise ForeignAddressError(_redirect(address, response))
+        raise ForeignAddressError(_redirect_message(address, response))
     if status in (502, 503, 504):
-        raise CameraUnreachableError(f"The camera at {address} is not ready (HTTP {status}). It may be starting; try again.")
-    raise CameraReplyError(f"The camera at {address} answered with HTTP {status}. Check that its model and firmware are supported.")
+        raise CameraUnreachableError(f"The camera at {address} is not ready (HTTP {status}). It may be starting up. Try again.")
+    raise CameraReplyError(f"The camera at {address} returned HTTP {status}. Check that its model and firmware are supported.")
 
 
-def _redirect(address: DeviceAddress, response: httpx2.Response) -> str:
+def _redirect_message(address: DeviceAddress, response: httpx2.Response) -> str:
     try:
         target = httpx2.URL(response.headers.get("location", ""))
-        where = f"{target.scheme}://{target.host}"[:80] if target.host else "another path"
+        destination = f"{target.scheme}://{target.host}"[:80] if target.host else "another path"
     except (httpx2.InvalidURL, ValueError):
-        where = "an unreadable address"
-    hint = " Add ?tls=on to the camera." if where == f"https://{address.host}" else ""
-    return f"The camera at {address} redirects to {where}. Redirects are not followed and no credentials were sent there.{hint}"
+        destination = "an unreadable address"
+    hint = " Add ?tls=on to the camera spec." if destination == f"https://{address.host}" else ""
+    return f"The camera at {address} redirects to {destination}. The redirect was not followed, and no credentials were sent.{hint}"
 
 
 async def _read(address: DeviceAddress, response: httpx2.Response) -> bytes:
@@ -270,7 +272,7 @@ async def _read(address: DeviceAddress, response: httpx2.Response) -> bytes:
     async for chunk in response.aiter_bytes():
         body += chunk
         if len(body) > MAX_BODY_BYTES:
-            raise CameraReplyError(f"The camera at {address} sent more than {MAX_BODY_BYTES // 2**20} MB. The reply was dropped.")
+            raise CameraReplyError(f"The camera at {address} sent more than {MAX_BODY_BYTES // 2**20} MB. The reply was discarded.")
     return bytes(body)
 
 
@@ -278,5 +280,5 @@ def _media_type(response: httpx2.Response) -> str:
     return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
 
 
-def _nobody(address: DeviceAddress, what: str) -> str:
-    return f"The camera at {address} cannot be reached: {what}. Check the address, the cable and that the camera is on."
+def _unreachable_message(address: DeviceAddress, cause: str) -> str:
+    return f"The camera at {address} cannot be reached: {cause}. Check the address and the cable, and check that the camera is on."

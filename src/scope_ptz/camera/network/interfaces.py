@@ -9,13 +9,13 @@ _ANY_GROUP = ("239.255.255.250", 3702)  # any multicast address serves to find t
 
 
 def local_addresses() -> tuple[str, ...]:
-    """Return IPv4 addresses of this machine: those that its host name resolves to, that of the default route, and loopback."""
-    found = {"127.0.0.1"}
-    with suppress(OSError):  # the machine's own name cannot be resolved
-        found.update(str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET))
+    """Return this machine's IPv4 addresses: those of its host name, that of the default route, and the loopback address."""
+    addresses = {"127.0.0.1"}
+    with suppress(OSError):  # the machine's own name may not resolve
+        addresses.update(str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET))
     with suppress(OSError):  # there may be no route
-        found.add(source_address(_ANY_GROUP))
-    return tuple(sorted(found - {"0.0.0.0"}))  # noqa: S104 - compared, not bound to
+        addresses.add(source_address(_ANY_GROUP))
+    return tuple(sorted(addresses - {"0.0.0.0"}))  # noqa: S104 - compared, not bound to
 
 
 def source_address(destination: tuple[str, int]) -> str:

@@ -1,4 +1,4 @@
-"""Wait until the focus of a device has settled."""
+"""Wait until a device's focus has settled."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.camera.lens import LensState
 from scope_ptz.errors import CameraError
 
 SETTLED_READINGS = 6
-"""Number of consecutive equal readings after which the focus has settled."""
+"""Number of consecutive equal readings after which the focus counts as settled."""
 
 BLIND_S = 2.0
 """Seconds to wait for a device that does not report its focus position."""
@@ -20,10 +20,10 @@ TIMEOUT_S = 15.0
 
 
 async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: float) -> LensState:
-    """Wait until the focus has settled, and return the state of the lens.
+    """Wait until the focus has settled, and return the lens state.
 
     Args:
-        read: Reads the state of the lens.
+        read: A function that reads the lens state.
         poll_s: Seconds between two readings.
 
     Raises:
@@ -39,4 +39,4 @@ async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: f
         equal = equal + 1 if state.focus == before.focus else 0
         if equal >= SETTLED_READINGS:
             return state
-    raise CameraError(f"The focus still moves after {TIMEOUT_S:g} s. Set it to manual, or check that nobody else is moving it.")
+    raise CameraError(f"The focus is still moving after {TIMEOUT_S:g} s. Set it to manual, or check that no one else is moving it.")

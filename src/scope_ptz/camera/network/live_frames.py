@@ -1,4 +1,4 @@
-"""Live frames from a stream of pictures, each with the pose at its exposure."""
+"""Live frames from a picture stream, each with the pose at its time of exposure."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.streams import LiveStream
 
 FROZEN_PATIENCE_S = 2.0
-"""Seconds that the picture may lag behind the motors, for example because the encoder freezes it during a move."""
+"""Maximum time in seconds for which the picture may lag behind the motors, for example because the encoder freezes it in a move."""
 
 SILENT_S = 1.5
 """Seconds without a frame after which a stream counts as interrupted."""
 
 
 class LiveFrames:
-    """Yields the frames of one stream. A short outage of the device interrupts the frames, but does not end them.
+    """Yields the frames from a stream. A short device outage interrupts the frames but does not end them.
 
     Args:
-        stream: The pictures. The stream is closed with the frames.
-        read_pose: Reads the pose.
+        stream: The picture stream, which is closed when ``frames`` ends.
+        read_pose: A function that reads the pose.
         info: The camera's properties.
         clock: The camera's clock.
         latency_s: Seconds from the exposure of a picture to its arrival.
@@ -48,15 +48,15 @@ class LiveFrames:
     ) -> None:
         self._stream, self._poses, self._info, self._latency_s = stream, PosePoller(read_pose), info, latency_s
         self._offset_s = clock.now_s() - monotonic()
-        self._waits_since_s: float | None = None
+        self._waiting_since_s: float | None = None
 
     @property
     def problem(self) -> str:
-        """Why no frames arrive at present; empty while they arrive."""
+        """The reason why no frames are arriving; empty while they are."""
         if self._poses.problem:
             return self._poses.problem
-        if self._waits_since_s is not None and monotonic() - self._waits_since_s > SILENT_S:
-            return f"{self._info.name} sends no frames. The connection is opened again; check the network and the camera."
+        if self._waiting_since_s is not None and monotonic() - self._waiting_since_s > SILENT_S:
+            return f"{self._info.name} is not sending frames. Reconnecting. Check the network and the camera."
         return ""
 
     async def frames(self, rate_hz: float) -> AsyncGenerator[Frame]:
@@ -69,30 +69,30 @@ class LiveFrames:
         try:
             while True:
                 await anyio.sleep(max(0.0, due_s - monotonic()))
-                asked_s = monotonic()
-                self._waits_since_s = self._waits_since_s or asked_s
+                requested_s = monotonic()
+                self._waiting_since_s = self._waiting_since_s or requested_s
                 picture = await self._stream.next()
                 exposed_s = picture.arrived_s - self._latency_s
                 pose = await self._poses.at(exposed_s)
-                if monotonic() - asked_s > SILENT_S:  # the time of an outage does not count
+                if monotonic() - requested_s > SILENT_S:  # an outage does not count as lag
                     give_up_s = monotonic() + FROZEN_PATIENCE_S
                 if pose is None:
-                    continue  # exposed before the first reading
+                    continue  # exposed before the first pose reading
                 check_not_black(picture.image)
-                if frozen.lags(picture.data, pose, give_up_s):
+                if frozen.is_lagging(picture.data, pose, give_up_s):
                     continue
                 due_s = max(due_s + 1.0 / rate_hz, monotonic())
-                self._waits_since_s = None
-                yield frame_of(picture.image, pose, self._info, exposed_s + self._offset_s)
-                give_up_s = monotonic() + FROZEN_PATIENCE_S  # counted from when the consumer asks for the next frame
+                self._waiting_since_s = None
+                yield make_frame(picture.image, pose, self._info, exposed_s + self._offset_s)
+                give_up_s = monotonic() + FROZEN_PATIENCE_S  # restarted when the consumer asks for the next frame
         finally:
             with anyio.CancelScope(shield=True):
                 await self._poses.close()
                 await self._stream.close()
 
 
-def frame_of(image: NDArray[np.uint8], pose: Pose, info: CameraInfo, time_s: float) -> Frame:
-    """Return a frame with the view that a pose shows."""
+def make_frame(image: NDArray[np.uint8], pose: Pose, info: CameraInfo, time_s: float) -> Frame:
+    """Return a frame with the perspective view at a pose as its projection."""
     hfov_deg = info.optics.hfov_deg(pose.zoom)
     height, width = image.shape[:2]
     view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, width, height)

@@ -18,24 +18,24 @@ _LENGTH = re.compile(rb"^content-length:[ \t]*(\d{1,9})[ \t]*\r?$", re.IGNORECAS
 _HEADER_END = re.compile(rb"\r?\n\r?\n")
 
 
-def boundary_of(content_type: str) -> bytes:
-    """Return the delimiter of the parts, with its leading dashes.
+def parse_boundary(content_type: str) -> bytes:
+    """Return the multipart boundary from a content type, with its leading dashes.
 
     Raises:
-        CameraReplyError: The stream is not multipart.
+        CameraReplyError: The content type is not multipart, or has no boundary.
     """
-    found = _BOUNDARY.search(content_type)
-    if not content_type.lower().startswith("multipart/") or found is None:
-        raise CameraReplyError("The camera's MJPEG stream is not multipart. Use ?stream=rtsp, or check its model and firmware.")
-    # Some devices report the boundary with its dashes, and some without.
-    return b"--" + found.group(1).encode("latin-1", "replace").lstrip(b"-")
+    match = _BOUNDARY.search(content_type)
+    if not content_type.lower().startswith("multipart/") or match is None:
+        raise CameraReplyError("The camera's MJPEG stream is not multipart. Use ?stream=rtsp, or check the camera's firmware.")
+    # Some devices report the boundary with its leading dashes, and some without.
+    return b"--" + match.group(1).encode("latin-1", "replace").lstrip(b"-")
 
 
 class MjpegParser:
-    """Splits a multipart body into pictures. It reads chunks of any size and keeps at most one part in memory.
+    """An incremental parser that splits a multipart body into pictures.
 
     Args:
-        boundary: The delimiter, as ``boundary_of`` returns it.
+        boundary: The boundary, as returned by ``parse_boundary``.
     """
 
     def __init__(self, boundary: bytes) -> None:
@@ -43,13 +43,13 @@ class MjpegParser:
         self._buffer = bytearray()
         self._length: int | None = None
         self._in_part = False
-        self._searched = 0
+        self._search_start = 0
 
     def feed(self, chunk: bytes) -> list[bytes]:
-        """Add bytes and return the pictures that are complete.
+        """Add a chunk of any size, and return the pictures that it completes.
 
         Raises:
-            PictureError: A part is too large for a picture, or its header has no end.
+            PictureError: A part or its header is too large.
         """
         self._buffer += chunk
         pictures = []
@@ -67,34 +67,34 @@ class MjpegParser:
             if len(buffer) < self._length:
                 return None
             return self._take(self._length)
-        end = buffer.find(self._boundary, self._searched)
+        end = buffer.find(self._boundary, self._search_start)
         if end < 0:
-            self._searched = max(0, len(buffer) - len(self._boundary))
+            self._search_start = max(0, len(buffer) - len(self._boundary))
             if len(buffer) > MAX_PART_BYTES:
-                raise PictureError("A part of the camera's MJPEG stream has no end. Restart the camera.", "damaged")
+                raise PictureError("A picture in the camera's MJPEG stream is larger than 16 MB. Restart the camera.", "damaged")
             return None
         return self._take(end).rstrip(b"\r\n") if end else self._take(0)
 
     def _read_header(self) -> bool:
-        """Drop everything up to the end of the next header. Return whether there is one."""
+        """Discard everything up to the end of the next header. Return False if that header is not complete."""
         buffer = self._buffer
         start = buffer.find(self._boundary)
         if start < 0:
             del buffer[: max(0, len(buffer) - len(self._boundary))]
             return False
-        # The boundary line ends before the header, so an empty line right after it means an empty header.
-        found = _HEADER_END.search(buffer, start + len(self._boundary))
-        if found is None:
+        # The boundary line precedes the header, so an empty line right after it means an empty header.
+        match = _HEADER_END.search(buffer, start + len(self._boundary))
+        if match is None:
             del buffer[:start]
             if len(buffer) > MAX_HEADER_BYTES:
-                raise PictureError("A header of the camera's MJPEG stream has no end. Restart the camera.", "damaged")
+                raise PictureError("A header in the camera's MJPEG stream is too long. Restart the camera.", "damaged")
             return False
-        length = _LENGTH.search(buffer, start, found.start() + 1)
+        length = _LENGTH.search(buffer, start, match.start() + 1)
         self._length = int(length.group(1)) if length else None
         if self._length is not None and self._length > MAX_PART_BYTES:
-            raise PictureError("A picture of the camera's MJPEG stream is longer than 16 MB. Restart the camera.", "damaged")
-        del buffer[: found.end()]
-        self._in_part, self._searched = True, 0
+            raise PictureError("A picture in the camera's MJPEG stream is larger than 16 MB. Restart the camera.", "damaged")
+        del buffer[: match.end()]
+        self._in_part, self._search_start = True, 0
         return True
 
     def _take(self, length: int) -> bytes:

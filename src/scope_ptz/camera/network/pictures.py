@@ -1,4 +1,4 @@
-"""Decode and check JPEG pictures from a device, and detect black and frozen ones."""
+"""Decode JPEG pictures from a device, and detect damaged, black and frozen ones."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from scope_ptz.geometry import Pose
 
 BLACK_LEVEL = 6
-"""A picture is black if no value in it, from 0 to 255, is above this. Even the sensor noise in the dark is above it."""
+"""Maximum pixel value in a black picture, on a scale of 0 to 255. Sensor noise in the dark exceeds it."""
 
 FROZEN_TURN_DEG = 1.0
-"""A picture is frozen if it is bit-identical after a turn of more than this many degrees."""
+"""Turn in degrees after which a bit-identical picture counts as frozen."""
 
 STATIONARY_DEG = 0.05
-"""The camera is stationary if the poses of two successive pictures differ by less than this many degrees."""
+"""Difference in degrees between the poses of successive pictures below which the camera counts as stationary."""
 
-_START, _END = b"\xff\xd8", b"\xff\xd9"
+_JPEG_START, _JPEG_END = b"\xff\xd8", b"\xff\xd9"
 
 
 def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = None) -> NDArray[np.uint8]:
@@ -33,20 +33,20 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
 
     Args:
         data: The content of the JPEG file.
-        width: The expected width in pixels; None, as for ``height``, if any size is accepted.
-        height: The expected height in pixels.
+        width: The expected width in pixels; None to accept any size.
+        height: The expected height in pixels; None to accept any size.
 
     Returns:
         Array of shape ``(H, W, 3)``, uint8, RGB.
 
     Raises:
-        PictureError: The picture is truncated, damaged, or has the wrong size.
+        PictureError: The picture is truncated or damaged, or has the wrong size.
     """
     from PIL import Image, UnidentifiedImageError
 
-    if not data.startswith(_START):
-        raise PictureError("The camera sent something that is not a JPEG picture. Check its model and firmware.", "damaged")
-    if _END not in data[-64:]:
+    if not data.startswith(_JPEG_START):
+        raise PictureError("The camera sent data that is not a JPEG picture. Check its model and firmware.", "damaged")
+    if _JPEG_END not in data[-64:]:
         raise PictureError("The camera sent an incomplete picture. Check the network, then try again.", "truncated")
     try:
         with Image.open(BytesIO(data), formats=("JPEG",)) as picture:
@@ -54,14 +54,14 @@ def decode_jpeg(data: bytes, *, width: int | None = None, height: int | None = N
             if (width, height) != (None, None) and size != (width, height):
                 raise PictureError(
                     f"The camera sent a picture of {size[0]}x{size[1]} pixels instead of {width}x{height}. "
-                    "Request a size that it offers with ?width=...&height=...",
+                    "Request a supported size with ?width=...&height=...",
                     "size",
                 )
             return np.array(picture.convert("RGB"))
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         fault: PictureFault = "truncated" if "truncated" in str(error) else "damaged"
-        what = "that is incomplete" if fault == "truncated" else "that is damaged"
-        raise PictureError(f"The camera sent a picture {what}. Check the network, then try again.", fault) from None
+        description = "that is incomplete" if fault == "truncated" else "that is damaged"
+        raise PictureError(f"The camera sent a picture {description}. Check the network, then try again.", fault) from None
 
 
 def is_black(image: NDArray[np.uint8]) -> bool:
@@ -76,10 +76,10 @@ def check_not_black(image: NDArray[np.uint8]) -> None:
 
 
 class FrozenCheck:
-    """Detects a picture that stays the same although the camera turns.
+    """Detects pictures that do not change although the camera turns.
 
-    Pictures of a static scene may be identical, so only pictures at different poses are compared. Only poses of a stationary camera
-    count, because during a move, a picture and a pose may belong to slightly different moments.
+    Pictures of a static scene may be identical, so only pictures taken at different poses are compared. Only poses of a stationary
+    camera count, because during a move a picture and its pose may be from slightly different times.
     """
 
     def __init__(self) -> None:
@@ -88,7 +88,7 @@ class FrozenCheck:
         self._last: Pose | None = None
 
     def is_frozen(self, data: bytes, pose: Pose) -> bool:
-        """Return whether the same picture was taken before, while the camera was stationary at a clearly different pose.
+        """Return whether an identical picture was taken earlier, while the camera was stationary at a clearly different pose.
 
         Args:
             data: The picture's bytes: a JPEG file, or pixels.
@@ -105,13 +105,13 @@ class FrozenCheck:
             return _turn_deg(self._stationary_at, pose) > FROZEN_TURN_DEG
         return False
 
-    def lags(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
-        """Return whether a picture still shows an earlier pose, for example because the encoder freezes it during a move.
+    def is_lagging(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
+        """Return whether a picture still shows an earlier pose, for example because the encoder freezes during a move.
 
         Args:
             data: The picture's bytes.
             pose: The pose at which it was taken.
-            give_up_s: The time on ``time.monotonic`` after which such a picture is an error.
+            give_up_s: The ``time.monotonic`` time after which to raise an error instead.
 
         Raises:
             PictureError: The picture is still frozen after ``give_up_s``.
@@ -119,11 +119,11 @@ class FrozenCheck:
         if not self.is_frozen(data, pose):
             return False
         if monotonic() > give_up_s:
-            raise PictureError("The picture is frozen: it stays the same while the camera turns. Restart the camera.", "frozen")
+            raise PictureError("The picture is frozen: it does not change while the camera turns. Restart the camera.", "frozen")
         return True
 
 
 def _turn_deg(first: Pose, second: Pose) -> float:
-    """Return the largest change of any axis in degrees. A zoom change of 10% counts as one degree."""
+    """Return the largest change on any axis in degrees. A zoom change of 10% counts as one degree."""
     pan = abs((second.pan_deg - first.pan_deg + 180) % 360 - 180)
     return max(pan, abs(second.tilt_deg - first.tilt_deg), 10 * abs(second.zoom / first.zoom - 1))

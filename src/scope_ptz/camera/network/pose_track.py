@@ -1,4 +1,4 @@
-"""The recent poses of a camera, from which the pose at an exposure is interpolated."""
+"""A camera's recent poses, from which the pose at the time of exposure is interpolated."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from scope_ptz.camera.network.streams import GIVE_UP_S
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 MAX_SAMPLES = 128
-"""Maximum number of readings to keep, which cover about six seconds."""
+"""Maximum number of readings to keep; they cover about six seconds."""
 
 POLL_S = 0.05
-"""Seconds between two readings. At 400 degrees/s², linear interpolation between them is off by at most 0.13 degrees."""
+"""Seconds between readings. At 400 degrees/s², linear interpolation between them has an error of at most 0.13 degrees."""
 
 RETRY_S = 0.25
-"""Seconds before the next reading while the device cannot be reached."""
+"""Seconds between attempts while the device cannot be reached."""
 
 
 class PoseTrack:
-    """Readings of the pose with their times, newest last. Times are seconds on a single clock and never decrease."""
+    """Pose readings in order of time. All times are in seconds on the same clock."""
 
     def __init__(self) -> None:
         self._samples: deque[tuple[float, Pose]] = deque(maxlen=MAX_SAMPLES)
@@ -40,22 +40,22 @@ class PoseTrack:
         return self._samples[-1][0] if self._samples else float("-inf")
 
     def add(self, time_s: float, pose: Pose) -> None:
-        """Add a reading. It is ignored unless it is newer than the newest one."""
+        """Add a reading. It is ignored unless it is newer than all others."""
         if time_s > self.newest_s:
             self._samples.append((time_s, pose))
 
     def clear(self) -> None:
-        """Forget all readings. After an outage, nobody knows how the camera moved in the meantime."""
+        """Discard all readings, for example because the camera's motion during an outage is unknown."""
         self._samples.clear()
 
     def at(self, time_s: float) -> Pose:
-        """Return the pose at a time, interpolated between readings. Outside the readings, return the nearest.
+        """Return the pose at a time, interpolated between readings. Before the first or after the last one, return the nearest.
 
         Raises:
-            ValueError: There is no reading.
+            ValueError: There are no readings.
         """
         if not self._samples:
-            raise ValueError("a pose track without readings has no pose")
+            raise ValueError("a pose track must have a reading before it can return a pose")
         times = [sample_s for sample_s, _ in self._samples]
         index = bisect_left(times, time_s)
         if index == 0:
@@ -75,16 +75,16 @@ class PoseTrack:
 
 
 class PosePoller:
-    """Reads the pose repeatedly while a stream is open. Close it with the stream.
+    """Reads the pose repeatedly while a stream is open. Close it together with the stream.
 
-    If the device cannot be reached, the readings continue after the outage.
+    If the device cannot be reached, polling resumes after the outage.
 
     Attributes:
-        problem: Why the pose cannot be read at present; empty if it can.
+        problem: The reason why the pose cannot be read; empty while it can.
 
     Args:
-        read_pose: Reads the pose.
-        give_up_s: Seconds without a reading after which the device is lost.
+        read_pose: A function that reads the pose.
+        give_up_s: Seconds without a reading after which the device counts as lost.
     """
 
     def __init__(self, read_pose: Callable[[], Awaitable[Pose]], *, give_up_s: float = GIVE_UP_S) -> None:
@@ -95,7 +95,7 @@ class PosePoller:
         self._task = asyncio.get_running_loop().create_task(self._poll())
 
     async def at(self, time_s: float) -> Pose | None:
-        """Return the pose at a time on ``time.monotonic``; None if it is before the first reading, or the first after an outage.
+        """Return the pose at a ``time.monotonic`` time; None if the time is before the first reading, or the first after an outage.
 
         Raises:
             CameraError: The pose cannot be read.
@@ -108,7 +108,7 @@ class PosePoller:
         return None if time_s < self._track.oldest_s else self._track.at(time_s)
 
     async def close(self) -> None:
-        """Stop reading and wait until the last reading has ended."""
+        """Stop polling, and wait until the last reading has ended."""
         self._task.cancel()
         with suppress(asyncio.CancelledError):
             await self._task
@@ -128,10 +128,10 @@ class PosePoller:
                     await asyncio.sleep(RETRY_S)
                     continue
                 self.problem, read_s = "", monotonic()
-                # The device reads its encoders somewhere between the request and the reply.
+                # The device reads its encoders at some point between the request and the reply.
                 self._track.add((before_s + read_s) / 2, pose)
                 self._changed.set()
                 await asyncio.sleep(POLL_S)
-        except Exception as error:  # any failure must reach the consumer of the stream
+        except Exception as error:  # every failure must reach the stream's consumer
             self._failure = error
             self._changed.set()

@@ -1,4 +1,4 @@
-"""RTSP streams, which PyAV reads in a thread."""
+"""RTSP streams, read with PyAV in a thread."""
 
 from __future__ import annotations
 
@@ -27,26 +27,26 @@ def import_av() -> Any:
     """Import PyAV.
 
     Raises:
-        ConfigError: It is not installed.
+        ConfigError: PyAV is not installed.
     """
     try:
         import av
     except ImportError:
-        raise ConfigError("RTSP needs PyAV. Install scope-ptz[camera], or use ?stream=mjpeg.") from None
+        raise ConfigError("RTSP requires PyAV. Install scope-ptz[camera], or use ?stream=mjpeg.") from None
     return av
 
 
 class RtspStream(LiveStream):
-    """H.264 or H.265 over RTSP. Every frame is decoded, and the newest one is kept.
+    """An H.264 or H.265 stream over RTSP. Every frame is decoded, but only the newest one is kept.
 
     Args:
         url: The stream's URL, without credentials.
-        credentials: The account; None if the stream needs none.
+        credentials: The credentials; None if the stream requires none.
         width: Expected width in pixels.
         height: Expected height in pixels.
-        stalled_s: Seconds without a picture after which the stream is opened again.
-        give_up_s: Seconds without a picture after which the stream is lost.
-        tls: Verifies the certificate of an ``rtsps`` server; by default, with the authorities that the system trusts.
+        stalled_s: Seconds without a picture after which the stream is reopened.
+        give_up_s: Seconds without a picture after which the stream counts as lost.
+        tls: The TLS context for an ``rtsps`` server; by default, one that trusts the system's certificate authorities.
 
     Raises:
         ConfigError: PyAV is not installed.
@@ -65,18 +65,18 @@ class RtspStream(LiveStream):
     ) -> None:
         self._av = import_av()
         self._url, self._credentials, self._tls = url, credentials, tls
-        self._place = urlsplit(url).netloc
+        self._server = urlsplit(url).netloc
         self._size = (width, height)
         self._stalled_s, self._give_up_s = stalled_s, give_up_s
         self._newest: LivePicture | None = None
         self._failure: CameraError | None = None
         self._closing = threading.Event()
         self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
-        self._thread = threading.Thread(target=self._read, name=f"rtsp {self._place}", daemon=True)
+        self._thread = threading.Thread(target=self._read, name=f"rtsp {self._server}", daemon=True)
         self._thread.start()
 
     def __repr__(self) -> str:
-        return f"RtspStream({self._place})"
+        return f"RtspStream({self._server})"
 
     async def next(self) -> LivePicture:
         while self._newest is None:
@@ -88,7 +88,7 @@ class RtspStream(LiveStream):
         if (size := picture.image.shape[1::-1]) != self._size:
             expected = "{}x{}".format(*self._size)
             raise PictureError(
-                f"The stream has {size[0]}x{size[1]} pixels instead of {expected}. Change the stream's size.", "size"
+                f"The stream's picture size is {size[0]}x{size[1]} instead of {expected}. Change the size in the camera.", "size"
             )
         return picture
 
@@ -97,7 +97,7 @@ class RtspStream(LiveStream):
         await to_thread.run_sync(self._thread.join, self._stalled_s + 2.0)
 
     def _read(self) -> None:
-        """Read until the stream is closed or lost. It runs in the thread."""
+        """Read until the stream is closed or lost. This runs in the thread."""
         last_s, pause_s = monotonic(), 0.1
         while not self._closing.is_set():
             before_s = last_s
@@ -105,17 +105,17 @@ class RtspStream(LiveStream):
             with suppress(self._av.FFmpegError, OSError, ValueError), relay as url:
                 for picture in self._pictures(url):
                     last_s = picture.arrived_s
-                    self._hand_over(picture, None)
-            lasting = isinstance(relay.failure, CameraSignInError | ForeignAddressError)
-            if lasting or monotonic() - last_s > self._give_up_s:
-                message = f"The RTSP stream at {self._place} cannot be read. Check the account and the port, or use ?stream=mjpeg."
-                self._hand_over(None, relay.failure or CameraUnreachableError(message))
+                    self._publish(picture, None)
+            is_permanent = isinstance(relay.failure, CameraSignInError | ForeignAddressError)
+            if is_permanent or monotonic() - last_s > self._give_up_s:
+                message = f"The RTSP stream at {self._server} cannot be read. Check the account and the port, or use ?stream=mjpeg."
+                self._publish(None, relay.failure or CameraUnreachableError(message))
                 return
             pause_s = 0.1 if last_s > before_s else min(2 * pause_s, 2.0)
             self._closing.wait(pause_s)
 
     def _pictures(self, url: str) -> Iterator[LivePicture]:
-        # Without ``fpsprobesize``, FFmpeg reads for a second longer to determine the frame rate, which is not used.
+        # Without ``fpsprobesize``, FFmpeg takes a second longer to determine the frame rate, which is not needed.
         options = {"rtsp_transport": "tcp", "fflags": "nobuffer", "flags": "low_delay", "fpsprobesize": "0"}
         with self._av.open(url, options=options, timeout=self._stalled_s) as container:
             for frame in container.decode(video=0):
@@ -124,9 +124,9 @@ class RtspStream(LiveStream):
                 image = frame.to_ndarray(format="rgb24")
                 yield LivePicture(image, image[::16, ::16].tobytes(), monotonic())
 
-    def _hand_over(self, picture: LivePicture | None, failure: CameraError | None) -> None:
+    def _publish(self, picture: LivePicture | None, failure: CameraError | None) -> None:
         if picture is not None:
             self._newest = picture
         self._failure = failure
-        with suppress(RuntimeError):  # the event loop has ended, so no consumer waits
+        with suppress(RuntimeError):  # the event loop is closed, so no consumer is waiting
             self._loop.call_soon_threadsafe(self._changed.set)

@@ -1,4 +1,4 @@
-"""Digest sign-in that is bound to one device."""
+"""HTTP authentication that sends credentials only to one device."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class PinnedSignIn(httpx2.Auth):
-    """Digest sign-in for one host and port. Basic sign-in is used only over TLS, because it reveals the password to the network.
+    """Digest authentication for one host and port. Basic authentication, which reveals the password, is used only over TLS.
 
     Args:
         address: The address of the device.
-        credentials: The account.
+        credentials: The credentials for signing in.
     """
 
     def __init__(self, address: DeviceAddress, credentials: Credentials) -> None:
@@ -32,7 +32,7 @@ class PinnedSignIn(httpx2.Auth):
         url = request.url
         if not self._address.has_origin(url.scheme, url.host, url.port):
             raise ForeignAddressError(
-                f"A request to a host other than {self._address} was refused, because credentials are sent only to the camera."
+                f"A request to a host other than {self._address} was blocked, because credentials are sent only to the camera."
             )
         if self._basic_required:
             yield from self._basic.auth_flow(request)
@@ -40,7 +40,7 @@ class PinnedSignIn(httpx2.Auth):
         flow = self._digest.auth_flow(request)
         response = yield next(flow)
         if response.status_code == 401 and (offers := _schemes(response)) and "digest" not in offers:
-            yield from self._without_digest(request, offers)
+            yield from self._basic_auth_flow(request, offers)
             return
         try:
             while True:
@@ -48,15 +48,15 @@ class PinnedSignIn(httpx2.Auth):
         except StopIteration:
             return
 
-    def _without_digest(self, request: httpx2.Request, offers: set[str]) -> Generator[httpx2.Request, httpx2.Response, None]:
+    def _basic_auth_flow(self, request: httpx2.Request, offers: set[str]) -> Generator[httpx2.Request, httpx2.Response, None]:
         if "basic" not in offers:
             raise CameraSignInError(
-                f"The camera at {self._address} offers no supported authentication. Enable digest authentication in the camera's "
-                "settings."
+                f"The camera at {self._address} offers no supported authentication method. Enable digest authentication in the "
+                "camera's settings."
             )
         if not self._address.tls:
             raise CameraSignInError(
-                f"The camera at {self._address} accepts only passwords in clear text. Allow digest authentication, or add ?tls=on."
+                f"The camera at {self._address} accepts passwords in clear text only. Enable digest authentication, or add ?tls=on."
             )
         self._basic_required = True
         yield from self._basic.auth_flow(request)

@@ -1,7 +1,7 @@
-"""A process that stops a driven camera if this program is killed.
+"""A watchdog process that stops a driven camera if this process is killed.
 
-A killed program (``kill -9``, out of memory) runs no more code, and a device whose protocol has no timeout would keep moving. So
-another process reads from a pipe, which the operating system closes when this program ends for any reason.
+A process that is killed (``kill -9``, out of memory) cannot send a stop command, and a device whose protocol has no timeout would
+keep moving. The watchdog therefore reads from a pipe, which the operating system closes when this process ends for any reason.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 StopFunction = Callable[["DeviceHttp", Mapping[str, Any]], None]
-"""A module-level function that stops a device. It blocks, and raises ``CameraError`` if the command did not reach the device."""
+"""A blocking, module-level function that stops a device, and raises ``CameraError`` if the command did not reach it."""
 
 GIVE_UP_S = 600.0
-"""Seconds after which the process gives up trying to reach a camera."""
+"""Seconds after which the watchdog stops trying to reach a camera."""
 
 _LONGEST_PAUSE_S = 2.0
 _ARMED, _SAFE = b"armed\n", b"safe\n"
 
 
 class StopProcess:
-    """The watchdog process of one camera. It is started when the camera is first driven.
+    """A camera's watchdog process, which is started when the camera is first driven.
 
     Args:
         http: The HTTP connection to the device.
         stop: The function that stops the device.
-        details: The values that ``stop`` needs in addition to the connection. They must be JSON-serialisable.
+        details: JSON-serialisable values that are passed to ``stop`` in addition to the connection.
     """
 
     def __init__(self, http: DeviceHttp, stop: StopFunction, details: Mapping[str, Any]) -> None:
@@ -48,20 +48,20 @@ class StopProcess:
         self._armed = False
 
     def arm(self) -> None:
-        """Make the process stop the camera when this program ends."""
+        """Make the watchdog stop the camera if this process ends."""
         if self._process is None:
-            self._process = self._started()
-        self._say(_ARMED)
+            self._process = self._start()
+        self._send(_ARMED)
         self._armed = True
 
     def disarm(self) -> None:
-        """Record that the camera is stationary, so that it does not have to be stopped when this program ends."""
+        """Record that the camera is stationary, so that the watchdog does not have to stop it."""
         if self._armed:
             self._armed = False
-            self._say(_SAFE)
+            self._send(_SAFE)
 
     def close(self) -> None:
-        """End the process. If the camera may still be moving, the process keeps trying to stop it and then ends."""
+        """End the watchdog process. If the camera may still be moving, the watchdog stops it before it ends."""
         process, self._process = self._process, None
         if process is None:
             return
@@ -74,10 +74,10 @@ class StopProcess:
             process.kill()
             process.wait()
 
-    def _started(self) -> subprocess.Popen[bytes]:
-        # The order contains the password, so it is sent through the pipe, because other users can read command lines.
+    def _start(self) -> subprocess.Popen[bytes]:
+        # The order contains the password. It is sent through the pipe, because other users can read command lines.
         order = {
-            "device": self._http.described(),
+            "device": self._http.description(),
             "function": [self._stop.__module__, self._stop.__qualname__],
             "details": dict(self._details),
         }
@@ -86,25 +86,25 @@ class StopProcess:
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            # Ctrl-C and a closed terminal reach all processes of a session, and this one must outlive them.
+            # Ctrl-C and closing the terminal signal all processes in the session; the watchdog must survive both.
             start_new_session=True,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
         )
         self._process = process
-        self._say(json.dumps(order).encode() + b"\n")
+        self._send(json.dumps(order).encode() + b"\n")
         return process
 
-    def _say(self, line: bytes) -> None:
-        # If someone has ended the process, the camera is no less safe than without it.
+    def _send(self, line: bytes) -> None:
+        # If the watchdog has died, the camera is only as safe as it would be without one.
         with suppress(OSError):
-            assert self._process is not None  # noqa: S101 - started before
+            assert self._process is not None  # noqa: S101 - already started
             assert self._process.stdin is not None  # noqa: S101 - it is a pipe
             self._process.stdin.write(line)
             self._process.stdin.flush()
 
 
 def main() -> None:
-    """Read an order, wait for the end of the program, and stop the camera if it may be moving."""
+    """Read an order, wait until the parent process ends, and stop the camera if it may be moving."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
@@ -117,7 +117,7 @@ def main() -> None:
 
 
 def carry_out(order: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
-    """Stop a camera, and retry until the command reaches it. Return whether it did within ``give_up_s`` seconds."""
+    """Stop a camera, retrying until the command reaches it. Return False if it does not within ``give_up_s`` seconds."""
     from scope_ptz.camera.network.http import DeviceHttp
 
     module, name = order["function"]

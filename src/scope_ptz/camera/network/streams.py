@@ -1,4 +1,4 @@
-"""Live pictures from a device. Only the newest one is kept, and a stalled or broken stream is reopened."""
+"""Live picture streams from a device. Only the newest picture is kept, and a stalled or broken stream is reopened."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import anyio
 from anyio import to_thread
 
 from scope_ptz.camera.network.errors import CameraTimeoutError, CameraUnreachableError, PictureError
-from scope_ptz.camera.network.mjpeg import MjpegParser, boundary_of
+from scope_ptz.camera.network.mjpeg import MjpegParser, parse_boundary
 from scope_ptz.camera.network.pictures import decode_jpeg
 
 if TYPE_CHECKING:
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 STALLED_S = 5.0
-"""A stream without a picture for this many seconds is stalled."""
+"""Seconds without a picture after which a stream counts as stalled."""
 
 MAX_DAMAGED = 5
-"""Maximum number of consecutive damaged pictures that are skipped."""
+"""Maximum number of consecutive damaged pictures to skip."""
 
 GIVE_UP_S = 15.0
-"""A stream that cannot be reopened for this many seconds is lost."""
+"""Seconds without a picture after which a stream counts as lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class LivePicture:
     Attributes:
         image: Array of shape ``(H, W, 3)``, uint8, RGB.
         data: Bytes that are identical for identical pictures.
-        arrived_s: When its last byte arrived, on ``time.monotonic``.
+        arrived_s: The ``time.monotonic`` time at which its last byte arrived.
     """
 
     image: NDArray[np.uint8]
@@ -53,7 +53,7 @@ class LiveStream(ABC):
 
     @abstractmethod
     async def next(self) -> LivePicture:
-        """Wait for a picture that has not been returned yet, and return the newest one.
+        """Wait for a picture that has not been returned yet, and return the newest.
 
         Raises:
             CameraError: The stream is lost, or its pictures are damaged.
@@ -61,11 +61,11 @@ class LiveStream(ABC):
 
     @abstractmethod
     async def close(self) -> None:
-        """Close the connection and wait until it is closed."""
+        """Close the stream, and wait until it is closed."""
 
 
 class MjpegStream(LiveStream):
-    """Motion JPEG over HTTP. Only pictures that a consumer waits for are decoded.
+    """A Motion JPEG stream over HTTP. Only pictures that a consumer is waiting for are decoded.
 
     Args:
         http: The HTTP connection to the device.
@@ -73,8 +73,8 @@ class MjpegStream(LiveStream):
         parameters: Query parameters of the stream.
         width: Expected width in pixels.
         height: Expected height in pixels.
-        stalled_s: Seconds without a picture after which the stream is opened again.
-        give_up_s: Seconds without a picture after which the stream is lost.
+        stalled_s: Seconds without a picture after which the stream is reopened.
+        give_up_s: Seconds without a picture after which the stream counts as lost.
     """
 
     def __init__(
@@ -95,17 +95,17 @@ class MjpegStream(LiveStream):
         self._changed = asyncio.Event()
         self._failure: Exception | None = None
         self.reconnects = 0
-        """Number of times that the stream was reopened."""
-        # The task has no task group, because the stream outlives the call that opens it. ``next`` raises its failure.
+        """Number of times that the stream has been reopened."""
+        # The task has no task group, because the stream outlives the call that opens it. ``next`` raises the task's error.
         self._task = asyncio.get_running_loop().create_task(self._read())
 
     async def next(self) -> LivePicture:
-        for left in range(MAX_DAMAGED, -1, -1):
+        for skips_left in range(MAX_DAMAGED, -1, -1):
             data, arrived_s = await self._wait()
             try:
                 image = await to_thread.run_sync(partial(decode_jpeg, data, width=self._width, height=self._height))
             except PictureError as error:
-                if error.fault == "size" or not left:
+                if error.fault == "size" or not skips_left:
                     raise
             else:
                 return LivePicture(image, data, arrived_s)
@@ -129,28 +129,28 @@ class MjpegStream(LiveStream):
         last_s, pause_s = monotonic(), 0.1
         try:
             while True:
-                seen_s = last_s
+                previous_s = last_s
                 failure: Exception = CameraUnreachableError("The camera closed its MJPEG stream repeatedly. Restart the camera.")
                 try:
                     last_s = await self._read_once(last_s)
                 except (CameraUnreachableError, CameraTimeoutError, PictureError) as error:
                     failure = error
                     last_s = max(last_s, self._last_s)
-                pause_s = 0.1 if last_s > seen_s else min(2 * pause_s, 2.0)
+                pause_s = 0.1 if last_s > previous_s else min(2 * pause_s, 2.0)
                 if monotonic() - last_s > self._give_up_s:
                     self._fail(failure)
                     return
                 self.reconnects += 1
                 await anyio.sleep(pause_s)
-        except Exception as error:  # any failure must reach the consumer
+        except Exception as error:  # every failure must reach the consumer
             self._fail(error)
 
     _last_s = 0.0
 
     async def _read_once(self, last_s: float) -> float:
-        """Read one connection to its end. Return the time at which the last picture arrived."""
+        """Read from one connection until it ends. Return the time at which the last picture arrived."""
         async with self._http.stream(self._path, self._parameters) as (content_type, chunks):
-            parser = MjpegParser(boundary_of(content_type))
+            parser = MjpegParser(parse_boundary(content_type))
             iterator = aiter(chunks)
             due_s = monotonic() + self._stalled_s
             while True:

@@ -1,1 +1,1 @@
-"""The driver for ONVIF cameras: services of one device, coordinate spaces, pictures, and the camera itself."""
+"""The driver for ONVIF cameras: the client for a device's services, coordinate spaces, pictures, and the camera itself."""

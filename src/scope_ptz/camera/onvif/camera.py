@@ -1,4 +1,4 @@
-"""An ONVIF camera."""
+"""The driver for ONVIF cameras."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import anyio
 from scope_ptz.camera.base import Arrival, CameraInfo, PresetInfo
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
 from scope_ptz.camera.network.camera import Command, NetworkCamera
-from scope_ptz.camera.network.settling import Settling
+from scope_ptz.camera.network.settling import SettlingCriteria
 from scope_ptz.camera.network.stop_process import StopProcess
 from scope_ptz.camera.onvif.client import OnvifClient, stop_device
 from scope_ptz.camera.onvif.device import OnvifDevice, read_device
@@ -37,11 +37,11 @@ class OnvifCamera(NetworkCamera):
         device: The device's properties and capabilities.
         pictures: The source of its pictures.
         lens: Its focus and iris.
-        settling: The criteria for when the camera counts as settled.
+        settling: The criteria for deciding that the camera has settled.
     """
 
     def __init__(
-        self, client: OnvifClient, device: OnvifDevice, pictures: OnvifPictures, lens: OnvifLens, settling: Settling
+        self, client: OnvifClient, device: OnvifDevice, pictures: OnvifPictures, lens: OnvifLens, settling: SettlingCriteria
     ) -> None:
         self.device, self.pictures, self._client, self._lens = device, pictures, client, lens
         self._motors, self._presets = OnvifMotors(client, device), OnvifPresets(client, device.ptz_profile)
@@ -67,25 +67,25 @@ class OnvifCamera(NetworkCamera):
         stream: OnvifStream = "rtsp",
         rtsp_port: int | None = None,
         latency_s: float = 0.1,
-        settling: Settling | None = None,
+        settling: SettlingCriteria | None = None,
     ) -> OnvifCamera:
-        """Connect to a camera and read its capabilities. ``http`` is closed with the camera, or if opening fails.
+        """Connect to a camera and read its capabilities. Closing the camera closes ``http``, and so does a failure to open it.
 
         Args:
             http: The HTTP connection to the device.
-            credentials: The account.
+            credentials: The credentials for signing in.
             mapping: Configured or measured values that ONVIF does not report, such as fields of view.
-            assume: Whether to assume values that are neither reported nor known, which is useful before they are measured.
-            profile: Token or name of the ONVIF profile; by default, a suitable one.
-            width: Width of a frame in pixels; by default that of the device's pictures.
-            height: Height of a frame in pixels; by default that of the device's pictures.
+            assume: Whether to assume values that are neither reported nor known, for example in order to measure them.
+            profile: Token or name of the ONVIF profile; by default, a suitable one is chosen.
+            width: Width of a frame in pixels; by default, that of the device's pictures.
+            height: Height of a frame in pixels; by default, that of the device's pictures.
             stream: The transport of ``frames``.
             rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
-            settling: The criteria for when the camera counts as settled.
+            settling: The criteria for deciding that the camera has settled.
 
         Raises:
-            CameraError: The camera cannot be reached, refuses the account, is not an ONVIF camera, or does not report a
+            CameraError: The camera cannot be reached, rejects the credentials, is not an ONVIF camera, or does not report a
                 required value.
         """
         client = OnvifClient(http, credentials)
@@ -99,7 +99,7 @@ class OnvifCamera(NetworkCamera):
             )
             await client.prepare_stop(device.ptz_profile)
             lens = await open_lens(client, device.video_source)
-            return cls(client, device, pictures, lens, settling or Settling())
+            return cls(client, device, pictures, lens, settling or SettlingCriteria())
         except BaseException:
             with anyio.CancelScope(shield=True):
                 await client.close()
@@ -140,8 +140,8 @@ class OnvifCamera(NetworkCamera):
     async def _start_move(self, pose: Pose) -> None:
         await self._motors.move(pose)
 
-    def _centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Command | None:
-        return self._motors.centring_command(here, target, x, y)
+    def _centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Command | None:
+        return self._motors.centring_command(current, target, x, y)
 
     async def _start_home(self) -> None:
         await self._motors.go_home()
@@ -162,6 +162,6 @@ class OnvifCamera(NetworkCamera):
 def _check_known(device: OnvifDevice, where: str) -> None:
     if device.assumed:
         raise CameraError(
-            f"ONVIF does not state the {' and the '.join(device.assumed)} of the {device.name} at {where}. "
-            "Measure it with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera."
+            f"ONVIF does not report the {' and the '.join(device.assumed)} of the {device.name} at {where}. Calibrate the camera "
+            "with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera spec."
         )

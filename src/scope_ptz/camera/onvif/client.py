@@ -1,4 +1,4 @@
-"""The ONVIF services of one device, through ``onvif-zeep-async`` and a transport that reaches no other device."""
+"""A client for a device's ONVIF services, based on ``onvif-zeep-async`` and a transport that connects to no other device."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 NOT_RETRIED = ("ContinuousMove", "RelativeMove", "SetPreset", "RemovePreset")
-"""Operations that are not retried after a lost connection, because a second copy could have a further effect."""
+"""Operations that are not idempotent, and are therefore not retried after a lost connection."""
 
 _STOP_HEADERS = {"Content-Type": "application/soap+xml; charset=utf-8"}
 
 
 class OnvifClient:
-    """The connection to one device. Call ``connect`` first.
+    """The connection to a device. Call ``connect`` first.
 
     Args:
-        http: The HTTP connection to the device. It is closed with the client.
-        credentials: The account.
+        http: The HTTP connection to the device. Closing the client closes it too.
+        credentials: The credentials for signing in.
 
     Raises:
         ConfigError: ``onvif-zeep-async`` is not installed.
@@ -51,10 +51,10 @@ class OnvifClient:
         return self.http.address
 
     async def connect(self) -> None:
-        """Read the device's clock and the addresses of its services. Connecting again rereads them.
+        """Read the device's clock and the addresses of its services. Calling this again rereads them.
 
         Raises:
-            CameraError: The device cannot be reached, refuses the account, or has no ONVIF services.
+            CameraError: The device cannot be reached, rejects the credentials, or has no ONVIF services.
         """
         for adjust_time in (True, False):
             camera = self._make_camera(adjust_time)
@@ -64,7 +64,7 @@ class OnvifClient:
                 with anyio.CancelScope(shield=True):
                     await _close(camera)
                 if isinstance(error, CameraReplyError) and adjust_time:
-                    continue  # the device's clock cannot be read, so assume that it is right
+                    continue  # the device's clock cannot be read, so assume that it is correct
                 raise
             await self._close_services()
             self._camera = camera
@@ -75,32 +75,32 @@ class OnvifClient:
     async def call(self, service: str, operation: str, **arguments: Any) -> Any:
         """Call an operation and return its reply.
 
-        After a lost connection, idempotent operations are retried. If a sign-in that worked before fails, it is retried after
-        the clock is read again.
+        Idempotent operations are retried after a lost connection. If authentication fails after it has worked before, the device's
+        clock is read again and the operation is retried.
 
         Args:
-            service: ``devicemgmt``, ``media`` or ``ptz``.
+            service: ``devicemgmt``, ``media``, ``ptz`` or ``imaging``.
             operation: Name of the operation.
             arguments: Its arguments.
 
         Raises:
-            CameraError: One of the errors of ``camera.network.errors`` or ``camera.onvif.faults``.
+            CameraError: One of the errors in ``camera.network.errors`` or ``camera.onvif.faults``.
         """
-        once = partial(self._authenticated_call, service, operation, arguments)
-        return await (once() if operation in NOT_RETRIED else _retry(once))
+        call_once = partial(self._authenticated_call, service, operation, arguments)
+        return await (call_once() if operation in NOT_RETRIED else _retry(call_once))
 
     async def prepare_stop(self, profile: str) -> None:
-        """Prepare the connection for ``stop_blocking``."""
+        """Prepare for ``stop_blocking``."""
         self._stop_profile = profile
         self._stop_service = await self.make_service("ptz")
 
     def stop_blocking(self) -> None:
-        """Stop pan, tilt and zoom from a thread, over a separate connection.
+        """Stop pan, tilt and zoom from a thread over a separate connection.
 
         Raises:
-            CameraError: The stop command did not reach the device, or was refused.
+            CameraError: The stop command did not reach the device, or the device refused it.
         """
-        service = self._stop_service  # a separate one, because those of the event loop are not thread-safe
+        service = self._stop_service  # a separate service, because those used in the event loop are not thread-safe
         with soap_errors(self.address, "Stop"):
             message = service.zeep_client.create_message(
                 service.ws_client, "Stop", ProfileToken=self._stop_profile, PanTilt=True, Zoom=True
@@ -140,8 +140,8 @@ class OnvifClient:
             camera = self._library.ONVIFCamera(
                 f"{scheme}://{address.host}", address.port, account.user, account.password, no_cache=True, adjust_time=adjust_time
             )
-        # The library's services use transports that follow redirects to any host.
-        camera.create_onvif_service = partial(_service_of, self, camera)
+        # The library's own services use transports that follow redirects to any host.
+        camera.create_onvif_service = partial(_cached_service, self, camera)
         return camera
 
     async def make_service(self, name: str, camera: Any = None) -> Any:
@@ -165,7 +165,7 @@ class OnvifClient:
 
 
 async def _retry(call: Callable[[], Awaitable[Any]]) -> Any:
-    """Call a function, and retry it after a lost connection. Each call sends a new message with a new authentication header."""
+    """Call a function, and retry it after a lost connection. Each call must send a new message with a new authentication header."""
     for pause_s in BACKOFF_S:
         try:
             return await call()
@@ -175,12 +175,12 @@ async def _retry(call: Callable[[], Awaitable[Any]]) -> Any:
 
 
 async def _close(camera: Any) -> None:
-    camera.services.clear()  # their transports are closed with this client
+    camera.services.clear()  # closing this client closes their transports
     await camera.close()
 
 
-async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:
-    """Return a service of a camera. It is created on the first call."""
+async def _cached_service(client: OnvifClient, camera: Any, name: str, *_: Any, **__: Any) -> Any:
+    """Return a service, creating it on the first call."""
     key = (name.lower(), None)
     if key not in camera.services:
         camera.services[key] = await client.make_service(key[0], camera)
@@ -188,20 +188,20 @@ async def _service_of(client: OnvifClient, camera: Any, name: str, *_: Any, **__
 
 
 def stop_device(http: DeviceHttp, details: Mapping[str, Any]) -> None:
-    """Stop all motion of a device, from a process that has no connection to it yet. The call blocks.
+    """Stop all motion of a device from a process that is not connected to it yet. This call blocks.
 
     Args:
         http: The HTTP connection to the device.
-        details: The token of the profile that controls the motors, under the key ``profile``.
+        details: The token of the PTZ profile, under the key ``profile``.
 
     Raises:
         CameraError: The stop command did not reach the device.
     """
 
-    async def connected() -> OnvifClient:
+    async def connect() -> OnvifClient:
         client = OnvifClient(http, http.credentials)
         await client.connect()
         await client.prepare_stop(details["profile"])
         return client
 
-    anyio.run(connected).stop_blocking()
+    anyio.run(connect).stop_blocking()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.onvif.client import OnvifClient
 
 ENDLESS_DEG = 359.5
-"""A pan range of at least this many degrees counts as endless."""
+"""Minimum pan range in degrees that counts as endless."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,25 +34,25 @@ class OnvifDevice:
     """The properties and capabilities of an ONVIF device.
 
     Attributes:
-        manufacturer: Its manufacturer.
-        model: Its model.
-        firmware: Version of its firmware.
-        ptz_profile: Token of the profile through which it is moved.
-        picture_profile: Token of the profile whose pictures are taken.
+        manufacturer: Name of the manufacturer.
+        model: Name of the model.
+        firmware: Firmware version.
+        ptz_profile: Token of the profile used for PTZ control.
+        picture_profile: Token of the profile used for pictures.
         width: Width of the stream in pixels.
         height: Height of the stream in pixels.
-        move_space: The coordinate space of absolute moves.
-        report_spaces: The spaces in which it may report positions, by URI; the key "" is for positions that name no space.
-        zoom: The space of zoom positions.
-        velocity: The generic velocity space of pan and tilt; None if they cannot be driven.
-        zoom_velocity: The generic velocity space of the zoom; None if it cannot be driven.
-        fov_translation: The space of relative turns in fractions of the field of view; None if it has none.
-        zoom_translation: The generic space of relative zoom; None if it has none.
-        video_source: Token of the video source, for focus and iris.
-        timeout_s: Shortest and longest timeout, in seconds, that it accepts for a continuous move.
+        move_space: The coordinate space for absolute moves.
+        report_spaces: The spaces in which the device may report positions, by URI; the key "" is for positions without a space.
+        zoom: The coordinate space for zoom positions.
+        velocity: The generic velocity space for pan and tilt; None if they cannot be driven.
+        zoom_velocity: The generic velocity space for zoom; None if it cannot be driven.
+        fov_translation: The space for relative turns in fractions of the field of view; None if there is none.
+        zoom_translation: The generic space for relative zoom; None if there is none.
+        video_source: Token of the video source, used for focus and iris.
+        timeout_s: Shortest and longest timeout in seconds that the device accepts for continuous moves.
         limits: Limits of motion.
-        capabilities: Its optional capabilities, without focus and iris.
-        assumed: Names of the values that are only assumed, because they are not reported, configured or measured.
+        capabilities: Optional capabilities, except focus and iris.
+        assumed: Names of the values that are assumed because they are not reported, configured or measured.
     """
 
     manufacturer: str
@@ -77,7 +77,7 @@ class OnvifDevice:
 
     @property
     def name(self) -> str:
-        """Manufacturer and model."""
+        """The manufacturer and model, for messages."""
         return " ".join(word for word in (self.manufacturer, self.model) if word) or "ONVIF camera"
 
 
@@ -86,30 +86,32 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
 
     Args:
         client: The connection.
-        mapping: Configured or measured values. They take precedence over those known for the model.
-        width: The requested width of pictures in pixels.
-        profile: Token or name of the profile to use; by default, a suitable one.
+        mapping: Configured or measured values, which take precedence over the known values for the model.
+        width: The requested picture width in pixels.
+        profile: Token or name of the profile to use; by default, a suitable one is chosen.
 
     Raises:
-        CameraError: The device cannot be reached, refuses the account, or has no position space.
+        CameraError: The device cannot be reached, rejects the credentials, or has no suitable profile or position space.
     """
     information = await client.call("devicemgmt", "GetDeviceInformation")
-    manufacturer, model, firmware = (_word(information[key]) for key in ("Manufacturer", "Model", "FirmwareVersion"))
+    manufacturer, model, firmware = (_clean_text(information[key]) for key in ("Manufacturer", "Model", "FirmwareVersion"))
     mapping = mapping.with_missing_from(known_mapping(model))
     ptz, picture = choose_profiles(await client.call("media", "GetProfiles"), str(client.address), width, profile)
     configuration = ptz.PTZConfiguration
-    offered, timeout = await _options(client, configuration)
+    offered_spaces, timeout = await _options(client, configuration)
     assumed: list[str] = []
-    stated = {space.uri: space for space in spaces.reported_spaces(offered.AbsolutePanTiltPositionSpace) if space.y is not None}
-    report_spaces = _position_spaces(stated, mapping, assumed)
+    reported = {
+        space.uri: space for space in spaces.reported_spaces(offered_spaces.AbsolutePanTiltPositionSpace) if space.y is not None
+    }
+    report_spaces = _position_spaces(reported, mapping, assumed)
     if not report_spaces:
         raise CameraReplyError(
-            f"The camera at {client.address} reports no space of absolute positions, so SCOPE cannot move it to a pose."
+            f"The camera at {client.address} reports no space for absolute positions, so it cannot be moved to a pose."
         )
     move_space = report_spaces.get(spaces.DEGREES) or next(iter(report_spaces.values()))
-    zoom = _zoom_space(spaces.reported_spaces(offered.AbsoluteZoomPositionSpace), mapping, assumed)
-    velocity = _first(spaces.reported_spaces(offered.ContinuousPanTiltVelocitySpace), spaces.VELOCITY)
-    zoom_velocity = _first(spaces.reported_spaces(offered.ContinuousZoomVelocitySpace), spaces.ZOOM_VELOCITY)
+    zoom = _zoom_space(spaces.reported_spaces(offered_spaces.AbsoluteZoomPositionSpace), mapping, assumed)
+    velocity = _find_space(spaces.reported_spaces(offered_spaces.ContinuousPanTiltVelocitySpace), spaces.VELOCITY)
+    zoom_velocity = _find_space(spaces.reported_spaces(offered_spaces.ContinuousZoomVelocitySpace), spaces.ZOOM_VELOCITY)
     top = mapping.top_speed or ASSUMED_SPEED
     resolution = picture.VideoEncoderConfiguration.Resolution
     return OnvifDevice(
@@ -125,9 +127,9 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
         zoom,
         velocity,
         zoom_velocity,
-        _first(spaces.reported_spaces(offered.RelativePanTiltTranslationSpace), spaces.TRANSLATION_FOV),
-        _first(spaces.reported_spaces(offered.RelativeZoomTranslationSpace), spaces.ZOOM_TRANSLATION),
-        _source(picture),
+        _find_space(spaces.reported_spaces(offered_spaces.RelativePanTiltTranslationSpace), spaces.TRANSLATION_FOV),
+        _find_space(spaces.reported_spaces(offered_spaces.RelativeZoomTranslationSpace), spaces.ZOOM_TRANSLATION),
+        _video_source(picture),
         timeout,
         _limits(move_space, zoom, configuration, report_spaces),
         Capabilities(
@@ -143,41 +145,42 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
 
 
 def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") -> tuple[Any, Any]:
-    """Return the profile through which to move the camera, and the one from which to take pictures.
+    """Return the profile to use for PTZ control and the profile to use for pictures.
 
-    Only profiles with a PTZ configuration can move the camera, and on some devices only the profile of the substream has one.
-    Pictures come from
-    the smallest profile of the same video source that is wide enough.
+    Only a profile with a PTZ configuration can control the camera, and on some devices only the substream's profile has one. By
+    default, pictures are taken from the smallest profile with the same video source that is wide enough.
 
     Raises:
         CameraError: There is no suitable profile.
     """
-    profiles = [each for each in profiles or () if each.token]
-    moving = [each for each in profiles if getattr(each, "PTZConfiguration", None) is not None]
-    if not moving:
-        raise CameraError(f"The camera at {where} has no ONVIF profile with PTZ. It may have no motors, or PTZ is off.")
+    profiles = [profile for profile in profiles or () if profile.token]
+    ptz_profiles = [profile for profile in profiles if getattr(profile, "PTZConfiguration", None) is not None]
+    if not ptz_profiles:
+        raise CameraError(f"The camera at {where} has no ONVIF profile with PTZ. PTZ may be off or unsupported.")
     if requested:
-        named = [each for each in profiles if requested in (each.token, each.Name)]
+        named = [profile for profile in profiles if requested in (profile.token, profile.Name)]
         if not named:
             raise CameraError(
-                f"The camera at {where} has no profile '{requested[:40]}'. It has: {', '.join(map(_name, profiles))}."
+                f"The camera at {where} has no profile '{requested[:40]}'. Available profiles: {', '.join(map(_name, profiles))}."
             )
-        return (named[0] if named[0] in moving else moving[0]), named[0]
-    ptz = moving[0]
-    pictured = [
-        each
-        for each in profiles
-        if getattr(each, "VideoEncoderConfiguration", None) is not None and _source(each) == _source(ptz)
+        return (named[0] if named[0] in ptz_profiles else ptz_profiles[0]), named[0]
+    ptz = ptz_profiles[0]
+    video_profiles = [
+        profile
+        for profile in profiles
+        if getattr(profile, "VideoEncoderConfiguration", None) is not None and _video_source(profile) == _video_source(ptz)
     ]  # fmt: skip
-    if not pictured:
+    if not video_profiles:
         raise CameraError(f"The camera at {where} has no ONVIF profile with video. Create one in the camera's settings.")
-    wide = [each for each in pictured if each.VideoEncoderConfiguration.Resolution.Width >= width]
-    sizes = {id(each): each.VideoEncoderConfiguration.Resolution.Width for each in pictured}
-    return ptz, min(wide, key=lambda each: sizes[id(each)]) if wide else max(pictured, key=lambda each: sizes[id(each)])
+    wide = [profile for profile in video_profiles if profile.VideoEncoderConfiguration.Resolution.Width >= width]
+    sizes = {id(profile): profile.VideoEncoderConfiguration.Resolution.Width for profile in video_profiles}
+    return ptz, min(wide, key=lambda profile: sizes[id(profile)]) if wide else max(
+        video_profiles, key=lambda profile: sizes[id(profile)]
+    )
 
 
 async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
-    """Return the spaces of a PTZ configuration, and the range of timeouts in seconds."""
+    """Return the spaces that a PTZ configuration supports, and its timeout range in seconds."""
     try:
         options = await client.call("ptz", "GetConfigurationOptions", ConfigurationToken=configuration.token)
         if options.Spaces is not None and options.Spaces.AbsolutePanTiltPositionSpace:
@@ -191,13 +194,15 @@ async def _options(client: OnvifClient, configuration: Any) -> tuple[Any, Ends]:
     return node.SupportedPTZSpaces, (0.1, 60.0)
 
 
-def _position_spaces(stated: dict[str, ReportedSpace], mapping: OnvifMapping, assumed: list[str]) -> dict[str, PanTiltSpace]:
-    """Return the position spaces with their scales to degrees."""
-    found: dict[str, PanTiltSpace] = {}
-    degrees = stated.get(spaces.DEGREES)
+def _position_spaces(reported: dict[str, ReportedSpace], mapping: OnvifMapping, assumed: list[str]) -> dict[str, PanTiltSpace]:
+    """Return the position spaces with their scales, and add the names of assumed ranges to ``assumed``."""
+    position_spaces: dict[str, PanTiltSpace] = {}
+    degrees = reported.get(spaces.DEGREES)
     if degrees is not None and degrees.y is not None:
-        found[spaces.DEGREES] = PanTiltSpace(spaces.DEGREES, LinearScale(degrees.x, degrees.x), LinearScale(degrees.y, degrees.y))
-    generic = stated.get(spaces.GENERIC)
+        position_spaces[spaces.DEGREES] = PanTiltSpace(
+            spaces.DEGREES, LinearScale(degrees.x, degrees.x), LinearScale(degrees.y, degrees.y)
+        )
+    generic = reported.get(spaces.GENERIC)
     if generic is not None and generic.y is not None:
         pan, tilt = mapping.pan_deg, mapping.tilt_deg
         if degrees is not None and degrees.y is not None:
@@ -206,18 +211,18 @@ def _position_spaces(stated: dict[str, ReportedSpace], mapping: OnvifMapping, as
             assumed.append("pan range")
         if tilt is None:
             assumed.append("tilt range")
-        found[spaces.GENERIC] = PanTiltSpace(
+        position_spaces[spaces.GENERIC] = PanTiltSpace(
             spaces.GENERIC, LinearScale(generic.x, pan or ASSUMED_PAN_DEG), LinearScale(generic.y, tilt or ASSUMED_TILT_DEG)
         )
-    return found
+    return position_spaces
 
 
-def _zoom_space(stated: tuple[ReportedSpace, ...], mapping: OnvifMapping, assumed: list[str]) -> ZoomSpace:
-    space = _first(stated, spaces.ZOOM_GENERIC)
+def _zoom_space(reported: tuple[ReportedSpace, ...], mapping: OnvifMapping, assumed: list[str]) -> ZoomSpace:
+    space = _find_space(reported, spaces.ZOOM_GENERIC)
     if mapping.fields is None:
         assumed.append("field of view")
     fields = mapping.fields or ((0.0, ASSUMED_FIELDS_DEG[0]), (1.0, ASSUMED_FIELDS_DEG[1]))
-    if space is None:  # a fixed lens still needs a table of two rows
+    if space is None:  # optics require two rows even for a fixed lens
         return ZoomSpace(spaces.ZOOM_GENERIC, ((0.0, 1.0, fields[0][1]), (1.0, 1.0001, fields[0][1] * 0.9999)), moves=False)
     low, high = space.x
     rows = tuple((low + fraction * (high - low), zoom, hfov) for fraction, zoom, hfov in zoom_rows(fields, mapping.zoom_max))
@@ -225,7 +230,7 @@ def _zoom_space(stated: tuple[ReportedSpace, ...], mapping: OnvifMapping, assume
 
 
 def _limits(move_space: PanTiltSpace, zoom: ZoomSpace, configuration: Any, known: dict[str, PanTiltSpace]) -> Limits:
-    """Return the limits of the position space, narrowed to those of the configuration."""
+    """Return the limits of the position space, narrowed to the limits in the configuration."""
     pan, tilt = sorted(move_space.pan.values), sorted(move_space.tilt.values)
     endless = pan[1] - pan[0] >= ENDLESS_DEG
     narrowed = getattr(configuration, "PanTiltLimits", None)
@@ -245,18 +250,18 @@ def _default_space(configuration: Any) -> str:
     return str(getattr(configuration, "DefaultAbsolutePantTiltPositionSpace", None) or spaces.GENERIC)
 
 
-def _first(stated: tuple[ReportedSpace, ...], uri: str) -> ReportedSpace | None:
-    return next((space for space in stated if space.uri == uri), None)
+def _find_space(reported: tuple[ReportedSpace, ...], uri: str) -> ReportedSpace | None:
+    return next((space for space in reported if space.uri == uri), None)
 
 
-def _source(profile: Any) -> str:
+def _video_source(profile: Any) -> str:
     return str(getattr(getattr(profile, "VideoSourceConfiguration", None), "SourceToken", ""))
 
 
 def _name(profile: Any) -> str:
-    return _word(profile.Name) or _word(profile.token)
+    return _clean_text(profile.Name) or _clean_text(profile.token)
 
 
-def _word(text: object) -> str:
-    """Return text from the device, shortened and without non-printable characters."""
+def _clean_text(text: object) -> str:
+    """Return text from the device, truncated and without unprintable characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in str(text or "")).split())[:60]

@@ -1,4 +1,4 @@
-"""Find ONVIF devices on the local networks with WS-Discovery. No password is needed or sent."""
+"""Find ONVIF devices on the local networks with WS-Discovery. No password is required or sent."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ _PROBE = (
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class FoundDevice:
-    """A device that answered the search.
+class DiscoveredDevice:
+    """A device that responded to the search.
 
     Attributes:
-        address: Host and port of its web interface, as in a camera spec.
-        name: The name that it reports.
-        model: The model that it reports.
-        tls: Whether the address is HTTPS.
+        address: Host and port of the web interface, as in a camera spec.
+        name: The reported name.
+        model: The reported model.
+        tls: Whether the web interface uses HTTPS.
     """
 
     address: str
@@ -54,13 +54,13 @@ class FoundDevice:
         return f"onvif://USER@{self.address}" + ("?tls=on" if self.tls else "")
 
 
-async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port: int = PORT) -> list[FoundDevice]:
-    """Search for devices, and return those that answer, ordered by address.
+async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port: int = PORT) -> list[DiscoveredDevice]:
+    """Search for devices, and return those that respond, sorted by address.
 
     Args:
-        interfaces: IPv4 addresses of this machine's interfaces; by default, those of ``local_addresses``.
-        wait_s: Seconds to wait for answers.
-        port: The UDP port of the devices.
+        interfaces: IPv4 addresses of this machine's interfaces; by default, those from ``local_addresses``.
+        wait_s: Seconds to wait for responses.
+        port: The UDP port on which devices listen.
 
     Raises:
         InputError: An interface is not an IPv4 address.
@@ -68,36 +68,36 @@ async def discover(interfaces: Iterable[str] = (), *, wait_s: float = 3.0, port:
         ConfigError: lxml is not installed.
     """
     _import_parser()
-    found: dict[str, FoundDevice] = {}
+    devices: dict[str, DiscoveredDevice] = {}
     loop, transports = asyncio.get_running_loop(), []
-    failure = "there is none"
+    failure = "there are no interfaces"
     for interface in tuple(interfaces) or local_addresses():
         try:
             udp_socket = _open(interface)
         except OSError as error:
             failure = error.strerror or str(error)
             continue
-        transport, _ = await loop.create_datagram_endpoint(lambda: _Collector(found), sock=udp_socket)
+        transport, _ = await loop.create_datagram_endpoint(lambda: _Collector(devices), sock=udp_socket)
         transports.append(transport)
     if not transports:
         raise CameraError(f"No network interface can be searched for cameras: {failure}.")
     try:
-        for _ in range(2):  # datagrams get lost
+        for _ in range(2):  # datagrams may be lost
             for transport in transports:
                 transport.sendto(_PROBE.format(number=uuid4()).encode(), (GROUP, port))
             await anyio.sleep(wait_s / 2)
     finally:
         for transport in transports:
             transport.close()
-    return sorted(found.values())
+    return sorted(devices.values())
 
 
-def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
-    """Return the devices that an answer describes; an empty list if the datagram is not an answer.
+def parse_match(data: bytes, sender: str) -> list[DiscoveredDevice]:
+    """Return the devices in a response; an empty list if the datagram is not a response.
 
     Args:
         data: The datagram.
-        sender: The address that it came from.
+        sender: The address from which it came.
     """
     from lxml import etree
 
@@ -108,35 +108,35 @@ def parse_match(data: bytes, sender: str) -> list[FoundDevice]:
         return []
     if root.getroottree().docinfo.doctype:
         return []
-    found = []
-    for each in root.iterfind(f".//{{{_DISCOVERY}}}ProbeMatch"):
-        urls = (each.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split()
+    devices = []
+    for match in root.iterfind(f".//{{{_DISCOVERY}}}ProbeMatch"):
+        urls = (match.findtext(f"{{{_DISCOVERY}}}XAddrs") or "").split()
         endpoints = [endpoint for url in urls if (endpoint := _parse_address(url))]
         if not endpoints:
             continue
-        # If there are several addresses, choose the one that the answer came from, because it can be reached.
+        # If there are several addresses, prefer the sender's, because it can be reached.
         host, port, tls = next((endpoint for endpoint in endpoints if endpoint[0] == sender), endpoints[0])
-        scopes = (each.findtext(f"{{{_DISCOVERY}}}Scopes") or "").split()
+        scopes = (match.findtext(f"{{{_DISCOVERY}}}Scopes") or "").split()
         standard = 443 if tls else 80
-        shown = f"[{host}]" if ":" in host else host
-        address = shown if port == standard else f"{shown}:{port}"
-        found.append(FoundDevice(address, _scope(scopes, "name"), _scope(scopes, "hardware"), tls))
-    return found
+        url_host = f"[{host}]" if ":" in host else host
+        address = url_host if port == standard else f"{url_host}:{port}"
+        devices.append(DiscoveredDevice(address, _scope(scopes, "name"), _scope(scopes, "hardware"), tls))
+    return devices
 
 
 class _Collector(asyncio.DatagramProtocol):
-    def __init__(self, found: dict[str, FoundDevice]) -> None:
-        self._found = found
+    def __init__(self, devices: dict[str, DiscoveredDevice]) -> None:
+        self._devices = devices
 
     def datagram_received(self, data: bytes, address: tuple[str, int]) -> None:
         if len(data) > MAX_DATAGRAM_BYTES:
             return
         for device in parse_match(data, address[0]):
-            if len(self._found) < MAX_DEVICES:
-                self._found.setdefault(device.address, device)
+            if len(self._devices) < MAX_DEVICES:
+                self._devices.setdefault(device.address, device)
 
     def error_received(self, error: Exception) -> None:
-        """Ignore network errors such as an unreachable host, because a probe needs no answer."""
+        """Ignore network errors such as an unreachable host, because a probe does not require a response."""
 
 
 def _open(interface: str) -> socket.socket:
@@ -144,7 +144,7 @@ def _open(interface: str) -> socket.socket:
         packed_address = socket.inet_aton(interface)
     except OSError:
         raise InputError(
-            f"An interface must be given by its IPv4 address, for example 192.168.1.20; got '{interface[:40]}'."
+            f"An interface must be specified by its IPv4 address, for example 192.168.1.20; got '{interface[:40]}'."
         ) from None
     udp_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
@@ -159,7 +159,7 @@ def _open(interface: str) -> socket.socket:
 
 
 def _parse_address(text: str) -> tuple[str, int, bool] | None:
-    """Return the host, the port, and whether the address is HTTPS; None if it is not an HTTP address."""
+    """Return the host, the port and whether the URL is HTTPS; None if it is not an HTTP URL."""
     try:
         parts = urlsplit(text)
         port = parts.port
@@ -171,15 +171,15 @@ def _parse_address(text: str) -> tuple[str, int, bool] | None:
     return parts.hostname, port or (443 if tls else 80), tls
 
 
-def _scope(scopes: list[str], kind: str) -> str:
-    """Return the name or hardware that a device's scopes state, on one line and without control characters; or empty."""
-    start = f"onvif://www.onvif.org/{kind}/"
+def _scope(scopes: list[str], category: str) -> str:
+    """Return the name or hardware in a device's scopes as one printable line; empty if there is none."""
+    start = f"onvif://www.onvif.org/{category}/"
     text = next((unquote(scope[len(start) :]) for scope in scopes if scope.lower().startswith(start)), "")
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]
 
 
 def _import_parser() -> None:
     try:
-        import lxml.etree  # noqa: F401 - used when answers are parsed
+        import lxml.etree  # noqa: F401 - used to parse responses
     except ImportError:
-        raise ConfigError("Discovery needs lxml. Install it with: pip install 'scope-ptz[camera]'") from None
+        raise ConfigError("Discovery requires lxml. Install it with: pip install 'scope-ptz[camera]'") from None

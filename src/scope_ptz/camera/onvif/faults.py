@@ -1,4 +1,4 @@
-"""Convert SOAP faults and unreadable replies to camera errors that tell the user what to do."""
+"""Convert SOAP faults and invalid replies to camera errors that tell the user what to do."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class NotOfferedError(OnvifFaultError):
 
 @contextmanager
 def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
-    """Return a context that converts errors of zeep and the ONVIF client to camera errors.
+    """Return a context manager that converts errors from zeep and the ONVIF client to camera errors.
 
-    The original error is dropped, because it may contain the message with its password digest.
+    The original error is dropped, because it may contain the message with the password digest.
     """
     from onvif.exceptions import ONVIFError
     from zeep.exceptions import Error as ZeepError
@@ -53,12 +53,12 @@ def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
     except Fault as fault:
         failure: CameraError = _error_from_fault(address, operation, fault)
     except ONVIFError as error:
-        text = _plain(error.reason)
-        failure = CameraReplyError(f"The camera at {address} cannot be used for {operation}: {text}. Check that ONVIF is enabled.")
+        text = _one_line(error.reason)
+        failure = CameraReplyError(f"{operation} failed on the camera at {address}: {text}. Check that ONVIF is enabled.")
     except (ZeepError, ValueError, TypeError, AttributeError, LookupError, ArithmeticError):
         failure = CameraReplyError(
-            f"The camera at {address} answered {operation} with something that is not valid ONVIF. "
-            "Check the address, and that ONVIF is enabled in the camera's settings."
+            f"The camera at {address} sent an invalid ONVIF reply to {operation}. "
+            "Check the address, and check that ONVIF is enabled in the camera's settings."
         )
     else:
         return
@@ -67,24 +67,24 @@ def soap_errors(address: DeviceAddress, operation: str) -> Iterator[None]:
 
 def _error_from_fault(address: DeviceAddress, operation: str, fault: Any) -> CameraError:
     codes = _codes(fault)
-    reason = _plain(fault.message or "no reason given")
+    reason = _one_line(fault.message or "no reason given")
     if any(code in _SIGN_IN for code in codes):
         return CameraSignInError(
-            f"The camera at {address} refuses the account for {operation} ({reason}). Check user name, password and role. "
-            "Many cameras have separate ONVIF users, and refuse accounts if their clock is wrong."
+            f"The camera at {address} rejected the account for {operation} ({reason}). Check the user name, the password and the "
+            "account's role. Many cameras have separate ONVIF users, and reject logins if their clock is wrong."
         )
     if any(code in ("ActionNotSupported", "OptionalActionNotImplemented", "NotSupported") for code in codes):
-        return NotOfferedError(f"The camera at {address} does not offer {operation} ({reason}).", codes)
+        return NotOfferedError(f"The camera at {address} does not support {operation} ({reason}).", codes)
     return OnvifFaultError(f"The camera at {address} refused {operation}: {reason}. Codes: {', '.join(codes) or 'none'}.", codes)
 
 
 def _codes(fault: Any) -> tuple[str, ...]:
-    found = [fault.code, *(fault.subcodes or [])]
-    texts = [getattr(code, "localname", None) or str(code).rpartition("}")[2] for code in found if code is not None]
-    return tuple(_plain(text.rpartition(":")[2]) for text in texts)
+    values = [fault.code, *(fault.subcodes or [])]
+    texts = [getattr(code, "localname", None) or str(code).rpartition("}")[2] for code in values if code is not None]
+    return tuple(_one_line(text.rpartition(":")[2]) for text in texts)
 
 
-def _plain(text: object) -> str:
+def _one_line(text: object) -> str:
     """Return a device's message as one short printable line."""
     line = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
     return line[:_MAX_REASON].rstrip(".")

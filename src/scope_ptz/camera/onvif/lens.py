@@ -1,4 +1,4 @@
-"""Control the focus and iris of an ONVIF device through its Imaging service."""
+"""Control the focus and iris of an ONVIF device through its imaging service."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.camera.lens import FocusAction, IrisAction, LensState
 from scope_ptz.camera.network.errors import CameraReplyError
 from scope_ptz.camera.network.lens import wait_until_focused
 from scope_ptz.camera.onvif.faults import OnvifFaultError
-from scope_ptz.camera.onvif.spaces import Ends, LinearScale, ends_of
+from scope_ptz.camera.onvif.spaces import Ends, LinearScale, parse_range
 from scope_ptz.errors import CameraError
 
 if TYPE_CHECKING:
@@ -21,11 +21,11 @@ class LensOptions:
     """The lens options that a device reports.
 
     Attributes:
-        focus_modes: Its focus modes: AUTO, MANUAL or both.
-        positions: Range of absolute focus positions; None if it has none.
-        distances: Range of relative focus moves; None if it has none.
-        exposure_modes: Its exposure modes: AUTO, MANUAL or both.
-        iris_db: Range of the iris, as attenuation in dB; None if it cannot be set.
+        focus_modes: The focus modes: AUTO, MANUAL or both.
+        positions: Range of absolute focus positions; None if they are not supported.
+        distances: Range of relative focus moves; None if they are not supported.
+        exposure_modes: The exposure modes: AUTO, MANUAL or both.
+        iris_db: Range of the iris attenuation in dB; None if the iris cannot be set.
     """
 
     focus_modes: tuple[str, ...] = ()
@@ -38,12 +38,13 @@ class LensOptions:
 class OnvifLens:
     """The focus and iris of one video source.
 
-    The driver assumes that positive distances focus farther away, and that the iris is open at the end of its range nearer to 0 dB.
+    The driver assumes that positive distances focus farther away, and that the iris is open at the end of its range that is closer
+    to 0 dB.
 
     Args:
         client: The connection.
         source: Token of the video source.
-        options: The options that the device reports.
+        options: The reported lens options.
     """
 
     def __init__(self, client: OnvifClient, source: str, options: LensOptions) -> None:
@@ -54,12 +55,12 @@ class OnvifLens:
             "auto": automatic, "manual": manual, "once": automatic and manual, "near": steps, "far": steps,
         }  # fmt: skip
         self.focus_actions: tuple[FocusAction, ...] = tuple(action for action, offered in focus.items() if offered)
-        held = "MANUAL" in options.exposure_modes
+        manual_exposure = "MANUAL" in options.exposure_modes
         iris: dict[IrisAction, bool] = {
             "auto": "AUTO" in options.exposure_modes and options.iris_db is not None,
-            "manual": held and options.iris_db is not None,
-            "open": held and options.iris_db is not None,
-            "close": held and options.iris_db is not None,
+            "manual": manual_exposure and options.iris_db is not None,
+            "open": manual_exposure and options.iris_db is not None,
+            "close": manual_exposure and options.iris_db is not None,
         }
         self.iris_actions: tuple[IrisAction, ...] = tuple(action for action, offered in iris.items() if offered)
         self._focus_scale = None if options.positions is None else LinearScale(options.positions, (0.0, 1.0))
@@ -69,13 +70,13 @@ class OnvifLens:
             self._iris_scale = LinearScale(options.iris_db, (1.0, 0.0) if low_is_open else (0.0, 1.0))
 
     async def state(self, name: str = "") -> LensState:
-        """Read the state of focus and iris.
+        """Read the state of the focus and iris.
 
         Args:
             name: The camera's name, for the error message.
 
         Raises:
-            CameraError: Neither the focus nor the iris can be set, or the device does not answer.
+            CameraError: Neither the focus nor the iris can be set, or the device does not respond.
         """
         if not self.focus_actions and not self.iris_actions:
             raise CameraError(f"The focus and the iris of {name} cannot be set.")
@@ -86,19 +87,19 @@ class OnvifLens:
             _is_auto(getattr(focus, "AutoFocusMode", None)),
             await self._focus_position(),
             _is_auto(getattr(exposure, "Mode", None)),
-            None if iris is None or self._iris_scale is None else _within(self._iris_scale.to_value(float(iris))),
+            None if iris is None or self._iris_scale is None else _clamp_fraction(self._iris_scale.to_value(float(iris))),
         )
 
     async def set_focus(self, action: FocusAction, step: float, poll_s: float) -> LensState:
-        """Set the focus and return when it has settled. A step turns autofocus off first, because autofocus would undo the step.
+        """Set the focus and return when it has settled. A step first turns autofocus off, because autofocus would undo the step.
 
         Args:
             action: The focus action.
             step: Length of a step as a fraction of the range.
-            poll_s: Interval, in seconds, at which the focus is read while it moves.
+            poll_s: Interval in seconds between readings of the focus while it is moving.
 
         Raises:
-            CameraError: The device refuses the request, or does not answer.
+            CameraError: The device refuses the request, or does not respond.
         """
         if action in ("auto", "once"):
             await self._set_mode("Focus", "AutoFocusMode", "AUTO")
@@ -116,32 +117,32 @@ class OnvifLens:
         """Set the iris.
 
         Raises:
-            CameraError: The device refuses the request, or does not answer.
+            CameraError: The device refuses the request, does not respond, or does not report its iris.
         """
         if action in ("auto", "manual"):
             await self._set_mode("Exposure", "Mode", action.upper())
             return await self.state()
         now, scale = (await self.state()).iris, self._iris_scale
         if now is None or scale is None:
-            raise CameraError("The camera does not report its iris, so it cannot be opened or closed by a step.")
+            raise CameraError("The camera does not report its iris position, so the iris cannot be opened or closed by a step.")
         await self._set_mode(
-            "Exposure", "Mode", "MANUAL", Iris=scale.to_units(_within(now + (step if action == "open" else -step)))
+            "Exposure", "Mode", "MANUAL", Iris=scale.to_units(_clamp_fraction(now + (step if action == "open" else -step)))
         )
         return await self.state()
 
     async def _step(self, fraction: float) -> dict[str, Any]:
-        """Return a focus move by a fraction of the range: relative if the device supports it, otherwise absolute."""
+        """Return the focus move for a step by a fraction of the range: relative if the device supports it, otherwise absolute."""
         distances, positions = self._options.distances, self._options.positions
         if distances is not None and distances[0] < 0 < distances[1]:
             span = distances[1] if positions is None else min(positions[1] - positions[0], distances[1])
             return {"Relative": {"Distance": max(fraction * span, distances[0])}}
-        here = await self._focus_position()
-        if here is None or self._focus_scale is None:
-            raise CameraError("The camera does not report its focus, so it cannot be moved by a step.")
-        return {"Absolute": {"Position": self._focus_scale.to_units(_within(here + fraction))}}
+        position = await self._focus_position()
+        if position is None or self._focus_scale is None:
+            raise CameraError("The camera does not report its focus position, so the focus cannot be moved by a step.")
+        return {"Absolute": {"Position": self._focus_scale.to_units(_clamp_fraction(position + fraction))}}
 
     async def _set_mode(self, group: str, field: str, mode: str, **values: float) -> None:
-        """Change one group of the settings. Its other values are sent back as the device reports them."""
+        """Change the mode, and optionally other values, in a group of imaging settings, leaving the rest of the group unchanged."""
         settings = getattr(await self._call("GetImagingSettings"), group, None)
         if settings is None:
             settings = {field: mode, **values}
@@ -152,7 +153,7 @@ class OnvifLens:
         await self._call("SetImagingSettings", ImagingSettings={group: settings}, ForcePersistence=False)
 
     async def _focus_position(self) -> float | None:
-        """Return the focus position as a fraction of its range; None if the device reports none."""
+        """Return the focus position as a fraction of its range; None if the device does not report it."""
         if self._focus_scale is None:
             return None
         try:
@@ -160,36 +161,36 @@ class OnvifLens:
         except (OnvifFaultError, CameraReplyError):
             return None
         position = getattr(getattr(status, "FocusStatus20", None), "Position", None)
-        return None if position is None else _within(self._focus_scale.to_value(float(position)))
+        return None if position is None else _clamp_fraction(self._focus_scale.to_value(float(position)))
 
     async def _call(self, operation: str, **arguments: Any) -> Any:
         return await self._client.call("imaging", operation, VideoSourceToken=self._source, **arguments)
 
 
 async def open_lens(client: OnvifClient, source: str) -> OnvifLens:
-    """Read the lens options of a device. They are empty if the device has no working Imaging service."""
+    """Read a device's lens options, which are empty if it has no working imaging service."""
 
-    async def ask(operation: str) -> Any:
+    async def read_options(operation: str) -> Any:
         try:
             return await client.call("imaging", operation, VideoSourceToken=source)
         except (OnvifFaultError, CameraReplyError):
             return None
 
-    options, moves = await ask("GetOptions"), await ask("GetMoveOptions")
+    options, moves = await read_options("GetOptions"), await read_options("GetMoveOptions")
     focus, exposure = getattr(options, "Focus", None), getattr(options, "Exposure", None)
-    found = LensOptions(
+    lens_options = LensOptions(
         tuple(map(str, getattr(focus, "AutoFocusModes", None) or ())),
-        ends_of(getattr(getattr(moves, "Absolute", None), "Position", None)),
-        ends_of(getattr(getattr(moves, "Relative", None), "Distance", None)),
+        parse_range(getattr(getattr(moves, "Absolute", None), "Position", None)),
+        parse_range(getattr(getattr(moves, "Relative", None), "Distance", None)),
         tuple(map(str, getattr(exposure, "Mode", None) or ())),
-        ends_of(getattr(exposure, "Iris", None)),
+        parse_range(getattr(exposure, "Iris", None)),
     )
-    return OnvifLens(client, source, found)
+    return OnvifLens(client, source, lens_options)
 
 
 def _is_auto(mode: object) -> bool | None:
     return None if mode is None else str(mode) == "AUTO"
 
 
-def _within(fraction: float) -> float:
+def _clamp_fraction(fraction: float) -> float:
     return min(max(fraction, 0.0), 1.0)

@@ -1,4 +1,4 @@
-"""Values that a driver needs but ONVIF does not report: the angles of generic spaces, fields of view, and speeds."""
+"""Values that the driver requires but ONVIF does not report: the angles of generic spaces, fields of view, and speeds."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from scope_ptz.geometry import AXIS_M5075_G, Optics
 
 ASSUMED_PAN_DEG = (-180.0, 180.0)
 ASSUMED_TILT_DEG = (-90.0, 90.0)
-"""The angles at the ends of the generic space on most devices. A driver uses them only to measure the actual angles."""
+"""The angles at the ends of the generic space on most devices, used only while measuring the actual angles."""
 
-ASSUMED_FIELDS_DEG = (60.0, 6.0)  # at the widest and the narrowest view, also only to measure the actual fields of view
+ASSUMED_FIELDS_DEG = (60.0, 6.0)
+"""Horizontal fields of view at the widest and the closest zoom, used only while measuring the actual ones."""
 ASSUMED_SPEED = Velocity(60.0, 60.0, 0.5)
-"""Top speeds that are assumed for a device whose speeds have not been measured.
+"""Assumed top speeds for devices whose speeds are unknown.
 
-If they are wrong, continuous moves are slower or faster than requested. Stopping does not depend on them.
+If they are wrong, continuous moves are slower or faster than requested. Stopping is not affected.
 """
 
 
@@ -27,9 +28,9 @@ class OnvifMapping:
 
     Attributes:
         pan_deg: Pan in degrees at the low and the high end of the generic space.
-        tilt_deg: The same for tilt.
+        tilt_deg: Tilt in degrees at the low and the high end of the generic space.
         fields: Rows of (fraction of the zoom range, horizontal field of view in degrees), widest first.
-        zoom_max: Magnification at the end of the zoom range; by default the ratio of the focal lengths.
+        zoom_max: Magnification at the closest zoom; by default, the ratio of the focal lengths.
         top_speed: Velocities at the ends of the generic velocity spaces.
     """
 
@@ -40,7 +41,7 @@ class OnvifMapping:
     top_speed: Velocity | None = None
 
     def with_missing_from(self, other: OnvifMapping) -> OnvifMapping:
-        """Return this mapping, with missing values taken from another one."""
+        """Return a copy with missing values taken from another mapping."""
         return OnvifMapping(
             self.pan_deg or other.pan_deg,
             self.tilt_deg or other.tilt_deg,
@@ -51,15 +52,15 @@ class OnvifMapping:
 
 
 def known_mapping(model: str) -> OnvifMapping:
-    """Return the data sheet values of a model; an empty mapping for a model that is not listed here."""
+    """Return the data sheet values for a model; an empty mapping if the model is unknown."""
     return _KNOWN.get(model.strip().upper().removeprefix("AXIS ").strip(), OnvifMapping())
 
 
 def zoom_rows(fields: tuple[tuple[float, float], ...], zoom_max: float | None) -> tuple[tuple[float, float, float], ...]:
     """Return rows of (fraction of the zoom range, magnification, field of view in degrees).
 
-    Without ``zoom_max``, the magnification is the ratio of the focal lengths, so the widest zoom is 1. With ``zoom_max``, it is
-    linear in the zoom range, as on devices with a rated zoom.
+    Without ``zoom_max``, the magnification is the ratio of the focal lengths. With ``zoom_max``, it increases linearly over the
+    zoom range, as on devices with a rated zoom. In both cases it is 1 at the widest zoom.
     """
     first = math.tan(math.radians(fields[0][1]) / 2)
     return tuple(

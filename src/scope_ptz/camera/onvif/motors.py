@@ -1,4 +1,4 @@
-"""Control the motors of an ONVIF device, with positions in degrees and magnification."""
+"""Control the motors of an ONVIF device, with angles in degrees and zoom as magnification."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ class OnvifMotors:
         self._sends_timeout = True
 
     async def pose(self) -> Pose:
-        """Read the position. The device's move status is not used, because it is wrong on too many devices.
+        """Read the position. The reported move status is not used, because it is unreliable on many devices.
 
         Raises:
-            CameraReplyError: The device does not report its position.
+            CameraReplyError: The device does not report its position, or the position is not a number.
         """
         status = await self._client.call("ptz", "GetStatus", ProfileToken=self._device.ptz_profile)
         position = getattr(status, "Position", None)
         pan_tilt = getattr(position, "PanTilt", None)
         if pan_tilt is None or pan_tilt.x is None or pan_tilt.y is None:
             raise CameraReplyError(
-                f"The camera at {self._client.address} does not report its position, so SCOPE cannot check moves. "
-                "Newer firmware may help."
+                f"The camera at {self._client.address} does not report its position, so moves cannot be checked. "
+                "Try updating its firmware."
             )
         space = self._device.report_spaces.get(str(pan_tilt.space or "")) or self._device.report_spaces[""]
         pan_deg, tilt_deg = space.pan.to_value(float(pan_tilt.x)), space.tilt.to_value(float(pan_tilt.y))
@@ -63,11 +63,11 @@ class OnvifMotors:
             position["Zoom"] = {"x": zoom.to_units(pose.zoom), "space": zoom.uri}
         await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
 
-    def centring_command(self, here: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
-        """Return the command that centres a point of the picture with a relative move, given in fractions of the field of view.
+    def centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
+        """Return a command that centres a point of the picture with a relative move in fractions of the field of view.
 
         Args:
-            here: The current pose.
+            current: The current pose.
             target: The pose that the command should reach; only its zoom is used.
             x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).
             y: Vertical position of the point, from 0 (top edge) to 1 (bottom edge).
@@ -78,12 +78,12 @@ class OnvifMotors:
         device, space = self._device, self._device.fov_translation
         if space is None or space.y is None:
             return None
-        turn = {"x": _value_at(x, space.x), "y": _value_at(1.0 - y, space.y), "space": space.uri}
+        turn = {"x": _interpolate(x, space.x), "y": _interpolate(1.0 - y, space.y), "space": space.uri}
         translation: dict[str, Any] = {"PanTilt": turn}
-        if not math.isclose(here.zoom, target.zoom, rel_tol=1e-6):
+        if not math.isclose(current.zoom, target.zoom, rel_tol=1e-6):
             if device.zoom_translation is None:
                 return None
-            units = device.zoom.to_units(target.zoom) - device.zoom.to_units(here.zoom)
+            units = device.zoom.to_units(target.zoom) - device.zoom.to_units(current.zoom)
             translation["Zoom"] = {"x": units, "space": device.zoom_translation.uri}
 
         async def send() -> None:
@@ -92,7 +92,7 @@ class OnvifMotors:
         return send
 
     async def drive(self, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
-        """Move continuously at the given velocities. The request contains a timeout unless the device refuses timeouts."""
+        """Move continuously at the given velocities. The request includes a timeout unless the device rejects timeouts."""
         top, velocity = self._device.capabilities.top_speed, {}
         if self._device.velocity is not None:
             space = self._device.velocity
@@ -127,20 +127,20 @@ class OnvifMotors:
         await self._client.call("ptz", "GotoHomePosition", ProfileToken=self._device.ptz_profile)
 
 
-def _value_at(fraction: float, ends: Ends) -> float:
-    """Return the value that lies a fraction of the way along a range."""
+def _interpolate(fraction: float, ends: Ends) -> float:
+    """Return the value at a fraction of a range."""
     return ends[0] + fraction * (ends[1] - ends[0])
 
 
 def _speed(
-    value: float, top: float, space: ReportedSpace, counts: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
+    value: float, top: float, space: ReportedSpace, axis_units: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
 ) -> float:  # fmt: skip
-    """Return a velocity in a generic space, whose ends are the top speeds.
+    """Convert a velocity to a generic space, whose ends are the top speeds.
 
-    The sign is inverted for an axis whose units run in the opposite direction.
+    The sign is inverted if the axis's units run in the opposite direction.
     """
     if not value or not top:
         return 0.0
     low, high = space.y if axis == "y" and space.y is not None else space.x
-    fraction = min(max(value / top, -1.0), 1.0) * (1.0 if counts[0] < counts[1] else -1.0)
+    fraction = min(max(value / top, -1.0), 1.0) * (1.0 if axis_units[0] < axis_units[1] else -1.0)
     return fraction * (high if fraction > 0 else -low)

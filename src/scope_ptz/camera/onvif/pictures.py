@@ -1,4 +1,4 @@
-"""Pictures from an ONVIF camera: snapshots over HTTP, or frames of its RTSP stream if it has no snapshots."""
+"""Pictures from an ONVIF camera: snapshots over HTTP, or frames from its RTSP stream if it has no snapshots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.camera.network.device_pictures import DevicePictures
 from scope_ptz.camera.network.errors import CameraReplyError, PictureError
 from scope_ptz.camera.network.pictures import decode_jpeg
 from scope_ptz.camera.network.rtsp import RtspStream
-from scope_ptz.camera.network.scaled_streams import ScaledStream, SnapshotStream, scaled
+from scope_ptz.camera.network.scaled_streams import ScaledStream, SnapshotStream, scale_picture
 from scope_ptz.camera.network.streams import LiveStream
 from scope_ptz.camera.onvif.faults import OnvifFaultError
 from scope_ptz.camera.onvif.transport import pinned_path
@@ -37,10 +37,10 @@ class OnvifPictures(DevicePictures):
 
     Args:
         http: The HTTP connection to the device.
-        credentials: The account for the RTSP stream.
-        snapshot_path: Path and query of a snapshot; empty if the device has none.
+        credentials: The credentials for the RTSP stream.
+        snapshot_path: Path and query for snapshots; empty if the device has none.
         stream_url: URL of the RTSP stream without credentials; empty if the device has none.
-        native: Width and height in pixels of a snapshot, or of the stream if there are no snapshots.
+        native_size: Width and height in pixels of a snapshot, or of the stream if there are no snapshots.
         stream_size: Width and height of the stream in pixels.
         width: Width of a frame in pixels; pictures are scaled to it.
         height: Height of a frame in pixels.
@@ -55,25 +55,25 @@ class OnvifPictures(DevicePictures):
         *,
         snapshot_path: str,
         stream_url: str,
-        native: tuple[int, int],
+        native_size: tuple[int, int],
         stream_size: tuple[int, int],
         width: int,
         height: int,
         stream: OnvifStream = "rtsp",
         latency_s: float = 0.1,
     ) -> None:
-        super().__init__(width, height, small=(width, height), latency_s=latency_s)
+        super().__init__(width, height, small_size=(width, height), latency_s=latency_s)
         self._http, self._credentials = http, credentials
         self.snapshot_path, self.stream_url = snapshot_path, stream_url
-        self._native, self._stream_size, self._stream_kind = native, stream_size, stream
+        self._native_size, self._stream_size, self._stream_kind = native_size, stream_size, stream
         self._video: LiveStream | None = None
 
     async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
         if not self.snapshot_path:
-            return await self._from_video()
+            return await self._take_from_video()
         body = (await self._http.get(self.snapshot_path)).body
-        image = await to_thread.run_sync(lambda: decode_jpeg(body, width=self._native[0], height=self._native[1]))
-        return body, scaled(image, width, height)
+        image = await to_thread.run_sync(lambda: decode_jpeg(body, width=self._native_size[0], height=self._native_size[1]))
+        return body, scale_picture(image, width, height)
 
     def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device chooses the rate
         if self._stream_kind == "snapshot" or not self.stream_url:
@@ -81,16 +81,16 @@ class OnvifPictures(DevicePictures):
         return ScaledStream(self._open_video(), self.width, self.height)
 
     async def close(self) -> None:
-        """Close the stream that is used instead of snapshots."""
+        """Close the stream that is used in place of snapshots."""
         if self._video is not None:
             await self._video.close()
             self._video = None
 
-    async def _from_video(self) -> tuple[bytes, NDArray[np.uint8]]:
-        """Return the first frame of the stream that is exposed after the call."""
+    async def _take_from_video(self) -> tuple[bytes, NDArray[np.uint8]]:
+        """Return the first frame from the stream that was exposed after this call began."""
         if self._video is None:
             self._video = self._open_video()
-        asked_s = monotonic()
+        requested_s = monotonic()
         while True:
             try:
                 picture = await self._video.next()
@@ -98,8 +98,8 @@ class OnvifPictures(DevicePictures):
                 with anyio.CancelScope(shield=True):
                     await self.close()
                 raise
-            if picture.arrived_s - self._latency_s >= asked_s:
-                return picture.data, scaled(picture.image, self.width, self.height)
+            if picture.arrived_s - self._latency_s >= requested_s:
+                return picture.data, scale_picture(picture.image, self.width, self.height)
 
     def _open_video(self) -> LiveStream:
         width, height = self._stream_size
@@ -117,11 +117,11 @@ async def open_pictures(
     rtsp_port: int | None,
     latency_s: float,
 ) -> OnvifPictures:
-    """Read the picture addresses of a device. Addresses that point to another host are rewritten to the configured one.
+    """Read the URLs of a device's pictures. URLs that point to another host are rewritten to the configured one.
 
     Args:
         client: The connection.
-        credentials: The account for the RTSP stream.
+        credentials: The credentials for the RTSP stream.
         device: The device's properties and capabilities.
         width: Width of a frame in pixels; None for that of the device's pictures.
         height: Height of a frame in pixels; None for that of the device's pictures.
@@ -130,7 +130,7 @@ async def open_pictures(
         latency_s: Seconds from the exposure of a streamed frame to its arrival.
 
     Raises:
-        CameraError: The device offers no pictures.
+        CameraError: The device provides no pictures, or their aspect ratio differs from the requested one.
     """
     token, stream_size = device.picture_profile, (device.width, device.height)
     uri = await _uri(client, "GetSnapshotUri", ProfileToken=token)
@@ -139,20 +139,20 @@ async def open_pictures(
     stream_url = _with_port(client.address.pin_rtsp(stream_uri), rtsp_port) if stream_uri else ""
     if not snapshot_path and not stream_url:
         raise CameraReplyError(
-            f"The camera at {client.address} reports neither a snapshot nor a stream address. Check its video settings."
+            f"The camera at {client.address} reports neither a snapshot URL nor a stream URL. Check its video settings."
         )
-    native = stream_size
+    native_size = stream_size
     if snapshot_path:
-        native = await _snapshot_size(client, snapshot_path)
-    width, height = _frame_size(native, width, height)
+        native_size = await _snapshot_size(client, snapshot_path)
+    width, height = _frame_size(native_size, width, height)
     return OnvifPictures(
-        client.http, credentials, snapshot_path=snapshot_path, stream_url=stream_url, native=native, stream_size=stream_size,
-        width=width, height=height, stream=stream, latency_s=latency_s,
+        client.http, credentials, snapshot_path=snapshot_path, stream_url=stream_url, native_size=native_size,
+        stream_size=stream_size, width=width, height=height, stream=stream, latency_s=latency_s,
     )  # fmt: skip
 
 
 async def _uri(client: OnvifClient, operation: str, **arguments: Any) -> str:
-    """Return an address that the device reports; empty if it reports none."""
+    """Return a URL that the device reports; empty if it reports none."""
     try:
         reply = await client.call("media", operation, **arguments)
     except (OnvifFaultError, CameraReplyError):
@@ -161,26 +161,26 @@ async def _uri(client: OnvifClient, operation: str, **arguments: Any) -> str:
 
 
 async def _snapshot_size(client: OnvifClient, path: str) -> tuple[int, int]:
-    for left in (1, 0):
+    for retries_left in (1, 0):
         try:
             image = decode_jpeg((await client.http.get(path)).body)
         except PictureError:
-            if not left:
+            if not retries_left:
                 raise
         else:
             return int(image.shape[1]), int(image.shape[0])
     raise AssertionError("the last attempt returns or raises")
 
 
-def _frame_size(native: tuple[int, int], width: int | None, height: int | None) -> tuple[int, int]:
+def _frame_size(native_size: tuple[int, int], width: int | None, height: int | None) -> tuple[int, int]:
     if width is None and height is None:
-        return native
-    width = width or round((height or 0) * native[0] / native[1])
-    height = height or round(width * native[1] / native[0])
-    if abs(width * native[1] - height * native[0]) > max(native):
+        return native_size
+    width = width or round((height or 0) * native_size[0] / native_size[1])
+    height = height or round(width * native_size[1] / native_size[0])
+    if abs(width * native_size[1] - height * native_size[0]) > max(native_size):
         raise PictureError(
-            f"The camera's pictures have {native[0]}x{native[1]} pixels, whose aspect ratio differs from {width}x{height}. "
-            "Leave ?height=... out.",
+            f"The camera's picture size is {native_size[0]}x{native_size[1]}, which does not have the aspect ratio of "
+            f"{width}x{height}. Remove ?height=... from the camera's options.",
             "size",
         )
     return width, height

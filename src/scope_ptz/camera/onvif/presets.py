@@ -1,4 +1,4 @@
-"""Access the presets of an ONVIF device by name. The device identifies them by token, and some devices garble names."""
+"""Access the presets of an ONVIF device by name. Devices identify presets by token, and some garble the names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MAX_PRESETS = 512
 """Maximum number of presets to read. Some devices list hundreds of empty ones."""
 
 SAVE_RETRIES = 10
-"""Maximum number of retries to save a preset while the device reports that it is still moving."""
+"""Maximum number of attempts to save a preset again while the device reports that it is still moving."""
 
 
 class OnvifPresets:
@@ -34,16 +34,16 @@ class OnvifPresets:
         self._client, self._profile = client, profile
 
     async def tokens(self) -> dict[str, str]:
-        """Return tokens by name, in the device's order. If two presets share a name, the second name gets its token appended."""
-        listed = await self._client.call("ptz", "GetPresets", ProfileToken=self._profile)
-        found: dict[str, str] = {}
-        for preset in list(listed or ())[:MAX_PRESETS]:
+        """Return the tokens by preset name, in the device's order. If presets share a name, the token is appended to later ones."""
+        presets = await self._client.call("ptz", "GetPresets", ProfileToken=self._profile)
+        tokens: dict[str, str] = {}
+        for preset in list(presets or ())[:MAX_PRESETS]:
             token = str(preset.token or "")
             if not token:
                 continue
             name = readable_name(preset.Name) or f"Preset {token}"
-            found.setdefault(name if name not in found else f"{name} ({token})", token)
-        return found
+            tokens.setdefault(name if name not in tokens else f"{name} ({token})", token)
+        return tokens
 
     async def token(self, name: str) -> str:
         """Return the token of a preset.
@@ -60,24 +60,24 @@ class OnvifPresets:
         """Save the current position as a preset.
 
         Raises:
-            InputError: The name is not allowed.
+            InputError: The name is invalid.
             CameraError: The device did not save the preset.
         """
         check_preset_name(name)
         arguments = {"ProfileToken": self._profile, "PresetName": name}
         if (token := (await self.tokens()).get(name)) is not None:
             arguments["PresetToken"] = token
-        for left in range(SAVE_RETRIES, -1, -1):
+        for retries_left in range(SAVE_RETRIES, -1, -1):
             try:
                 await self._client.call("ptz", "SetPreset", **arguments)
                 break
             except OnvifFaultError as fault:
-                if not fault.is_any("MovingPTZ") or not left:
+                if not fault.is_any("MovingPTZ") or not retries_left:
                     raise
                 await anyio.sleep(0.1)
         if name not in await self.tokens():
             raise CameraError(
-                f"The camera at {self._client.address} did not save the preset. The account may lack the right to save presets."
+                f"The camera at {self._client.address} did not save the preset. The account may lack permission to save presets."
             )
 
     async def remove(self, name: str) -> None:
@@ -94,8 +94,8 @@ class OnvifPresets:
 
 
 def readable_name(name: object) -> str:
-    """Return a preset's name without unprintable characters. UTF-8 that was read as Latin-1 is repaired."""
+    """Return a preset name without unprintable characters, after repairing UTF-8 that was decoded as Latin-1."""
     text = str(name or "")
-    with suppress(UnicodeError):  # it is already correct, or cannot be repaired
+    with suppress(UnicodeError):  # the text is already correct, or cannot be repaired
         text = text.encode("latin-1").decode("utf-8")
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:60]

@@ -1,4 +1,4 @@
-"""ONVIF coordinate spaces: convert device units to degrees and magnification, and back, with linear scales and tables."""
+"""ONVIF coordinate spaces, with scales and tables that convert between device units and degrees or magnification."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Ends = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ReportedSpace:
-    """A space as the device reports it. A one-dimensional space has no ``y``."""
+    """A coordinate space that a device reports. ``y`` is None for a one-dimensional space."""
 
     uri: str
     x: Ends
@@ -35,7 +35,7 @@ class ReportedSpace:
 
 @dataclass(frozen=True, slots=True)
 class LinearScale:
-    """A linear map between units of the device and values such as degrees.
+    """A linear conversion between device units and values such as degrees.
 
     Attributes:
         units: The ends of the device's range, in increasing order.
@@ -47,9 +47,9 @@ class LinearScale:
 
     def __post_init__(self) -> None:
         if not (all(map(math.isfinite, (*self.units, *self.values))) and self.units[0] < self.units[1]):
-            raise ValueError("a scale needs finite ends that differ")
+            raise ValueError("a linear scale requires finite ends, with units in increasing order")
         if self.values[0] == self.values[1]:
-            raise ValueError("the values of a scale must differ at its ends")
+            raise ValueError("a linear scale requires different values at its two ends")
 
     def to_value(self, units: float) -> float:
         """Convert device units to a value."""
@@ -67,7 +67,7 @@ class LinearScale:
 
 @dataclass(frozen=True, slots=True)
 class PanTiltSpace:
-    """A space of pan and tilt positions, with its scales to degrees (right and up are positive)."""
+    """A space for pan and tilt positions, with scales that convert them to degrees (right and up are positive)."""
 
     uri: str
     pan: LinearScale
@@ -76,7 +76,7 @@ class PanTiltSpace:
 
 @dataclass(frozen=True, slots=True)
 class ZoomSpace:
-    """A space of zoom positions, described by a table.
+    """A space for zoom positions, with a table that converts them to magnification.
 
     Attributes:
         uri: The URI of the space.
@@ -91,7 +91,9 @@ class ZoomSpace:
     def __post_init__(self) -> None:
         pairs = list(zip(self.rows, self.rows[1:], strict=False))
         if not pairs or any(b[0] <= a[0] or b[1] <= a[1] or b[2] >= a[2] for a, b in pairs):
-            raise ValueError("a zoom space needs two or more rows, with increasing magnification and decreasing field of view")
+            raise ValueError(
+                "a zoom space requires at least two rows, with increasing units and magnification and decreasing field of view"
+            )
 
     @property
     def optics(self) -> Optics:
@@ -106,21 +108,21 @@ class ZoomSpace:
         return _interpolate(zoom, [row[1] for row in self.rows], [row[0] for row in self.rows])
 
 
-def reported_spaces(described: Any) -> tuple[ReportedSpace, ...]:
-    """Return the usable spaces from a list in a reply. Spaces with empty ranges, which some devices report, are omitted."""
-    found = []
-    for each in described or ():
-        x, y = ends_of(each.XRange), ends_of(getattr(each, "YRange", None))
-        if each.URI and x is not None and (getattr(each, "YRange", None) is None or y is not None):
-            found.append(ReportedSpace(str(each.URI), x, y))
-    return tuple(found)
+def reported_spaces(reported: Any) -> tuple[ReportedSpace, ...]:
+    """Parse a list of spaces in a reply. Spaces with empty ranges, which some devices report, are omitted."""
+    spaces = []
+    for space in reported or ():
+        x, y = parse_range(space.XRange), parse_range(getattr(space, "YRange", None))
+        if space.URI and x is not None and (getattr(space, "YRange", None) is None or y is not None):
+            spaces.append(ReportedSpace(str(space.URI), x, y))
+    return tuple(spaces)
 
 
-def ends_of(described: Any) -> Ends | None:
-    """Return the ends of a range in a reply; None if the range is empty."""
-    if described is None or described.Min is None or described.Max is None:
+def parse_range(reported: Any) -> Ends | None:
+    """Parse a range in a reply. Return None if it is missing, invalid or empty."""
+    if reported is None or reported.Min is None or reported.Max is None:
         return None
-    low, high = float(described.Min), float(described.Max)
+    low, high = float(reported.Min), float(reported.Max)
     return (low, high) if math.isfinite(low) and math.isfinite(high) and low < high else None
 
 

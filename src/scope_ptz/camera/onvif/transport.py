@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.http import DeviceHttp
 
 FAULT_STATUSES = (400, 403, 500)
-"""HTTP status codes of replies whose body is a SOAP fault, which is more specific than the status."""
+"""HTTP status codes of replies that may contain a SOAP fault, which is more specific than the status."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class SoapReply:
 
 
 class PinnedTransport:
-    """A transport for zeep. Every message goes to the configured host and port; redirects are refused.
+    """A zeep transport that sends every message to the configured host and port, and rejects redirects.
 
     Args:
         http: The HTTP connection to the device.
@@ -44,47 +44,47 @@ class PinnedTransport:
         self._http = http
 
     async def post_xml(self, address: str, envelope: Any, headers: Mapping[str, str]) -> SoapReply:
-        """Send a message once and return the reply. Its authentication header is valid only once, so a retry needs a new message.
+        """Send a message and return the reply. The message is not resent, because its authentication header is valid only once.
 
         Raises:
-            CameraError: One of the errors of ``camera.network.errors``.
+            CameraError: One of the errors in ``camera.network.errors``.
         """
         content = to_bytes(envelope)
         reply = await self._http.post(pinned_path(self._http, address), content, headers, repeat=False, accept=FAULT_STATUSES)
-        return SoapReply(reply.status, _readable(reply.body), {"Content-Type": reply.content_type or "text/xml"})
+        return SoapReply(reply.status, _replace_invalid_utf8(reply.body), {"Content-Type": reply.content_type or "text/xml"})
 
     async def aclose(self) -> None:
         """Do nothing, because the camera closes the HTTP client."""
 
 
 def pinned_path(http: DeviceHttp, address: str) -> str:
-    """Return the path and query of an address that the device reported, rewritten to the configured host.
+    """Return the path and query of a URL that the device reported, for use with the configured host.
 
     Raises:
-        ForeignAddressError: It is not an HTTP address.
+        ForeignAddressError: It is not an HTTP URL.
     """
     parts = urlsplit(http.address.pin_http(address))
     return f"{parts.path}?{parts.query}" if parts.query else parts.path
 
 
 def to_bytes(envelope: Any) -> bytes:
-    """Serialise a message."""
+    """Serialise a message to XML."""
     from lxml import etree
 
     return bytes(etree.tostring(envelope, xml_declaration=True, encoding="utf-8"))
 
 
 def import_onvif() -> Any:
-    """Import ``onvif-zeep-async``, and undo the changes that its import makes to logging.
+    """Import ``onvif-zeep-async`` without the changes that the import makes to logging.
 
     Raises:
-        ConfigError: It is not installed.
+        ConfigError: ``onvif-zeep-async`` is not installed.
     """
     try:
         with _unchanged_logging():
             import onvif.client
     except ImportError:
-        raise ConfigError("ONVIF needs onvif-zeep-async. Install it with: pip install 'scope-ptz[camera]'") from None
+        raise ConfigError("ONVIF requires onvif-zeep-async. Install it with: pip install 'scope-ptz[camera]'") from None
     return onvif.client
 
 
@@ -96,22 +96,22 @@ def _unchanged_logging() -> Iterator[None]:
         yield
     finally:
         root.setLevel(level)
-        for handler in [each for each in root.handlers if each not in handlers]:
+        for handler in [candidate for candidate in root.handlers if candidate not in handlers]:
             root.removeHandler(handler)
 
 
 @contextmanager
 def unchanged_proxies() -> Iterator[None]:
-    """Return a context that restores the environment variables that the ONVIF client deletes, because other code uses them."""
-    kept = {name: os.environ[name] for name in ("http_proxy", "https_proxy") if name in os.environ}
+    """Return a context manager that restores the proxy variables that the ONVIF client deletes, because other code uses them."""
+    saved = {name: os.environ[name] for name in ("http_proxy", "https_proxy") if name in os.environ}
     try:
         yield
     finally:
-        os.environ.update(kept)
+        os.environ.update(saved)
 
 
-def _readable(body: bytes) -> bytes:
-    """Return a reply in which invalid UTF-8 is replaced, because some devices garble preset names."""
+def _replace_invalid_utf8(body: bytes) -> bytes:
+    """Replace invalid UTF-8 in a reply, because some devices garble preset names."""
     if b"encoding=" in body[:100] and b"utf-8" not in body[:100].lower():
         return body
     try:

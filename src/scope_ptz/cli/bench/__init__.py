@@ -1,4 +1,4 @@
-"""The commands of ``scope bench``, loaded when one of them is used or listed."""
+"""The ``scope bench`` commands, which are loaded when one of them is used or listed."""
 
 from __future__ import annotations
 

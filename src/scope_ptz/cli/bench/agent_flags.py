@@ -1,4 +1,4 @@
-"""Options of external agents."""
+"""Options for external agents."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 AGENT_PANEL = "External agent"
 DEFAULT_MEMORY_MB, DEFAULT_STEP_S, DEFAULT_RUN_S = 4_096, 300.0, 1_800.0
-"""Default limits of external agents: those of ``AgentOptions``, whose module is imported only by evaluations."""
+"""Default limits on external agents, copied from ``AgentOptions``, whose module only evaluations import."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class AgentFlags:
-    """Options of an external agent."""
+    """Options for an external agent."""
 
     agent: Annotated[
         str,
@@ -36,7 +36,7 @@ class AgentFlags:
         typer.Option(
             "--agent-command",
             metavar="COMMAND",
-            help="Program that speaks the agent protocol on stdin and stdout, with its arguments. No shell is involved.",
+            help="Command line of a program that speaks the agent protocol on stdin and stdout. It is run without a shell.",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = None
@@ -62,7 +62,7 @@ class AgentFlags:
         bool,
         typer.Option(
             "--sandbox",
-            help="Run the agent without the network and without the files of the dataset (bubblewrap, Linux only).",
+            help="Run the agent without access to the network and the dataset's files (bubblewrap, Linux only).",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = False
@@ -71,7 +71,7 @@ class AgentFlags:
         typer.Option(
             "--agent-memory-mb",
             min=64,
-            help="Maximum memory of the agent's processes together, in MB.",
+            help="Maximum total memory of the agent's processes, in MB.",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = DEFAULT_MEMORY_MB
@@ -80,7 +80,7 @@ class AgentFlags:
         typer.Option(
             "--agent-step-s",
             min=0.1,
-            help="Maximum seconds that the agent takes for one step.",
+            help="Maximum time in seconds that the agent may take per step.",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = DEFAULT_STEP_S
@@ -89,7 +89,7 @@ class AgentFlags:
         typer.Option(
             "--agent-run-s",
             min=0.1,
-            help="Maximum seconds that the agent takes in one run, without the time of tools and perception.",
+            help="Maximum time in seconds that the agent may take per run, not counting tools and perception.",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = DEFAULT_RUN_S
@@ -97,19 +97,19 @@ class AgentFlags:
         bool,
         typer.Option(
             "--agent-in-process",
-            help="Run the agent inside SCOPE, for debugging. It can reach the answers, and its results are labelled so.",
+            help="Run the agent inside SCOPE, for debugging. It can access the answers, and its results are labelled accordingly.",
             rich_help_panel=AGENT_PANEL,
         ),
     ] = False
 
 
 def agent_options(flags: AgentFlags) -> AgentOptions:
-    """Return how an external agent is started and limited."""
+    """Return the options for starting an external agent."""
     from scope_ptz.bench.agents.launch import AgentOptions
     from scope_ptz.bench.agents.planner import AgentTimes
 
     if flags.agent_command is not None and not flags.agent_command.strip():
-        raise InputError("--agent-command is empty. Name a program that speaks the agent protocol.")
+        raise InputError("--agent-command is empty. Give the command line of a program that speaks the agent protocol.")
     return AgentOptions(
         command=flags.agent_command or "",
         python=flags.agent_python,

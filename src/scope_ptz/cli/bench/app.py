@@ -1,4 +1,4 @@
-"""The commands of ``scope bench``, grouped as in its help."""
+"""The ``scope bench`` app, with its commands grouped as in the help."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ bench_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @bench_app.callback(help=HELP)
 def _bench() -> None:
-    """Group the benchmark commands."""
+    """Define the group of benchmark commands."""
 
 
 def schema() -> None:

@@ -39,8 +39,8 @@ def audit_make(
     from scope_ptz.bench.program_runner import ProgramRunner
     from scope_ptz.bench.tasks.files import digest_of
     from scope_ptz.bench.tasks.splits import load_split
-    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
-    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.factory.validation_perception import TruthCache, ground_truth_tools
+    from scope_ptz.factory.worlds import open_worlds
     from scope_ptz.taskgen.audit_questions import write_question
     from scope_ptz.taskgen.facts.robust import TASK_CAMERA
     from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, QuestionDraw, draw_questions
@@ -49,8 +49,8 @@ def audit_make(
     chosen = draw_questions(rows, number, seed)
     if not chosen:
         raise InputError("None of these tasks expects an answer, so there is nothing to ask. Select other tasks with --tasks.")
-    worlds = worlds_of([task for _, task in chosen])
-    make_context = ground_truth_tools(worlds, CachedTruth())
+    worlds = open_worlds([task for _, task in chosen])
+    make_context = ground_truth_tools(worlds, TruthCache())
     runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     try:
         out.mkdir(parents=True)
@@ -89,7 +89,7 @@ def audit_score(
     if as_json:
         put_json(audit.as_dict())
         return
-    agreeing, total = audit.share()
+    agreeing, total = audit.agreement_counts()
     put(f"{agreeing} of {total} answers agree")
     for row in audit.rows:
         if row.outcome != "agrees":

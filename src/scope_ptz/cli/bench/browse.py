@@ -1,4 +1,4 @@
-"""``scope bench browse``: list tasks, or show one with its reference run and evidence."""
+"""``scope bench browse``: list tasks, or show a task with its reference run and evidence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import category_named
+from scope_ptz.cli.bench.flags import check_category
 from scope_ptz.cli.exit import put
 from scope_ptz.errors import InputError
 
@@ -28,9 +28,9 @@ def browse(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start view and of the evidence.")] = None,
 ) -> None:
     """List tasks, or show one: instruction, expected answer, reference run, and the frames with its evidence."""
-    rows = _matching(_tasks(tasks), category_named(category), scene)
+    rows = _matching_tasks(_tasks(tasks), check_category(category), scene)
     if task:
-        chosen = _with_id(rows, task)
+        chosen = _task_with_id(rows, task)
     elif at_random:
         chosen = random.Random(seed).choice(rows)
     else:
@@ -38,10 +38,10 @@ def browse(
             put(f"{row.id:<52} {row.instruction}")
         return
     from scope_ptz.factory.validation_perception import ground_truth_tools
-    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.factory.worlds import open_worlds
     from scope_ptz.taskgen.task_sheet import reference_run, summary, write_frames
 
-    worlds = worlds_of([chosen])
+    worlds = open_worlds([chosen])
     (world,) = worlds.values()
     for line in summary(chosen, [row for row in _tasks(tasks) if row.paraphrase_of == chosen.id]):
         put(line)
@@ -58,14 +58,14 @@ def _tasks(name: str) -> tuple[Task, ...]:
     return load_split(name) if name else (*load_split("all"), *load_split("unseen"))
 
 
-def _matching(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
+def _matching_tasks(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
     matches = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
     if not matches:
         raise InputError("No task matches. Remove --category or --scene, or select other tasks with --tasks.")
     return matches
 
 
-def _with_id(tasks: list[Task], name: str) -> Task:
+def _task_with_id(tasks: list[Task], name: str) -> Task:
     exact = [row for row in tasks if row.id == name]
     matches = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
     if not matches:

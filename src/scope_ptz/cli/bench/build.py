@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 gold_app = typer.Typer(help="Make and check gold runs: runs with one known fault each.", no_args_is_help=True)
 UNSEEN_VARIATIONS = (7, 8, 9)
-"""Numbers of the scene variations in the published unseen split."""
+"""Numbers of the scene variations that the published unseen split uses."""
 
 
 def build(
     out: Annotated[Path, typer.Option("--out", help="File for the tasks (JSONL); with --all, a folder.")],
-    further: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
+    more_seeds: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
     scene: SceneNames = None,
     seed: Annotated[
         int, typer.Option(help="Seed for every random choice; a different seed gives a different dataset of the same scenes.")
@@ -48,7 +48,7 @@ def build(
     from scope_ptz.taskgen.dataset.build import missing_tasks_message
     from scope_ptz.taskgen.dataset.unseen import build_unseen
 
-    numbers = variation_numbers(seeds, further)
+    numbers = variation_numbers(seeds, more_seeds)
     quotas = _quotas(share)
     if card is not None and not whole:
         raise InputError("A card describes a whole dataset. Use --card together with --all, or run 'scope bench card'.")
@@ -85,11 +85,11 @@ def _build_all(
     return 0 if is_valid else FAILED
 
 
-def variation_numbers(seeds: list[int] | None, further: list[int] | None) -> tuple[int, ...]:
+def variation_numbers(seeds: list[int] | None, more_seeds: list[int] | None) -> tuple[int, ...]:
     """Return the numbers given after ``--seeds``. The option need not be repeated for each number. Raises ``InputError``."""
-    if further and not seeds:
-        raise InputError(f"Unexpected argument '{further[0]}'. Give the numbers of scene variations after --seeds.")
-    numbers = (*(seeds or ()), *(further or ()))
+    if more_seeds and not seeds:
+        raise InputError(f"Unexpected argument '{more_seeds[0]}'. Give the numbers of scene variations after --seeds.")
+    numbers = (*(seeds or ()), *(more_seeds or ()))
     if any(not 1 <= number < 10**9 for number in numbers):
         raise InputError("The numbers of scene variations must be whole numbers from 1 to 999999999.")
     return tuple(dict.fromkeys(numbers))
@@ -108,7 +108,7 @@ def card(
     """Write the card of a dataset from its files."""
     from scope_ptz.bench.tasks.splits import published_folder
     from scope_ptz.taskgen.dataset.card import Dataset
-    from scope_ptz.taskgen.dataset.card import card as card_text
+    from scope_ptz.taskgen.dataset.card import render_card as card_text
 
     folder = data or published_folder()
     if out is not None:
@@ -119,9 +119,9 @@ def card(
 
 
 def write_card(folder: Path, out: Path) -> None:
-    """Write the card of a dataset folder."""
+    """Write the dataset card for a dataset folder."""
     from scope_ptz.taskgen.dataset.card import Dataset
-    from scope_ptz.taskgen.dataset.card import card as card_text
+    from scope_ptz.taskgen.dataset.card import render_card as card_text
 
     text = card_text(Dataset.read(folder))
     try:
@@ -190,7 +190,7 @@ def gold_check(
 
     published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     result = confusion_matrix(runs)
-    worse = result.worse_than(published)
+    worse = result.is_worse_than(published)
     if as_json:
         put_json({**result.as_dict(), "published": published, "worse": worse})
     else:
@@ -204,9 +204,9 @@ def gold_check(
 def _gold_runs(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
     import anyio
 
-    from scope_ptz.factory.validation_perception import CachedTruth, ground_truth_tools
-    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.factory.validation_perception import TruthCache, ground_truth_tools
+    from scope_ptz.factory.worlds import open_worlds
     from scope_ptz.taskgen.gold.reference_runs import make_gold_runs
 
-    worlds = worlds_of(tasks)
-    return anyio.run(make_gold_runs, tasks, worlds, ground_truth_tools(worlds, CachedTruth()), seed)
+    worlds = open_worlds(tasks)
+    return anyio.run(make_gold_runs, tasks, worlds, ground_truth_tools(worlds, TruthCache()), seed)

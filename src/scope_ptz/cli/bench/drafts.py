@@ -36,7 +36,7 @@ def drafts(
     from scope_ptz.factory.worlds import open_scenes
     from scope_ptz.taskgen.facts.near_duplicates import KnownTasks
     from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
-    from scope_ptz.taskgen.generating.run_draft_file import accept_drafts, read_run_drafts
+    from scope_ptz.taskgen.generating.run_draft_file import read_run_drafts, validate_run_drafts
 
     rows, ledger = read_run_drafts(file), DraftLedger(out)
     before = len(ledger.entries)
@@ -49,7 +49,7 @@ def drafts(
             return None
 
     async def work() -> None:
-        await accept_drafts(rows, open_scene, task_validator, known_tasks, ledger)
+        await validate_run_drafts(rows, open_scene, task_validator, known_tasks, ledger)
 
     try:
         anyio.run(work)
@@ -67,7 +67,7 @@ def drafts(
         )
     else:
         _print_entries(rows, ledger, before)
-        put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
+        put(f"Accepted {len(ledger.kept)} of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     return 0 if ledger.kept else FAILED
 
 

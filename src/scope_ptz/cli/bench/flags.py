@@ -1,4 +1,4 @@
-"""Options that several benchmark commands share."""
+"""Options shared by several benchmark commands."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class SelectionFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class EvaluationFlags:
-    """Options that control how tasks are run and where the log is written."""
+    """Options for running tasks and writing the log."""
 
     concurrency: Annotated[
         int | None,
@@ -93,7 +93,7 @@ class EvaluationFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class SingleRunFlags(EvaluationFlags):
-    """Options of a single evaluation, including those that a sweep over several pairs does not have."""
+    """Options for a single evaluation, including those that are not available for sweeps over several pairs."""
 
     pictures: Annotated[
         bool,
@@ -141,28 +141,28 @@ class SingleRunFlags(EvaluationFlags):
     ] = None
 
 
-def evaluation_options(selection: SelectionFlags, running: EvaluationFlags, models: ModelOptions) -> EvaluationOptions:
-    """Return the evaluation options that every command that evaluates has in common."""
+def evaluation_options(selection: SelectionFlags, evaluation: EvaluationFlags, models: ModelOptions) -> EvaluationOptions:
+    """Convert the flags that all evaluation commands share to evaluation options."""
     from scope_ptz.factory.evaluation_options import EvaluationOptions
 
     return EvaluationOptions(
         models=models,
-        out=running.out,
+        out=evaluation.out,
         tasks=selection.split,
         categories=tuple(selection.category or ()),
         scenes=tuple(selection.scene or ()),
         limit=selection.limit,
         epochs=selection.epochs,
-        seed=running.seed,
-        max_steps=running.max_steps,
-        time_s=running.time_budget,
-        concurrency=running.concurrency,
-        latency=running.latency,
+        seed=evaluation.seed,
+        max_steps=evaluation.max_steps,
+        time_s=evaluation.time_budget,
+        concurrency=evaluation.concurrency,
+        latency=evaluation.latency,
     )
 
 
 def judge_settings(flags: JudgeFlags, repeats: int = 1) -> JudgeSettings:
-    """Return the judge settings from the options."""
+    """Convert the judge flags to judge settings."""
     from scope_ptz.factory.evaluation_options import JudgeSettings
 
     return JudgeSettings(
@@ -175,7 +175,7 @@ def judge_settings(flags: JudgeFlags, repeats: int = 1) -> JudgeSettings:
     )
 
 
-def price_of(text: str | None) -> Price | None:
+def parse_price(text: str | None) -> Price | None:
     """Parse ``IN,OUT`` as a price. Raises ``InputError``."""
     if text is None:
         return None
@@ -187,7 +187,7 @@ def price_of(text: str | None) -> Price | None:
         amounts = []
     if len(amounts) != 2 or min(amounts) < 0:
         raise InputError(
-            f"--price must be two amounts, for input and output tokens, in US dollars per million (0.15,0.60); got '{text}'."
+            f"--price must be two prices in US dollars per million input and output tokens, such as 0.15,0.60; got '{text}'."
         )
     return Price(*amounts)
 
@@ -199,8 +199,8 @@ def published_tasks() -> list[Task]:
     return list(published().values())
 
 
-def category_named(name: str) -> str:
-    """Return the name of a category if it exists; an empty name means all. Raises ``InputError`` for an unknown one."""
+def check_category(name: str) -> str:
+    """Return the name of a category, or an empty name for all categories. Raises ``InputError`` for unknown categories."""
     from scope_ptz.bench.engine.run_totals import CATEGORIES
 
     if name and name not in CATEGORIES:

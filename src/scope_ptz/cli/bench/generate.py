@@ -44,7 +44,7 @@ def generate(
     ] = 20,
     temperature: Annotated[float, typer.Option(min=0, max=2, help="Sampling temperature of the model.")] = 0.8,
     seed: Annotated[int, typer.Option(help="Seed for the choice of views and examples, and for the model if it accepts one.")] = 1,
-    timeout: Annotated[float, typer.Option(min=0.1, help="Timeout of one request in seconds, including retries.")] = 300.0,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Timeout in seconds for a request, including retries.")] = 300.0,
 ) -> int:
     """Draft tasks with a language model. Expected answers come from the ground truth; tasks that fail validation are dropped.
 
@@ -60,7 +60,7 @@ def generate(
 
     request = GenerationRequest(
         scene=open_scenes([scene])[scene],
-        requested=_requested(want or [], number),
+        requested=_requested_counts(want or [], number),
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
         seed=seed,
@@ -73,7 +73,7 @@ def generate(
     finally:
         tasks, review = ledger.finish()
     missing = ledger.missing(request.requested)
-    put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
+    put(f"Accepted {len(ledger.kept)} of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     if missing:
         names = ", ".join(f"{n} of {name}" for name, n in missing.items())
         print_error(f"still missing: {names}. Run the same command again with a higher --requests.")
@@ -87,15 +87,15 @@ async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endp
     from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
 
     options = JudgeModelOptions(temperature=temperature, seed=request.seed)
-    server = JudgeServer(await _with_model(endpoint, model), options)
+    server = JudgeServer(await _select_model(endpoint, model), options)
     try:
         await generate_tasks(request, server, task_validator(request.scene), ledger, print_error)
     finally:
         await server.close()
 
 
-def _requested(want: list[str], number: int) -> dict[Category, int]:
-    """Return the number of tasks of each category: as given in ``want``, or ``number`` in the published proportions."""
+def _requested_counts(want: list[str], number: int) -> dict[Category, int]:
+    """Return the number of tasks per category: as given in ``want``, or ``number`` tasks in the published proportions."""
     from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
     if not want:
@@ -106,8 +106,8 @@ def _requested(want: list[str], number: int) -> dict[Category, int]:
         return {name: n for name, n in counts.items() if n}
     counts_by_category: dict[Category, int] = {}
     for entry in want:
-        written, _, count = entry.partition("=")
-        category = next((name for name in QUOTAS if name == written), None)
+        given, _, count = entry.partition("=")
+        category = next((name for name in QUOTAS if name == given), None)
         if category is None or not count.isdecimal() or not int(count):
             raise InputError(
                 f"--want must have the form CATEGORY=N, for example counting=5; got '{entry}'. "
@@ -129,8 +129,8 @@ def _endpoint(url: str, key_file: Path | None, timeout_s: float) -> Endpoint:
         raise ConfigError(f"--url {url}: {error.errors(include_url=False, include_input=False)[0]['msg']}.") from None
 
 
-async def _with_model(endpoint: Endpoint, model: str) -> Endpoint:
-    """Return the endpoint with the given model, or else the only one that the server lists."""
+async def _select_model(endpoint: Endpoint, model: str) -> Endpoint:
+    """Return the endpoint with the given model or, if none is given, the only model that the server lists."""
     from scope_ptz.endpoints.catalogue import find_api
     from scope_ptz.endpoints.failures import ServerFailure
 
@@ -200,7 +200,7 @@ def import_tasks(
 
 
 def known_scenes(folder: Path | None, mapping: Path | None) -> SceneNames:
-    """Return the scenes of a folder and the installed ones, with a mapping of their names.
+    """Return the scenes in a folder and the installed scenes, with a mapping of their names.
 
     Raises:
         InputError: The folder does not exist, or the mapping cannot be read.

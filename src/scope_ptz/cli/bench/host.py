@@ -1,4 +1,4 @@
-"""``scope bench keygen`` and ``scope bench host``: evaluate agents of others on private tasks, and sign the results."""
+"""``scope bench keygen`` and ``scope bench host``: evaluate other people's agents on private tasks, and sign the results."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def keygen(
     as_json: JsonOption = False,
 ) -> None:
     """Create the Ed25519 key with which a host signs results. The private key is written to a file and never shown."""
-    with _naming_extras():
+    with _hosting_packages():
         from scope_ptz.bench.signatures.keys import fingerprint, generate_key, public_path, raw_bytes
 
-        print_of_key = fingerprint(raw_bytes(generate_key(out)))
+        key_fingerprint = fingerprint(raw_bytes(generate_key(out)))
     if as_json:
-        put_json({"private_key": str(out), "public_key": str(public_path(out)), "fingerprint": print_of_key})
+        put_json({"private_key": str(out), "public_key": str(public_path(out)), "fingerprint": key_fingerprint})
         return
-    put(f"{print_of_key}  {public_path(out)}")
+    put(f"{key_fingerprint}  {public_path(out)}")
     put(public_path(out).read_text("ascii").rstrip())
     sys.stderr.write(f"The private key is {out}. Keep it secret: whoever has it can sign results in your name.\n")
 
@@ -83,13 +83,13 @@ def host(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Evaluate agents that connect over HTTP or MCP, without giving them tasks' answers, and sign the results.
+    """Evaluate agents that connect over HTTP or MCP, without revealing the answers to the tasks, and sign the results.
 
     Each participant gets its own task order, log and submission. A task can be attempted once. Running the same command again
     resumes after an interruption. See docs/hosting.md.
     """
-    with _naming_extras():
-        from scope_ptz.serve.bench_host.host import Host, locked, participants_file
+    with _hosting_packages():
+        from scope_ptz.serve.bench_host.host import Host, lock_folder, participants_file
         from scope_ptz.serve.bench_host.wire import EvaluationSettings, PerceptionSettings
         from scope_ptz.serve.security.access import Access
         from scope_ptz.serve.security.tokens import TokenFile
@@ -109,14 +109,14 @@ def host(
         step_s=step_time,
         task_s=task_time,
     )
-    with locked(out):
+    with lock_folder(out):
         tokens = TokenFile(participants_file(out))
         _register(tokens, participant or [], as_json=as_json)
         if not tokens.tokens:
             raise InputError("The host has no participants. Register one with --participant NAME.")
 
         async def work() -> None:
-            opened = Host(out, settings, key, absent=close, notify=lambda line: _say(line, as_json=as_json))
+            opened = Host(out, settings, key, absent=close, notify=lambda line: _print_result(line, as_json=as_json))
             runs = await opened.check()
             if close:
                 await _close(opened)
@@ -131,9 +131,9 @@ async def _serve(opened: Host, access: Access, port: int, runs: int, until_done:
 
     from scope_ptz.serve.bench_host.application import serve_host
 
-    async with serve_host(opened, access, port=port) as bound:
-        shown = f"[{access.host}]" if ":" in access.host else access.host
-        url, names = f"http://{shown}:{bound}", [token.name for token in opened.tokens.tokens]
+    async with serve_host(opened, access, port=port) as bound_port:
+        address = f"[{access.host}]" if ":" in access.host else access.host  # IPv6 addresses need brackets.
+        url, names = f"http://{address}:{bound_port}", [token.name for token in opened.tokens.tokens]
         if as_json:
             put_json({"url": url, "participants": names, "runs": runs})
         else:
@@ -157,7 +157,7 @@ async def _close(opened: Host) -> None:
 
 
 def _register(tokens: TokenFile, names: list[str], *, as_json: bool) -> None:
-    """Register participants that are not registered yet, and print each new token once."""
+    """Register new participants, and print their tokens once."""
     for name in dict.fromkeys(names):
         if any(token.name == name for token in tokens.tokens):
             continue
@@ -168,7 +168,7 @@ def _register(tokens: TokenFile, names: list[str], *, as_json: bool) -> None:
             put(f"Token of {name} (it cannot be shown again): {secret}")
 
 
-def _say(line: str, *, as_json: bool) -> None:
+def _print_result(line: str, *, as_json: bool) -> None:
     if as_json:
         put_json({"finished": line})
     else:
@@ -177,11 +177,13 @@ def _say(line: str, *, as_json: bool) -> None:
 
 
 @contextmanager
-def _naming_extras() -> Iterator[None]:
-    """Convert the error about a missing package to a message that names the extras. Raises ``InputError``."""
+def _hosting_packages() -> Iterator[None]:
+    """Convert the error for a missing package to an ``InputError`` that states how to install the package."""
     try:
         yield
     except ModuleNotFoundError as error:
         if (package := (error.name or "").split(".")[0]) not in _PACKAGES:
             raise
-        raise InputError(f"Hosting needs {package}. Install it with: pip install 'scope-ptz[bench,serve]'.") from error
+        raise InputError(
+            f"Hosting requires the package {package}. Install it with: pip install 'scope-ptz[bench,serve]'."
+        ) from error

@@ -1,4 +1,4 @@
-"""``scope bench human``: record a human baseline, with the same tools and checks as for models."""
+"""``scope bench human``: record a human baseline with the same tools and checks as for models."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import SPLITS, category_named
+from scope_ptz.cli.bench.flags import SPLITS, check_category
 from scope_ptz.cli.exit import put
 from scope_ptz.errors import InputError, OutputError, TraceError
 
@@ -38,7 +38,7 @@ def human(
     """
     from scope_ptz.bench.tasks.splits import load_split
 
-    category = category_named(category)
+    category = check_category(category)
     tasks = [task for task in load_split(split) if category in ("", task.category)]
     if not tasks:
         raise InputError("No task matches. Leave out --category, or name another --split.")
@@ -46,16 +46,16 @@ def human(
 
 
 class _Session:
-    """A session in which one person does tasks. Each finished task has a folder with its trace."""
+    """A session in which a person does tasks. Each finished task has a folder with its trace."""
 
     def __init__(self, tasks: Sequence[Task], split: str, out: Path, by: str) -> None:
         self.tasks, self.split, self.out, self.by = tasks, split, out, by
-        from scope_ptz.factory.worlds import worlds_of
+        from scope_ptz.factory.worlds import open_worlds
 
-        self.worlds = worlds_of(tasks)
+        self.worlds = open_worlds(tasks)
 
     def run(self, limit: int | None) -> None:
-        """Go through the tasks that are not finished yet."""
+        """Let the person do the tasks that are not finished yet."""
         from scope_ptz.bench.human_agent import HELP
 
         remaining = [task for task in self.tasks if self._trace(task) is None]
@@ -82,10 +82,10 @@ class _Session:
         return trace if trace.ended is not None else None
 
     def _do_task(self, task: Task) -> TaskLeftError | None:
-        """Let the person do one task. The run is deleted if the person leaves it unfinished.
+        """Let the person do one task. If the person leaves the task unfinished, its run is deleted.
 
         Returns:
-            The error with which the person left the task; None if the task is finished.
+            The error that states how the person left the task; None if the task is finished.
         """
         import anyio
 
@@ -136,7 +136,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Task
     """Record a run in which a person is both planner and perception.
 
     Returns:
-        The error with which the person left the task; None if the task is finished.
+        The error that states how the person left the task; None if the task is finished.
     """
     from scope_ptz.agent.loop import Agent
     from scope_ptz.agent.records import Budgets, RunLabels
@@ -160,4 +160,4 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Task
     agent = Agent(planner, camera, perception, RunFolder(folder), budgets=Budgets(max_steps=MAX_STEPS), labels=labels)
     with TraceWriter(folder / "trace.jsonl") as trace:
         await agent.run(task.instruction, listener=trace)
-    return planner.left
+    return planner.exit_error

@@ -56,7 +56,7 @@ def rescore(
 
     settings = judge_settings(judge, repeats)
     if not checks and not settings.requested and not decides:
-        raise InputError("There is nothing to score with. Give a judge (--judge-url), the checks (--checks), or both.")
+        raise InputError("No scorer is selected. Give a judge (--judge-url), the checks (--checks), or both.")
 
     async def work() -> JudgementTally:
         total = JudgementTally()
@@ -94,21 +94,21 @@ def rescore(
 
 
 def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> list[str]:
-    """Describe the new judgements of a log."""
+    """Describe the new judgements in a log."""
     if judge is None:
         return []
     return [f"{tally.total} judgement{'' if tally.total == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
 
 
 def judge_failure(tally: JudgementTally) -> str:
-    """Return a sentence about the judgements for which the judge's server failed."""
+    """Return a sentence about the judgements that failed because of the judge's server."""
     first = f", the first with: {tally.failure}" if tally.failure else ""
     first = first if first.endswith((".", "!", "?")) else f"{first}."
     return f"{tally.failed} of {tally.total} judgements failed because the judge's server gave no usable reply{first}"
 
 
 def retry_message(tally: JudgementTally) -> str:
-    """Return a message about failed judgements that explains how to retry them."""
+    """Return a message about failed judgements that states how to retry them."""
     return (
         f"{judge_failure(tally)} Nothing is lost; running the same command again retries {'it' if tally.failed == 1 else 'them'}."
     )
@@ -138,8 +138,8 @@ def agree(
 
 
 def raters_in(logs: Sequence[Path]) -> list[Rater]:
-    """Return the raters in these files: judges, checks and people. Raises ``InputError`` or ``TraceError``."""
-    from scope_ptz.bench.judging.agreement import raters_of
+    """Return the raters in logs and gold verdict files. Raises ``InputError`` or ``TraceError``."""
+    from scope_ptz.bench.judging.agreement import collect_raters
     from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
     from scope_ptz.taskgen.gold.judge_results import gold_raters, read_verdicts
 
@@ -149,7 +149,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
         if path not in gold:
             evaluations.append(with_labels(read_log(path), read_labels(labels_file(path))))
     verdicts = [verdict for path in gold for verdict in read_verdicts(path)]
-    return [*raters_of(evaluations), *gold_raters(verdicts)]
+    return [*collect_raters(evaluations), *gold_raters(verdicts)]
 
 
 def judge_gold(
@@ -171,26 +171,26 @@ def judge_gold(
 
     from scope_ptz.factory.rescore import open_requested_judge
     from scope_ptz.factory.validation_perception import ground_truth_tools
-    from scope_ptz.factory.worlds import worlds_of
-    from scope_ptz.taskgen.gold.judge_cases import gold_cases, judge_all, result_lines
-    from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
+    from scope_ptz.factory.worlds import open_worlds
+    from scope_ptz.taskgen.gold.judge_cases import create_cases, judge_all, result_lines
+    from scope_ptz.taskgen.gold.judge_results import judge_results, read_verdicts
 
-    before = read_verdicts(out)
-    cases = gold_cases(gold, tasks, passing, limit, worlds_of, ground_truth_tools)
+    earlier = read_verdicts(out)
+    cases = create_cases(gold, tasks, passing, limit, open_worlds, ground_truth_tools)
 
     async def work() -> JudgementTally:
         server = await open_requested_judge(judge_settings(judge))
         try:
-            return await judge_all(server, cases, before, out, repeats=repeats, concurrency=concurrency, notify=print_error)
+            return await judge_all(server, cases, earlier, out, repeats=repeats, concurrency=concurrency, notify=print_error)
         finally:
             await server.close()
 
     tally = anyio.run(work)
-    judge_results = results(read_verdicts(out))
+    results = judge_results(read_verdicts(out))
     if as_json:
-        put_json([result.as_dict() for result in judge_results], indent=1)
+        put_json([result.as_dict() for result in results], indent=1)
     else:
-        for result in judge_results:
+        for result in results:
             for line in result_lines(result):
                 put(line)
     if tally.failed:

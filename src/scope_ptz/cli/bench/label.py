@@ -28,10 +28,10 @@ _HELP = """c correct   i1-i8 incorrect, with the error mode   u unclear   s skip
 You can add a note: "i6 the tool counted 4, there are 5"."""
 _COMMAND = re.compile(r"\A(?P<verb>[ciusbq?])(?P<mode>[1-8])?(?:\s+(?P<note>.*))?\Z", re.IGNORECASE | re.DOTALL)
 _PICTURE = re.compile(r"\A(?:frames|pictures)/[\w.-]+\.(?:jpg|png)\Z")
-"""Valid names of pictures in run folders. Other names are skipped, so that a log cannot write to other paths."""
+"""Valid picture names in run folders. Other names are skipped, so that a log cannot cause writes to other paths."""
 
 MAX_RUN_CHARS = 40_000
-"""Maximum number of characters of a run that are printed. Longer runs are truncated."""
+"""Maximum number of characters to print for a run. Longer descriptions are shortened."""
 
 
 def label(
@@ -41,7 +41,7 @@ def label(
     seed: Annotated[int, typer.Option(help="Seed for the order in which runs are shown.")] = 1,
     pictures: Annotated[Path | None, typer.Option(help="Folder for the pictures of runs (default: a temporary one).")] = None,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Only print the agreement of the labels with the checks and judges.")
+        bool, typer.Option("--compare", help="Only print the agreement between the labels and the checks and judges.")
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -60,16 +60,16 @@ def label(
         raise InputError("Give your name or initials with --by NAME.")
     trials = sample_trials(read_evaluation(log), sample, seed)
     if pictures is not None:
-        _Labelling(log, by.strip(), trials, pictures).run()
+        _LabelSession(log, by.strip(), trials, pictures).run()
         return
     with tempfile.TemporaryDirectory(prefix="scope-label-") as folder:
-        _Labelling(log, by.strip(), trials, Path(folder)).run()
+        _LabelSession(log, by.strip(), trials, Path(folder)).run()
 
 
 def sample_trials(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
     """Return the runs to label, in random order.
 
-    Runs that never started are left out. So are runs that failed for infrastructure reasons, because resuming the evaluation
+    Runs that never started are excluded. Runs with an infrastructure failure are also excluded, because resuming the evaluation
     replaces them.
     """
     labelable = (trial for trial in evaluation.trials if trial.outcome is not None and trial.headline != "infrastructure")
@@ -96,8 +96,8 @@ def _compare(log: Path, *, as_json: bool) -> None:
         put(line)
 
 
-class _Labelling:
-    """A labelling session: shows the runs one by one, until all are labelled, the user quits, or the input ends."""
+class _LabelSession:
+    """A labelling session, which shows runs one by one until all are labelled, the user quits, or the input ends."""
 
     def __init__(self, log: Path, by: str, trials: Sequence[Trial], pictures: Path) -> None:
         from scope_ptz.bench.judging.human_labels import labels_file, read_labels
@@ -127,12 +127,12 @@ class _Labelling:
     def _show(self, trial: Trial) -> None:
         from scope_ptz.bench.engine.sample_files import open_sample
         from scope_ptz.bench.judging.case import case_of
-        from scope_ptz.bench.judging.rendering import render
+        from scope_ptz.bench.judging.rendering import describe_run
 
         number = sum(other.sample in self.labelled for other in self.trials) + 1
         files = open_sample(self.log, trial.sample)
         put(f"\n{'=' * 20} run {number} of {len(self.trials)} {'=' * 20}")
-        put(render(trial.task, case_of(files.trace, files.places), MAX_RUN_CHARS))
+        put(describe_run(trial.task, case_of(files.trace, files.places), MAX_RUN_CHARS))
         for path in write_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
             put(f"picture: {path}")
 
@@ -207,9 +207,9 @@ def folder_name(log: Path, sample: str) -> str:
 
 
 def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
-    """Write a run's pictures into a folder and return their paths, the filmstrip first.
+    """Write a run's pictures to a folder, and return their paths, the filmstrip first.
 
-    Pictures from an earlier session are not written again, and names that are invalid in a run folder are skipped.
+    Pictures that already exist are not written again, and pictures with invalid names are skipped.
     """
     from scope_ptz.agent.filmstrip import write_filmstrip
     from scope_ptz.errors import OutputError, ScopeError
@@ -225,7 +225,7 @@ def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
             if _PICTURE.match(name) and path.is_file():
                 written.append(path)
     except OSError as error:
-        raise OutputError(f"{folder} cannot be written: {error.strerror}. Choose another folder with --pictures.") from error
+        raise OutputError(f"{folder} cannot be written to: {error.strerror}. Choose another folder with --pictures.") from error
     strip = folder / "filmstrip.png"
     if written and not strip.is_file():
         with suppress(ScopeError):  # One picture is missing or damaged; the others are still shown.

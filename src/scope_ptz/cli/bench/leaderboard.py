@@ -1,4 +1,4 @@
-"""``scope bench leaderboard``: write a static page from submissions."""
+"""``scope bench leaderboard``: write a static leaderboard page from submissions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def leaderboard(
     title: Annotated[str, typer.Option("--title", help="Title of the page.")] = "SCOPE leaderboard",
     as_json: JsonOption = False,
 ) -> None:
-    """Write a leaderboard from submissions: one HTML page that loads nothing.
+    """Write a leaderboard from submissions, as one self-contained HTML page.
 
     Submissions that are not valid are listed with the reason at the end of the page.
     """
@@ -38,28 +38,28 @@ def leaderboard(
     require_report_packages()
     from scope_ptz.bench.leaderboard.entries import read_entries
     from scope_ptz.bench.leaderboard.page import write_leaderboard
-    from scope_ptz.bench.signatures.keys import trusted_keys
+    from scope_ptz.bench.signatures.keys import read_trusted_keys
 
-    entries, refused = read_entries(folder, [_task_set(name) for name in tasks or ["core"]], trusted_keys(host_key or ()))
+    entries, refused = read_entries(folder, [_task_set(name) for name in tasks or ["core"]], read_trusted_keys(host_key or ()))
     tables = write_leaderboard(entries, refused, out, title=title)
     if as_json:
         rows = [{"file": e.file, "name": e.name, "labels": e.labels, "ranked": e.ranked} for e in entries]
         put_json({"page": str(out), "entries": rows, "refused": [{"file": r.file, "reason": r.reason} for r in refused]}, indent=1)
         return
-    for one in refused:
-        print_error(f"{one.file}: not listed: {one.reason}")
+    for submission in refused:
+        print_error(f"{submission.file}: not listed: {submission.reason}")
     rows_text = "1 entry" if len(entries) == 1 else f"{len(entries)} entries"
     put(f"{out}: {rows_text} in {len(tables)} {'table' if len(tables) == 1 else 'tables'}")
 
 
 def _task_set(name: str) -> TaskSet:
     from scope_ptz.bench.leaderboard.entries import TaskSet
-    from scope_ptz.factory.evaluation import tasks_of
+    from scope_ptz.factory.evaluation import load_entries
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library
 
-    entries = tasks_of(name, Library(scene_search(load_settings())))
+    entries = load_entries(name, Library(scene_search(load_settings())))
     tasks = tuple(entry.task for entry in entries if entry.task is not None)
     if not tasks:
         raise InputError(f"{name} contains no tasks with executable checks, so it cannot have a leaderboard.")

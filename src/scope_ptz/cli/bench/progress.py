@@ -1,4 +1,4 @@
-"""Terminal output of an evaluation: notes and the estimate, a live table, and the scores at the end."""
+"""Terminal output of evaluations: notes and the estimate, a live table, and the final scores."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from scope_ptz.bench.engine.estimate_text import duration_text, estimate_lines
 from scope_ptz.bench.engine.failure_summary import counts_text, server_events
 from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy
 from scope_ptz.bench.judging.deciding_judge import other_judges_note
-from scope_ptz.bench.judging.judgement_tally import needs_judgement, without_verdict
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict, needs_judgement
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.cli.exit import print_error
 from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
 
 PRINT_EVERY_S = 15.0
-"""Seconds between two lines of progress if the output is not a terminal."""
-MAX_RUNNING_SHOWN = 6  # runs in progress that are named below the table
+"""Seconds between progress lines if the output is not a terminal."""
+MAX_RUNNING_SHOWN = 6  # maximum number of runs in progress to name below the table
 RULE_BASED_NOTE = (
     "This is the built-in rule-based planner: a baseline and a check of the installation, not the result of a model.\n"
     "To score a model, run: scope bench run --planner-url http://HOST:PORT/v1 (scope models lists models)."
@@ -37,14 +37,14 @@ GROUND_TRUTH_NOTE = (
 
 
 class LiveProgress(EvaluationProgress):
-    """Prints notes and the estimate, and draws a table of the finished runs that is updated live."""
+    """Prints notes and the estimate, and shows a live table with the results so far."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._plan: EvaluationPlan | None = None
         self._trials: dict[str, Trial] = {}
         self._running: dict[str, float] = {}
-        self._began = self._printed = time.monotonic()
+        self._started_s = self._printed = time.monotonic()
         self._live: Live | None = None
 
     def note(self, text: str) -> None:
@@ -61,12 +61,12 @@ class LiveProgress(EvaluationProgress):
             concurrency=plan.concurrency,
             agent=plan.agent,
             isolation=plan.isolation,
-            planner_is_free=not plan.asks_planner_server,
+            planner_is_free=not plan.uses_planner_server,
         )
         for line in filter(None, (plan.origin, *lines)):
             self._print(line)
         self._plan, self._trials = plan, {trial.sample: trial for trial in plan.finished}
-        self._began = self._printed = time.monotonic()
+        self._started_s = self._printed = time.monotonic()
         if self._console.is_terminal:
             self._live = Live(get_renderable=self._render, console=self._console, refresh_per_second=2)
             self._live.start()
@@ -91,13 +91,13 @@ class LiveProgress(EvaluationProgress):
         new = len(self._trials) - len(self._plan.finished) if self._plan is not None else 0
         if new < 1 or self._plan is None:
             return None
-        return (time.monotonic() - self._began) / new * (self._plan.runs - len(self._trials))
+        return (time.monotonic() - self._started_s) / new * (self._plan.runs - len(self._trials))
 
     def _line(self) -> str:
         left, rows = self._seconds_left(), self._trials.values()
         correct = sum(t.headline == "correct" for t in rows)
         broken = sum(t.headline == "infrastructure" for t in rows)
-        pending = sum(without_verdict(t) for t in rows)
+        pending = sum(lacks_verdict(t) for t in rows)
         remaining = f", about {duration_text(left)} left" if left is not None else ""
         judged = f", {pending} not judged yet" if pending else ""
         total = self._plan.runs if self._plan is not None else len(rows)
@@ -150,15 +150,15 @@ def _percent(fraction: float | None) -> str:
 
 
 def unscored_lines(trials: Sequence[Trial]) -> list[str]:
-    """Return lines about runs that only a judge can score and that have no verdict. They are excluded from the accuracy."""
+    """Return lines about the runs without a verdict that only a judge can score. Such runs are excluded from accuracies."""
     pending = sum(needs_judgement(t) for t in trials)
-    unparseable = sum(without_verdict(t) and not needs_judgement(t) for t in trials)
+    unparseable = sum(lacks_verdict(t) and not needs_judgement(t) for t in trials)
     lines = [f"unscored   {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
     return lines + ([f"unscored   {unparseable} without a verdict: the judge's replies were unparseable"] if unparseable else [])
 
 
 def summary(evaluation: Evaluation) -> RenderableType:
-    """Return the scores of an evaluation, how runs failed, and how long they took."""
+    """Return the summary of an evaluation: scores, error modes, server failures and run durations."""
     trials, card = evaluation.trials, evaluation.card
     parts: list[RenderableType] = [Text(card.pair, style="bold"), category_table(trials)]
     if card.isolation is not None:
@@ -184,7 +184,7 @@ def summary(evaluation: Evaluation) -> RenderableType:
 
 
 def baseline_note(evaluation: Evaluation) -> str:
-    """Return a note for scores that are not results of models; empty for scores of models."""
+    """Return a note for scores that are not results of models, otherwise an empty string."""
     card = evaluation.card
     if card.planner.deterministic:
         return RULE_BASED_NOTE

@@ -1,4 +1,4 @@
-"""Read evaluation logs for the commands: rescore them with a progress bar, and report contradictions between logs and traces."""
+"""Read evaluation logs with a progress bar, and print contradictions between logs and traces."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from scope_ptz.bench.scoring.trials import Evaluation
 
 MIN_SAMPLES_SHOWN = 40
-"""Minimum number of samples for which a progress bar is shown."""
+"""Number of samples from which a progress bar is shown."""
 
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function that shows the number of finished items and their total. Without a terminal, nothing is shown."""
+    """Yield a function that shows the number of finished items and the total number. Without a terminal, nothing is shown."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -34,7 +34,7 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
 
 
 def read_log(path: Path) -> Evaluation:
-    """Read a log, and recompute its verdicts from its traces. A progress bar is shown for a large log.
+    """Read a log, and recompute its verdicts from the traces. For a large log, a progress bar is shown.
 
     Raises:
         TraceError: The log does not exist or is damaged.
@@ -46,7 +46,7 @@ def read_log(path: Path) -> Evaluation:
 
 
 def print_findings(evaluation: Evaluation) -> None:
-    """Print the contradictions between a log and its traces to stderr."""
+    """Print the contradictions between a log and its traces on stderr."""
     from scope_ptz.bench.reports.log_findings import finding_lines
 
     for line in finding_lines(evaluation):

@@ -1,4 +1,4 @@
-"""Commands that read logs: ``report``, ``gate``, and ``submission`` for the file for a public leaderboard."""
+"""Commands that read logs: ``report``, ``gate``, and ``submission`` (files for a public leaderboard)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ submission_app = typer.Typer(help="Write and check the file for a public leaderb
 MAX_FAULTS_LISTED = 50
 MAX_FAULTS_ON_ONE_LINE = 3
 HUMAN_RESULT_SUFFIX = ".json"
-"""Results of ``scope bench human`` are JSON files, not logs."""
+"""Suffix of the results of ``scope bench human``, which are JSON files rather than logs."""
 
 
 def report(
@@ -95,16 +95,16 @@ def gate(
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.regression.gate import gate as compare
+    from scope_ptz.bench.engine.regression.gate import compare_evaluations
     from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 
     now, before = read_log(log), read_log(baseline)
     for evaluation in (now, before):
         print_findings(evaluation)
-    comparison = compare(now, before, alpha)
+    comparison = compare_evaluations(now, before, alpha)
     if as_json:
         rows = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
-        put_json({"passed": comparison.passed, "alpha": alpha, "groups": rows, "left_out": comparison.left_out}, indent=2)
+        put_json({"passed": comparison.passed, "alpha": alpha, "groups": rows, "left_out": comparison.unscored_tasks}, indent=2)
     else:
         for line in comparison_lines(comparison, now):
             put(line)
@@ -141,16 +141,16 @@ def submission_make(
     with_traces = traces and log.suffix != HUMAN_RESULT_SUFFIX
     header, lines = _lines_with_traces(log, evaluation) if with_traces else submission_lines(evaluation)
     skip = partial and tasks is None and header.card.split not in SPLITS
-    missing = [] if skip else _missing(header, lines, tasks)
+    missing = [] if skip else _coverage_faults(header, lines, tasks)
     if missing and not partial:
         raise InputError(
-            f"{log} does not cover {tasks or header.card.split}: {_first(missing)}. A submission must cover a whole split: run the "
-            "remaining tasks without --limit, --category and --scene, or write an incomplete submission with --partial."
+            f"{log} does not cover {tasks or header.card.split}: {_fault_summary(missing)}. A submission must cover a whole split: "
+            "run the remaining tasks without --limit, --category and --scene, or write an incomplete submission with --partial."
         )
     write_submission((header, lines), out)
     put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
     if missing:
-        print_error(f"{out} is incomplete and not a valid submission: {_first(missing)}.")
+        print_error(f"{out} is incomplete and not a valid submission: {_fault_summary(missing)}.")
 
 
 @submission_app.command("validate")
@@ -162,7 +162,7 @@ def submission_validate(
     ] = None,
     verify: Annotated[
         bool,
-        typer.Option("--verify", help="Make the calls of every run again, which must come out as recorded. This takes minutes."),
+        typer.Option("--verify", help="Repeat the calls of every run, and compare the results with the trace. This takes minutes."),
     ] = False,
     host_key: HostKeys = None,
     as_json: JsonOption = False,
@@ -173,10 +173,10 @@ def submission_validate(
 
     The exit code is 1 on any fault.
     """
-    from scope_ptz.bench.signatures.keys import trusted_keys
+    from scope_ptz.bench.signatures.keys import read_trusted_keys
     from scope_ptz.bench.submissions.submission_checks import check_submission
 
-    result = check_submission(file, _split(tasks), trusted_keys(host_key or ()))
+    result = check_submission(file, _load_tasks(tasks), read_trusted_keys(host_key or ()))
     verified = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
     differing = verified.of("differs") if verified is not None else []
     if as_json:
@@ -193,27 +193,27 @@ def submission_validate(
 
 
 def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
-    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
+    from scope_ptz.bench.engine.traces.log_runs import read_runs
     from scope_ptz.bench.submissions.submission import submission_lines
-    from scope_ptz.bench.submissions.submission_traces import public_runs
+    from scope_ptz.bench.submissions.submission_traces import publish_runs
 
-    public = public_runs(evaluation, runs_of_log(log))
+    public = publish_runs(evaluation, read_runs(log))
     return submission_lines(public.evaluation, public.runs, public.places)
 
 
-def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
-    from scope_ptz.bench.submissions.submission_checks import coverage
+def _coverage_faults(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
+    from scope_ptz.bench.submissions.submission_checks import coverage_faults
 
-    return coverage(header, lines, _split(tasks))
+    return coverage_faults(header, lines, _load_tasks(tasks))
 
 
-def _first(faults: Sequence[str]) -> str:
+def _fault_summary(faults: Sequence[str]) -> str:
     more = len(faults) - MAX_FAULTS_ON_ONE_LINE
     return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more faults" if more > 0 else "")
 
 
 def require_report_packages() -> None:
-    """Raise ``ConfigError`` if the packages that write reports are not installed."""
+    """Raise ``ConfigError`` if the packages for writing reports are not installed."""
     from scope_ptz.perception.backends.spec import require_packages
 
     require_packages("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")
@@ -230,7 +230,7 @@ def _read(path: Path) -> Evaluation:
     return with_labels(read_log(path), read_labels(labels_file(path)))
 
 
-def _split(name: str | None) -> Sequence[Task] | None:
+def _load_tasks(name: str | None) -> Sequence[Task] | None:
     from scope_ptz.bench.tasks.splits import load_split
 
     return None if name is None else load_split(name)

@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.cli.bench.agent_flags import AgentFlags, agent_options
-from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, price_of
+from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, parse_price
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
@@ -27,7 +27,7 @@ def run(
     judge_repeats: JudgeRepeats = 1,
     as_json: JsonOption = False,
 ) -> int:
-    """Run a pair of planner and perception, or an external agent, on the benchmark, and print its scores.
+    """Run a planner with a perception backend, or an external agent, on the benchmark, and print the scores.
 
     Without options, the built-in planner and ground-truth perception run the published core tasks.
     This needs neither a server nor a key.
@@ -50,7 +50,7 @@ def run(
         variant=running.variant,
         fresh=running.fresh,
         resume=running.resume,
-        price=price_of(running.price),
+        price=parse_price(running.price),
         judge=judge_options if judge_options.requested else None,
     )
     console = Console(highlight=False, stderr=as_json)
@@ -68,7 +68,7 @@ def run(
 
 
 def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) -> EvaluationResult:
-    """Run the evaluation, with its progress on the terminal and, if ``files`` is a folder, in files."""
+    """Run the evaluation, and show its progress in the terminal and, if ``files`` is given, in files in this folder."""
     from contextlib import closing
 
     from scope_ptz.cli.bench.progress import LiveProgress
@@ -88,16 +88,16 @@ def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) 
 
     with closing(ProgressFiles(files)) as progress:
 
-        async def followed() -> None:
+        async def work_with_files() -> None:
             results.append(await evaluate(options, progress=ProgressGroup(LiveProgress(console), progress)))
 
-        run_async(followed)
+        run_async(work_with_files)
         progress.finish(results[0])
     return results[0]
 
 
 def _report_failures(result: EvaluationResult) -> int:
-    """Print the failures and how to resume, and return the exit code."""
+    """Print the failures and how to repeat the failed runs, and return the exit code."""
     from scope_ptz.bench.engine.failure_summary import failure_summary
     from scope_ptz.cli.bench.judge import judge_failure
 

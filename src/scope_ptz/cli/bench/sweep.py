@@ -1,4 +1,4 @@
-"""``scope bench sweep``: run several pairs on the same tasks, with one log for each pair."""
+"""``scope bench sweep``: run several pairs on the same tasks, with one log per pair."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from scope_ptz.factory.models import ModelOptions
 
 MIN_WIDTH_FOR_CATEGORIES = 160
-"""Minimum terminal width, in characters, for a column per category."""
+"""Minimum terminal width, in characters, at which there is a column per category."""
 PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the column with the names of pairs
 
 
@@ -31,7 +31,7 @@ PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the column with the n
 class SweepServerFlags(ModelFlags):
     """Options for model servers that apply to all pairs.
 
-    The options of ``ModelFlags`` that name models are removed, because the pairs name them.
+    The options of ``ModelFlags`` that name models are removed, because the models are named by the pairs.
     """
 
     planner: ClassVar[None] = None  # type: ignore[misc]
@@ -83,7 +83,7 @@ def sweep(
 
 
 def pair_names(text: str | None, *, paper: bool) -> list[str]:
-    """Return the pairs to run, without duplicates. Raises ``InputError`` for unknown pairs before any pair runs."""
+    """Return the names of the pairs to run, without duplicates. Raises ``InputError`` if a pair is unknown."""
     from scope_ptz.factory.model_resolver import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
@@ -102,7 +102,7 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
 
 
 def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
-    """Run all pairs, and return for each pair its evaluation or the message of the error that prevented it."""
+    """Run all pairs. Return, for each pair, the evaluation or the message of the error that prevented it."""
     import anyio
 
     from scope_ptz.bench.engine.failure_summary import failure_summary
@@ -127,7 +127,7 @@ def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> d
 
 
 def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
-    """Return the options of one pair. Addresses and keys are left out for the built-in planner and perception."""
+    """Return the model options for one pair. For the built-in planner and perception, addresses and keys are removed."""
     from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
 
     planner, _, perception = name.partition("+")
@@ -140,14 +140,14 @@ def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
 
 
 def is_complete(evaluation: Evaluation) -> bool:
-    """Return whether all runs have ended and none failed for infrastructure reasons."""
+    """Return whether all runs have ended without an infrastructure failure."""
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
 def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
     """Yield tables for model pairs, built-in baselines, server failures, and pairs that did not run.
 
-    ``width`` is the terminal width in characters. A wide terminal gets a column for each category.
+    ``width`` is the terminal width in characters. If the terminal is wide enough, there is a column per category.
     """
     from scope_ptz.bench.engine.failure_summary import failure_summary
 
@@ -171,14 +171,14 @@ def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[T
 def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int) -> Table:
     from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy, macro_accuracy
 
-    shown = CATEGORIES if width >= MIN_WIDTH_FOR_CATEGORIES else ()
+    categories = CATEGORIES if width >= MIN_WIDTH_FOR_CATEGORIES else ()
     table = _table(title)
-    for column in ("macro", "micro", *(c.replace("_", " ") for c in shown), "runs", "broken"):
+    for column in ("macro", "micro", *(c.replace("_", " ") for c in categories), "runs", "broken"):
         table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "broken"))
     for name, evaluation in sorted(rows, key=lambda row: -(macro_accuracy(row[1].trials) or 0.0)):
         trials = evaluation.trials
         fractions = [macro_accuracy(trials), accuracy(trials)]
-        fractions += [accuracy([t for t in trials if t.task.category == category]) for category in shown]
+        fractions += [accuracy([t for t in trials if t.task.category == category]) for category in categories]
         broken = sum(t.headline == "infrastructure" for t in trials)
         cells = [f"{100 * fraction:.1f}" if fraction is not None else "-" for fraction in fractions]
         table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")

@@ -1,4 +1,4 @@
-"""``scope bench verify``: make the calls of the runs in logs again, and compare them with what was recorded."""
+"""``scope bench verify``: repeat the calls of the runs in logs, and compare the results with the traces."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ def verify(
     limit: Annotated[int | None, typer.Option("--limit", min=1, help="Verify at most N runs of each log.")] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Verify logs: make the calls of each run again with the simulator, without models.
+    """Verify logs: repeat the calls of each run in the simulator, without models.
 
-    Poses, ground-truth replies and results must come out exactly as recorded, and frames within a tolerance. The exit code is 1 if
-    a run differs. Runs of another version of the simulator are reported as not verifiable.
+    Poses, ground-truth replies and results must be exactly as recorded, and frames must match within a tolerance. The exit code is
+    1 if a run differs. Runs made with a different version of the simulator are reported as not verifiable.
     """
     from scope_ptz.factory.evaluate import require_engine
 
     require_engine()
-    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
+    from scope_ptz.bench.engine.traces.log_runs import read_runs
 
     results: dict[str, VerificationResult] = {}
     for log in logs:
         evaluation = read_log(log)
         print_findings(evaluation)
-        runs = islice(runs_of_log(log), limit)
+        runs = islice(read_runs(log), limit)
         total = min(len(evaluation.trials), limit or len(evaluation.trials))
         results[str(log)] = verify_and_show(runs, total, log.name, quiet=as_json)
     if as_json:
@@ -52,9 +52,9 @@ def verify_and_show(runs: Iterable[RunToVerify], total: int, name: str, *, quiet
 
     Args:
         runs: The runs.
-        total: Number of the runs.
-        name: Name of the file for the output.
-        quiet: Whether to print nothing, because the caller prints JSON.
+        total: Number of runs.
+        name: File name to show in the output.
+        quiet: Whether to print nothing, for callers that print JSON.
     """
     import anyio
 

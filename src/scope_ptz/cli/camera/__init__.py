@@ -1,4 +1,4 @@
-"""The commands of ``scope camera``, loaded when one of them is used or listed."""
+"""The ``scope camera`` commands, which are loaded when one of them is used or listed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands of ``scope camera``, grouped as in its help."""
+"""The ``scope camera`` app, with its commands grouped as in the help."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ camera_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @camera_app.callback(help=HELP)
 def _camera() -> None:
-    """Group the camera commands."""
+    """Define the group of camera commands."""
 
 
 COMMANDS: tuple[tuple[str, str, Callable[..., int | None]], ...] = (

@@ -1,4 +1,4 @@
-"""``scope camera capture``: capture the site of a camera as a scene."""
+"""``scope camera capture``: capture a camera's surroundings as a scene."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def capture(
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Capture a camera's surroundings as a scene: a digital twin of the site, made of pictures and without ground truth.
+    """Capture a camera's surroundings as a scene: a digital twin of the site, built from pictures, without ground truth.
 
     The camera moves for a few minutes and then returns to its original pose. Running the same command again resumes an interrupted
     capture.
@@ -57,7 +57,7 @@ def capture(
 
     folder = to or load_settings().scenes_dir
     if folder is None:
-        raise InputError("Specify the folder of scenes with --to, or set SCOPE_SCENES_DIR.")
+        raise InputError("Give the scene folder with --to, or set SCOPE_SCENES_DIR.")
     target = scene_folder(camera, folder, name)
     ranges = Ranges(_range("--pan", pan), _range("--tilt", tilt))
     options = CaptureOptions(ranges, tuple(zoom or ()), close_ups, overlap)
@@ -65,7 +65,7 @@ def capture(
         _print_plan(camera, options, target, as_json=as_json)
         return
     scenes: list[CapturedScene] = []
-    with _Bars(shown=not as_json) as bars:
+    with _ProgressBars(shown=not as_json) as bars:
 
         async def work() -> None:
             scenes.append(await capture_scene(camera, target, options, bars))
@@ -74,7 +74,7 @@ def capture(
     if as_json:
         put_json({**asdict(scenes[0]), "folder": str(scenes[0].folder)})
         return
-    for line in _lines(scenes[0]):
+    for line in _scene_lines(scenes[0]):
         put(line)
 
 
@@ -116,8 +116,8 @@ def _range(option: str, text: str | None) -> tuple[float, float] | None:
     return low, high
 
 
-def _lines(scene: CapturedScene) -> list[str]:
-    unplaced = scene.frames - scene.registered
+def _scene_lines(scene: CapturedScene) -> list[str]:
+    unregistered = scene.frames - scene.registered
     lines = [f"Wrote {scene.folder}: {scene.frames} pictures, {scene.tiles} sharper tiles, {len(scene.presets)} presets."]
     if scene.correction_deg is not None and scene.largest_correction_deg is not None:
         lines.append(
@@ -125,16 +125,19 @@ def _lines(scene: CapturedScene) -> list[str]:
             f"{scene.largest_correction_deg:.2f} degrees."
         )
     if scene.focal_factor is not None and abs(scene.focal_factor - 1) > 0.005:
-        lines.append(f"The focal length at the widest zoom is {scene.focal_factor:.3f} times the reported one. The scene uses it.")
-    if unplaced:
-        lines.append(f"{unplaced} pictures have too little detail to be registered. Their reported poses are used.")
+        lines.append(
+            f"The measured focal length at the widest zoom is {scene.focal_factor:.3f} times the reported one. The scene uses the "
+            "measured focal length."
+        )
+    if unregistered:
+        lines.append(f"{unregistered} pictures have too little detail to be registered, so their reported poses are used.")
     if scene.refused:
-        lines.append(f"{scene.refused} poses were skipped because the rules of the site do not permit them.")
+        lines.append(f"{scene.refused} poses were skipped because the site's rules do not permit them.")
     if scene.omitted_presets:
         lines.append(f"Presets outside the captured range were skipped: {', '.join(scene.omitted_presets)}.")
     if scene.unseen_share:
         lines.append(
-            f"{scene.unseen_share:.1%} of the directions within the camera's range were not captured. They are grey in the scene."
+            f"{scene.unseen_share:.1%} of the directions within the camera's range were not captured and are grey in the scene."
         )
     lines.append("The scene has no ground truth. Choose a vision model or a text reader with --perception.")
     lines.append(
@@ -143,8 +146,8 @@ def _lines(scene: CapturedScene) -> list[str]:
     return lines
 
 
-class _Bars:
-    """Progress bars, one for each phase, on stderr if it is a terminal."""
+class _ProgressBars:
+    """Progress bars on stderr, one for each phase. They are shown only on a terminal."""
 
     def __init__(self, *, shown: bool) -> None:
         from rich.console import Console
@@ -156,7 +159,7 @@ class _Bars:
         )  # fmt: skip
         self._tasks: dict[str, int] = {}
 
-    def __enter__(self) -> _Bars:
+    def __enter__(self) -> _ProgressBars:
         self._progress.start()
         return self
 

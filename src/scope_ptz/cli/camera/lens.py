@@ -1,4 +1,4 @@
-"""``scope camera focus|iris``: adjust the lens of a camera by hand."""
+"""``scope camera focus|iris``: adjust a camera's lens manually."""
 
 from __future__ import annotations
 
@@ -53,19 +53,19 @@ def iris(
 
 
 def _run(
-    spec: str, adjust: Callable[[Camera], Awaitable[LensState]], what: str, *, dry_run: bool, as_json: bool
+    spec: str, adjust: Callable[[Camera], Awaitable[LensState]], setting: str, *, dry_run: bool, as_json: bool
 ) -> None:  # fmt: skip
     async def work() -> None:
         async with open_for_command(spec, dry_run=dry_run) as opened:
             state = await adjust(opened)
-        put_json(asdict(state)) if as_json else put(_text(state, what))
+        put_json(asdict(state)) if as_json else put(_lens_text(state, setting))
 
     run_async(work)
 
 
-def _text(state: LensState, what: str) -> str:
-    values: tuple[Any, Any] = (state.autofocus, state.focus) if what == "focus" else (state.autoiris, state.iris)
+def _lens_text(state: LensState, setting: str) -> str:
+    values: tuple[Any, Any] = (state.autofocus, state.focus) if setting == "focus" else (state.autoiris, state.iris)
     mode = {True: "automatic", False: "manual", None: "mode not reported"}[values[0]]
-    ends = "near to far" if what == "focus" else "closed to open"
+    ends = "near to far" if setting == "focus" else "closed to open"
     at = "position not reported" if values[1] is None else f"at {values[1]:.0%} from {ends}"
-    return f"{what}: {mode}, {at}"
+    return f"{setting}: {mode}, {at}"

@@ -1,4 +1,4 @@
-"""``scope camera snapshot|move|presets|watch|password``: control a camera by hand."""
+"""``scope camera snapshot|move|presets|watch|password``: control a camera manually."""
 
 from __future__ import annotations
 
@@ -83,9 +83,9 @@ def move(
     by_pose = pan is not None or tilt is not None or zoom is not None or by_pan != 0.0 or by_tilt != 0.0
     point = None if centre is None else _point(centre)
     if sum((by_pose, point is not None, preset is not None, home, stop)) > 1:
-        raise InputError("Give one target: a pose, --centre, --preset, --home, or --stop.")
+        raise InputError("Give only one of: a pose, --centre, --preset, --home, or --stop.")
     if zoom_by != 1.0 and point is None:
-        raise InputError("--zoom-by needs --centre X,Y; use --zoom for a magnification.")
+        raise InputError("--zoom-by requires --centre X,Y. Use --zoom for an absolute magnification.")
 
     async def carry_out(opened: Camera) -> Arrival | None:
         if stop:
@@ -127,7 +127,7 @@ def presets(
 ) -> None:
     """List the presets, save the current pose as a preset, or remove a preset."""
     if save is not None and remove is not None:
-        raise InputError("Give --save or --remove, not both.")
+        raise InputError("Give either --save or --remove, not both.")
 
     async def work() -> None:
         async with open_for_command(camera, dry_run=dry_run) as opened:
@@ -135,11 +135,11 @@ def presets(
                 await opened.save_preset(save)
             if remove is not None:
                 await opened.remove_preset(remove)
-            listed = await opened.presets()
+            current_presets = await opened.presets()
         if as_json:
-            put_json([{"name": preset.name, "description": preset.description} for preset in listed])
+            put_json([{"name": preset.name, "description": preset.description} for preset in current_presets])
         else:
-            for preset in listed:
+            for preset in current_presets:
                 put(f"{preset.name}  {preset.description}".rstrip())
 
     run_async(work)
@@ -178,18 +178,18 @@ def watch(
 def password(camera: CameraSpecArgument) -> None:
     """Store the password of a camera's account in the operating system's keyring."""
     from scope_ptz.factory.cameras import parse_camera
-    from scope_ptz.factory.cameras.passwords import account_of, store_password
+    from scope_ptz.factory.cameras.passwords import camera_account, store_password
 
     spec = parse_camera(camera)
-    account = account_of(spec)
-    entered = getpass.getpass(f"Password for {account}: ") if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
-    store_password(spec, entered)
+    account = camera_account(spec)
+    secret = getpass.getpass(f"Password for {account}: ") if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
+    store_password(spec, secret)
     put(f"Stored the password for {account} in the keyring.")
 
 
 @asynccontextmanager
 async def open_for_command(spec: str, *, dry_run: bool = False, realtime: bool = False) -> AsyncIterator[Camera]:
-    """Open a camera for one command, and close it afterwards."""
+    """Open a camera for a single command, and close it afterwards."""
     from scope_ptz.camera.control import user_name
     from scope_ptz.camera.guard.dry_run import DryRunCamera
     from scope_ptz.factory.cameras import open_camera
@@ -207,7 +207,7 @@ def _point(text: str) -> tuple[float, float]:
 
 
 def pose_text(pose: dict[str, Any]) -> str:
-    """Return a pose in words, such as ``pan 20, tilt -5, zoom 2x``."""
+    """Format a pose as text, such as ``pan 20, tilt -5, zoom 2x``."""
     return f"pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
 
 

@@ -28,9 +28,9 @@ def discover(
     as_json: JsonOption = False,
 ) -> None:
     """Find ONVIF cameras on the local networks and on this machine. No password is needed or sent."""
-    from scope_ptz.camera.onvif.discovery import FoundDevice, discover
+    from scope_ptz.camera.onvif.discovery import DiscoveredDevice, discover
 
-    devices: list[FoundDevice] = []
+    devices: list[DiscoveredDevice] = []
 
     async def work() -> None:
         devices.extend(await discover(interface or (), wait_s=wait))
@@ -134,7 +134,7 @@ def _print_plan(camera: str, zooms: int, *, as_json: bool) -> None:
 
 
 def _write_report(record: ProbeRecord, camera: str, out: Path | None) -> Path:
-    """Write the report on a camera, including its stored measurements.
+    """Write a report about a camera, including its stored measurements.
 
     Raises:
         OutputError: The file cannot be written.
@@ -151,7 +151,7 @@ def _write_report(record: ProbeRecord, camera: str, out: Path | None) -> Path:
 
 
 def _probe_lines(record: ProbeRecord) -> list[str]:
-    """Return a description of a probe, line by line."""
+    """Return the results of a probe as lines of text."""
     pan = "endless" if record.pan_endless else "{:.1f} to {:.1f} degrees".format(*record.pan_range_deg)
     table = ", ".join(f"{zoom:.2f}x {hfov:.1f}" for zoom, hfov in record.zoom_table)
     offers = {

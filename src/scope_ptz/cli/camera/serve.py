@@ -1,4 +1,4 @@
-"""``scope camera serve``: serve virtual cameras, for testing software that controls real cameras."""
+"""``scope camera serve``: serve virtual cameras for testing software that controls real cameras."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def serve(
 
     use_one_heap()
     if no_accounts and user:
-        raise InputError("Give --user or --no-accounts, not both.")
+        raise InputError("Give either --user or --no-accounts, not both.")
     settings = load_settings()
     accounts = [] if no_accounts else make_accounts(user or ["root"], settings)
     options = VirtualCameraOptions(
@@ -115,7 +115,7 @@ def serve(
 
 
 def parse_faults(texts: Sequence[str]) -> dict[str, object]:
-    """Parse faults of the form ``NAME=VALUE``. A value is a number, true, false, a word, or words separated by commas.
+    """Parse faults in the form ``NAME=VALUE``. A value is a number, true, false, a word, or words separated by commas.
 
     Raises:
         InputError: A text has no equals sign.
@@ -143,7 +143,7 @@ def _print(
     *,
     as_json: bool,
 ) -> None:
-    """Print the addresses, the accounts, and example commands. ``generated`` are the accounts whose passwords are shown."""
+    """Print addresses, accounts and example commands. ``generated`` contains the accounts whose passwords are printed."""
     import sys
 
     from scope_ptz.cli.exit import put, put_json

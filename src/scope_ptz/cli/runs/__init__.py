@@ -1,4 +1,4 @@
-"""The group ``scope runs``, whose commands are imported when one of them is used or listed."""
+"""The ``scope runs`` commands, which are loaded when one of them is used or listed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands of ``scope runs``."""
+"""The ``scope runs`` app and its commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ runs_app = typer.Typer(help=HELP, no_args_is_help=True)
 
 @runs_app.callback(help=HELP)
 def _runs() -> None:
-    """The group of commands for stored runs."""
+    """Define the group of commands for stored runs."""
 
 
 runs_app.command("audit")(command(runs_audit))
@@ -67,9 +67,9 @@ def runs_show(run: RunId, runs_dir: RunsDir = None, as_json: JsonOption = False)
             return
         stored, feedback = store.run(run), feedback_on(store.database, run)
     _print_run(stored.run, stored.steps)
-    for each in feedback:
-        subject = "run" if each.position is None else f"call {each.position + 1}"
-        put(f"  {({1: 'good', -1: 'bad'}).get(each.rating, 'note')} ({subject}, {each.actor or 'unknown'}): {each.comment}")
+    for entry in feedback:
+        subject = "run" if entry.position is None else f"call {entry.position + 1}"
+        put(f"  {({1: 'good', -1: 'bad'}).get(entry.rating, 'note')} ({subject}, {entry.actor or 'unknown'}): {entry.comment}")
 
 
 def _print_run(row: RunRow, steps: list[StepRow]) -> None:

@@ -31,8 +31,8 @@ def runs_audit(
         put_json([entry.model_dump(mode="json") for entry in entries])
         return
     for entry in entries:
-        who = f"{entry.camera[:20]:<20}  {entry.actor[:16]:<16}  {entry.event:<12}"
+        columns = f"{entry.camera[:20]:<20}  {entry.actor[:16]:<16}  {entry.event:<12}"
         details = "".join(f"  {name}={value}" for name, value in entry.details.items())
-        put(f"{entry.time.astimezone():%Y-%m-%d %H:%M:%S}  {who}{details}".rstrip())
+        put(f"{entry.time.astimezone():%Y-%m-%d %H:%M:%S}  {columns}{details}".rstrip())
     if not entries:
         put("No entries. A camera writes an audit log if `audit_log` is set for it in scope.yaml.")

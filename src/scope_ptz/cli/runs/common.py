@@ -1,4 +1,4 @@
-"""Options and functions that the commands of ``scope runs`` share."""
+"""Options and functions shared by the ``scope runs`` commands."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class FilterFlags:
     ] = None
 
     def run_filter(self) -> RunFilter:
-        """Return these flags as a filter of the store.
+        """Convert the flags to a filter for the store.
 
         Raises:
             InputError: The rating or a time is invalid.
@@ -78,7 +78,7 @@ def open_store(runs_dir: Path | None) -> RunStore:
     except ModuleNotFoundError as error:
         if error.name != "sqlalchemy":
             raise
-        raise InputError("The store needs SQLAlchemy. Install it with: pip install 'scope-ptz[store]'.") from error
+        raise InputError("The store requires SQLAlchemy. Install it with: pip install 'scope-ptz[store]'.") from error
     root = runs_dir or load_settings().runs_dir
     if not root.is_dir():
         raise InputError(f"The runs folder {root} does not exist. Specify another one with --runs-dir.")
@@ -86,10 +86,10 @@ def open_store(runs_dir: Path | None) -> RunStore:
 
 
 def parse_time(option: str, text: str | None) -> datetime | None:
-    """Parse the value of an option as a time, which is local if it has no time zone. Return None if the option is missing.
+    """Parse the value of an option as a time, which is local unless it has a time zone. Return None if the option is missing.
 
     Raises:
-        InputError: The value is not a time.
+        InputError: The value is not a valid time.
     """
     if text is None:
         return None
@@ -101,7 +101,7 @@ def parse_time(option: str, text: str | None) -> datetime | None:
 
 
 def index_audit_logs(store: RunStore, paths: list[Path] | None) -> int:
-    """Index audit logs and return the number of new entries. By default, the logs are those in ``scope.yaml``.
+    """Index audit logs, and return the number of new entries. By default, index the logs in ``scope.yaml``.
 
     Raises:
         InputError: A file cannot be read.

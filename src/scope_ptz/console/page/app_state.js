@@ -4,7 +4,7 @@ const listeners = new Map();
 
 export const shared = {
   camera: "", // name of the selected camera
-  state: null, // state of the camera, as the API returns it
+  state: null, // camera state, as returned by the API
   live: null, // pose, field of view, time and size of the newest frame
   running: null, // id of the run in progress
   me: null, // name, role and key of this client

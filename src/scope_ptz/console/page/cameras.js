@@ -1,4 +1,4 @@
-// The Cameras tab: a card for each camera of the server, with its picture, abilities, controller and health.
+// The Cameras tab: a card for each of the server's cameras, with its picture, abilities, controller and health.
 
 import { get, part, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
@@ -53,7 +53,7 @@ export function makeCameras() {
       cards.set(name, created);
       const list = facts.configured ? site : scenes;
       list.append(created.element);
-      // Keep the order of the server, regardless of which card arrives first.
+      // Keep the server's order, regardless of which card arrives first.
       const order = [...cards.keys()];
       list.append(...[...list.children].sort((a, b) => order.indexOf(a.dataset.name) - order.indexOf(b.dataset.name)));
       none.hidden = Boolean(site.children.length);

@@ -2,7 +2,7 @@
 
 import { shared } from "./app_state.js";
 
-const LOCAL = "local"; // the name of every client of a server without tokens
+const LOCAL = "local"; // the name of every client if the server has no tokens
 
 export function controlText(holder) {
   if (holder === LOCAL) return "This computer is in control, in another window or program.";

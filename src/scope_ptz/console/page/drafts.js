@@ -1,4 +1,4 @@
-// A dialog that lists the drafts of benchmark tasks from runs with good feedback, and the reasons why other runs cannot become drafts.
+// A dialog that lists benchmark task drafts made from runs with good feedback, and states why other runs cannot become drafts.
 
 import { get, url } from "./api.js";
 import { displayName } from "./benchmark_labels.js";

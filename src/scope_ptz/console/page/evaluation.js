@@ -6,7 +6,7 @@ import { STATES, percent, displayName } from "./benchmark_labels.js";
 import { askFor, h, notify, svg } from "./dom.js";
 import { makeFailures } from "./failures.js";
 
-// `changed` is called after each command, and `removed` after the evaluation was removed.
+// `changed` is called after each command, and `removed` after the evaluation has been removed.
 export function makeEvaluation({ changed, removed }) {
   const title = h("h1", {}), lead = h("p", { className: "lead" }), state = h("span", { className: "state", role: "status" });
   const actions = h("div", { className: "row actions" }), bar = h("div", { className: "progress", role: "progressbar", "aria-label": "Finished tasks" });

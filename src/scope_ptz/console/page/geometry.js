@@ -35,7 +35,7 @@ export function panTiltOf(direction) {
   return { pan_deg: Math.atan2(direction[0], direction[2]) / RAD, tilt_deg: Math.asin(direction[1]) / RAD };
 }
 
-// The horizontal field of view in degrees at a magnification, interpolated in the table of the optics.
+// The horizontal field of view in degrees at a magnification, interpolated in the optics table.
 export function fieldOfView(table, zoom) {
   if (!table?.length) return 60; // a typical field of view, until the table is known
   if (zoom <= table[0][0]) return table[0][1];

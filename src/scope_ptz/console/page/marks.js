@@ -1,10 +1,10 @@
-// Marks of the last detections. They are drawn at their directions, so they stay on the objects when the camera turns.
+// Marks for the latest detections. They are drawn at their directions, so they stay on the objects when the camera turns.
 
 import { shared } from "./app_state.js";
 import { svg } from "./dom.js";
 import { directionOf, fieldOfView, panTiltOf, pointOf } from "./geometry.js";
 
-const MAX_NUMBERS = 40; // the numbers of more marks would cover the picture
+const MAX_NUMBERS = 40; // with more marks, the numbers would cover the picture
 
 // The marks of a finished tool call; null if its result has no boxes.
 export function marksOf(call) {

@@ -21,7 +21,7 @@ export function makePanel() {
   const newButton = h("button", { type: "button", className: "link", title: "Start a new conversation", onclick: begin }, icon("plus"), "New");
   const element = h("aside", { className: "panel", "aria-label": "Instructions" },
     h("div", { className: "row head" }, pair, health, h("span", { className: "space" }), newButton), thread, form);
-  const shown = new Map(); // turns by the id of their run
+  const shown = new Map(); // turns by run id
   let conversation = null, restores = 0;
   let ready = false, early = false; // whether the conversation has been loaded; whether an instruction was entered before that
 

@@ -1,4 +1,4 @@
-// Thumbnails of the presets, with commands to go to one, save the current view, rename and remove.
+// Preset thumbnails, with commands to go to a preset, save the current view, and rename and remove presets.
 
 import { command, get, part, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";

@@ -1,4 +1,4 @@
-// The library of runs: search runs, view and compare frames, download runs, and read or give feedback.
+// The run library: search runs, view and compare frames, download runs, and read or give feedback.
 
 import { get, part, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";

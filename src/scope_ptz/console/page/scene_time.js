@@ -1,4 +1,4 @@
-// Scene time of a simulated camera: play and pause, seek, and speed. The change applies to all clients of the camera.
+// Scene time for a simulated camera: play and pause, seek, and change the speed. Changes apply to all of the camera's clients.
 
 import { command } from "./api.js";
 import { on, shared } from "./app_state.js";

@@ -54,7 +54,7 @@ export function makeTurn(run, { live = false, onEnd = null, kind = "instruction"
     const { text, note } = splitNote(record.text);
     const outcome = OUTCOMES[record.outcome] ?? record.outcome;
     if (!good) answer.append(h("span", { className: "outcome" }, outcome));
-    // Do not repeat a text that a step or the outcome already shows.
+    // Do not repeat text that a step or the outcome already shows.
     const repeated = !text || record.outcome === "cancelled" || text === outcome || text === steps.lastElementChild?.querySelector(".result").textContent;
     if (good || !repeated) answer.append(h("p", { className: good ? "" : "problem" }, text || outcome));
     if (note) answer.append(h("p", { className: "note" }, note));

@@ -1,4 +1,4 @@
-"""Cameras: parse their specs and open them, and read the site file, profiles and passwords."""
+"""Parse camera specs and open cameras, and read the site file, profiles and passwords."""
 
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.factory.cameras.opening import OpenCamera, open_camera

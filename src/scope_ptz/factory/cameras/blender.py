@@ -1,4 +1,4 @@
-"""Live Blender cameras. A worker process opens a scene or a .blend file and renders every frame."""
+"""Live Blender cameras. A worker process opens a scene or a .blend file and renders each frame."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class LiveBlender:
 
     Attributes:
         camera: The camera.
-        scene: The scene whose packs contain the ground truth of the camera's frames; None if there is no such scene.
-        release: Closes the worker.
+        scene: The scene whose packs contain the ground truth for the camera's frames; None if there is none.
+        release: A function that closes the worker process.
     """
 
     camera: BlenderCamera
@@ -45,9 +45,9 @@ class LiveBlender:
 
 
 async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: float | None, realtime: bool) -> LiveBlender:
-    """Start Blender and open a scene by name, a scene's Python file, or a .blend file.
+    """Start Blender and open a scene, given by name, by its Python file, or by a .blend file.
 
-    The first use installs Blender's Python module (about 400 MB) and logs a warning.
+    On first use, this installs Blender's Python module (about 400 MB) and logs a warning.
 
     Raises:
         UnknownNameError: There is no such viewpoint.
@@ -56,7 +56,7 @@ async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: 
     settings = load_settings()
     program = settings.blender_python or settings.blender
     if program is None and not is_ready(settings.cache_dir):
-        _LOG.warning("note: installing Blender's Python module (about 400 MB), which is needed only once.")
+        _LOG.warning("note: installing Blender's Python module (about 400 MB). This happens only once.")
     command = await to_thread.run_sync(worker_command, settings.cache_dir, program)
     logs = tempfile.TemporaryDirectory(prefix="scope-blender-", ignore_cleanup_errors=True)
     worker = BlenderWorker(command, Path(logs.name) / "blender.log")
@@ -105,7 +105,7 @@ def _absolute(path: str) -> str:
 
 
 def _stored_scene(live: SceneFile) -> Scene | None:
-    """Return the stored scene with the ground truth of a live scene; None if no stored scene has the same objects and actors."""
+    """Return the stored scene with the ground truth for a live scene; None if none has the same objects and actors."""
     try:
         scene = open_scene(live.name)
     except (UnknownNameError, PackError):
@@ -114,5 +114,5 @@ def _stored_scene(live: SceneFile) -> Scene | None:
 
 
 def _numbered_ids(file: SceneFile) -> set[tuple[str, int]]:
-    """Return the ids and numbers of all objects and actors in a scene."""
+    """Return the id and number of each object and actor in a scene."""
     return {(i.id, i.number) for i in file.instances} | {(a.id, a.number) for a in file.actors}

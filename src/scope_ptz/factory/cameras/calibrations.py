@@ -1,4 +1,4 @@
-"""Provide the results of `scope camera calibrate` to the driver of a network camera."""
+"""Apply the results of ``scope camera calibrate`` when a network camera is opened."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from scope_ptz.settings import load_settings
 if TYPE_CHECKING:
     from scope_ptz.camera.measurement.profile import CalibrationRecord
     from scope_ptz.camera.network.address import DeviceAddress
-    from scope_ptz.camera.network.settling import Settling
+    from scope_ptz.camera.network.settling import SettlingCriteria
     from scope_ptz.camera.spec import CameraSpec
 
 _LOG = logging.getLogger(__name__)
 
 
 def profile_name(spec: CameraSpec, address: DeviceAddress) -> str:
-    """Return the name of a camera's profile: driver, host, port and channel, without the user."""
+    """Return the name of a camera's profile, which consists of driver, host, port and channel, without the user name."""
     channel = f" {spec.options['profile']}" if "profile" in spec.options else ""
     channel += f" channel {spec.options['channel']}" if spec.options.get("channel", "1") != "1" else ""
     return f"{spec.scheme} {address.host.lower()}:{address.port}{channel}"
 
 
 def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRecord | None:
-    """Return the calibration of a camera; None if there is none.
+    """Load a camera's calibration; None if there is none.
 
-    Differences between measured and reported values that the calibration found are logged as warnings.
+    Contradictions between measured and reported values are logged as warnings.
 
     Raises:
         PackError: The camera's profile is damaged.
@@ -35,30 +35,30 @@ def load_calibration(spec: CameraSpec, address: DeviceAddress) -> CalibrationRec
     from scope_ptz.camera.measurement.profile import load_profile
 
     profile = load_profile(load_settings().camera_profiles_dir, profile_name(spec, address))
-    found = None if profile is None else profile.calibration
-    for sentence in found.contradictions if found is not None else ():
-        _LOG.warning("note: the calibration of the camera at %s found: %s", address, sentence)
-    return found
+    calibration = None if profile is None else profile.calibration
+    for sentence in calibration.contradictions if calibration is not None else ():
+        _LOG.warning("note: the calibration of the camera at %s found a contradiction. %s", address, sentence)
+    return calibration
 
 
 def measured_fields(calibration: CalibrationRecord | None) -> tuple[tuple[float, float], ...] | None:
     """Return rows of (position in the zoom range from 0 to 1, measured horizontal field of view in degrees), widest first.
 
-    Return None if there are no rows, or if the fields of view do not decrease as the zoom increases, because the measurement is
-    then invalid.
+    Return None if there are too few rows, or if the fields of view do not decrease with increasing zoom, which means that the
+    measurement is invalid.
     """
     if calibration is None:
         return None
-    rows = tuple((each.share, each.measured_deg) for each in calibration.fields)
+    rows = tuple((field.share, field.measured_deg) for field in calibration.fields)
     decreasing = len(rows) > 1 and all(b[0] > a[0] and b[1] < a[1] for a, b in pairwise(rows))
     return rows if decreasing else None
 
 
-def measured_settling(calibration: CalibrationRecord | None) -> Settling:
-    """Return the criteria for when a camera has settled. They allow more time if its picture settled slowly in the calibration."""
-    from scope_ptz.camera.network.settling import Settling
+def measured_settling(calibration: CalibrationRecord | None) -> SettlingCriteria:
+    """Return the settling criteria for a camera. The picture timeout is longer if its picture settled slowly."""
+    from scope_ptz.camera.network.settling import SettlingCriteria
 
-    default = Settling()
+    default = SettlingCriteria()
     if calibration is None:
         return default
-    return Settling(picture_timeout_s=max(default.picture_timeout_s, 3 * calibration.settling_s))
+    return SettlingCriteria(picture_timeout_s=max(default.picture_timeout_s, 3 * calibration.settling_s))

@@ -1,4 +1,4 @@
-"""Capture the site of a camera as a scene: open the camera, take the frames and write the scene.
+"""Capture a camera's site as a scene: open the camera, take the frames, and write the scene.
 
 An interrupted capture can be resumed.
 """
@@ -19,7 +19,8 @@ from scope_ptz.factory.cameras.parsing import parse_camera
 from scope_ptz.settings import load_settings
 
 if TYPE_CHECKING:
-    from scope_ptz.camera.capture.frame_taking import CaptureOptions, PlannedSweep, Progress
+    from scope_ptz.camera.capture.frame_taking import CaptureOptions, PlannedSweep
+    from scope_ptz.camera.capture.progress import Progress
     from scope_ptz.camera.capture.session import CaptureSession
 
 _KEBAB = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -33,16 +34,16 @@ class CapturedScene:
         name: The scene's name.
         folder: The scene's folder.
         frames: Number of frames.
-        registered: Number of frames whose pose was measured from image features. The others keep their reported poses.
+        registered: Number of frames whose pose was measured from image features. The others rely on their reported poses.
         correction_deg: Median angle between reported and adjusted orientations; None if nothing was registered.
-        largest_correction_deg: The largest such angle; None if nothing was registered.
-        residual_px: Root mean square distance of matched features in pixels; None if nothing was registered.
+        largest_correction_deg: Maximum angle between reported and adjusted orientations; None if nothing was registered.
+        residual_px: Root mean square error of the matches in pixels; None if nothing was registered.
         focal_factor: Ratio of measured to reported focal length at the widest zoom; None if nothing was registered.
         tiles: Number of tiles, which are sharper than the panorama.
-        unseen_share: Fraction of the directions within the camera's range that no frame shows.
-        presets: The presets of the scene.
-        omitted_presets: Presets of the camera that the scene lacks, because they are outside the captured range.
-        refused: Number of poses that the rules of the site did not permit.
+        unseen_share: Fraction of the directions in the camera's range that no frame covers.
+        presets: The scene's presets.
+        omitted_presets: The camera's presets that were omitted because they are outside the captured range.
+        refused: Number of poses that the site's rules did not permit.
     """
 
     name: str
@@ -62,13 +63,13 @@ class CapturedScene:
 
 @dataclass(frozen=True, slots=True)
 class CapturePlan:
-    """What a capture would do.
+    """The plan of a capture.
 
     Attributes:
         camera: The camera's name.
-        pan_range_deg: The pan range that would be captured.
-        tilt_range_deg: The tilt range that would be captured.
-        presets: The presets that would be visited, in addition to the home position.
+        pan_range_deg: The pan range to capture.
+        tilt_range_deg: The tilt range to capture.
+        presets: The presets to visit, in addition to the home position.
         sweeps: The sweeps over the range.
         close_ups: Maximum number of close-ups.
         close_up_zoom: Magnification of the close-ups; None if there are none.
@@ -84,30 +85,30 @@ class CapturePlan:
 
 
 def scene_folder(camera: str, to: Path, name: str | None) -> Path:
-    """Return the folder of a new scene.
+    """Return the folder for a new scene.
 
     Args:
-        camera: The camera's spec, whose name in ``scope.yaml`` is the default name of the scene.
-        to: The folder of scenes.
-        name: Name of the scene; None for the camera's name.
+        camera: The camera's spec. Its name in ``scope.yaml`` is the default scene name.
+        to: The scenes folder.
+        name: The scene's name; None for the camera's name.
 
     Raises:
-        InputError: The name is missing, is not in kebab-case, or is that of a variation.
+        InputError: The name is missing, is not in kebab-case, or is reserved for variations.
         OutputError: The folder already exists.
     """
     from scope_ptz.simulator.pack import variation_of
 
-    chosen = parse_camera(camera).name if name is None else name
-    if not chosen:
-        raise InputError("The scene needs a name: add --name, for example --name my-yard.")
-    if not _KEBAB.fullmatch(chosen):
+    scene_name = parse_camera(camera).name if name is None else name
+    if not scene_name:
+        raise InputError("The scene must have a name. Add --name, for example --name my-yard.")
+    if not _KEBAB.fullmatch(scene_name):
         raise InputError(
-            f"The name of a scene must have lower-case letters, digits and single hyphens, such as my-yard; got '{chosen[:60]}'. "
-            "Give one with --name."
+            "A scene name must consist of lower-case letters, digits and single hyphens, such as my-yard; "
+            f"got '{scene_name[:60]}'. Choose a name with --name."
         )
-    if variation_of(chosen)[1] is not None:
-        raise InputError(f"'{chosen}' is the name of a variation of a scene. Choose a name that does not end in -v and a number.")
-    folder = to / chosen
+    if variation_of(scene_name)[1] is not None:
+        raise InputError(f"'{scene_name}' is the name of a scene variation. Choose a name that does not end in -v and a number.")
+    folder = to / scene_name
     if folder.exists():
         raise OutputError(f"{folder} already exists. Choose another --name, or remove the folder to capture the scene again.")
     return folder
@@ -119,14 +120,14 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
     Args:
         camera: The camera's spec.
         folder: The scene's folder, from ``scene_folder``.
-        options: The options of the capture.
-        progress: Called with the name of a phase, the number of finished steps, and the number of all its steps.
+        options: The capture options.
+        progress: Called with the name of a phase, the number of finished steps, and the total number of steps.
 
     Raises:
         InputError: The spec or an option is invalid, or the camera's field of view is unknown.
-        ControlHeldError: Another program controls the camera, or captures into the same folder.
-        CameraError: The camera fails. Frames taken before the failure stay stored.
-        OutputError: The folder cannot be written, or contains an unfinished capture with other settings.
+        ControlHeldError: Another program has control of the camera, or is capturing to the same folder.
+        CameraError: The camera failed. Frames that were already taken remain stored.
+        OutputError: The folder cannot be written to, or contains an unfinished capture with different settings.
     """
     from anyio import to_thread
 
@@ -134,7 +135,7 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder.parent} cannot be written: {error.strerror or error}.") from error
+        raise OutputError(f"{folder.parent} cannot be written to: {error.strerror or error}.") from error
     lock = _acquire_lock(folder)
     try:
         session = await _take(camera, work, options, progress)
@@ -144,16 +145,20 @@ async def capture_scene(camera: str, folder: Path, options: CaptureOptions, prog
 
 
 async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
-    """Return what ``capture_scene`` would do with the same arguments. The camera does not move, and nothing is written.
+    """Plan a capture. The camera does not move, and nothing is written.
+
+    Args:
+        camera: The camera's spec.
+        options: The capture options.
 
     Raises:
         InputError: The spec or an option is invalid, or the camera's field of view is unknown.
-        CameraError: The camera fails.
+        CameraError: The camera failed.
     """
-    from scope_ptz.camera.capture.frame_taking import close_up_zoom, planned_sweeps, settings_of
+    from scope_ptz.camera.capture.frame_taking import capture_settings, close_up_zoom, planned_sweeps
 
     async with await open_camera(camera, actor=_actor()) as opened:
-        settings = settings_of(opened.camera, options)
+        settings = capture_settings(opened.camera, options)
         presets = _presets_in_reach(opened)
         if presets is None:
             presets = [preset.name for preset in await opened.camera.presets()]
@@ -170,20 +175,20 @@ async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
 
 
 async def _take(camera: str, work: Path, options: CaptureOptions, progress: Progress) -> CaptureSession:
-    from scope_ptz.camera.capture.frame_taking import settings_of, take_frames
+    from scope_ptz.camera.capture.frame_taking import capture_settings, take_frames
     from scope_ptz.camera.capture.session import CaptureSession
 
     actor = _actor()
     async with await open_camera(camera, actor=actor) as opened:
-        settings = settings_of(opened.camera, options)
+        settings = capture_settings(opened.camera, options)
         session = CaptureSession(work, settings, datetime.now(UTC).isoformat(timespec="seconds"))
-        if not session.complete:
+        if not session.is_complete:
             await take_frames(opened.camera, session, progress, holder=actor, presets=_presets_in_reach(opened))
     return session
 
 
 def _acquire_lock(folder: Path) -> ControlLock:
-    """Acquire and return a lock that keeps other programs from capturing into the same folder."""
+    """Acquire a lock that prevents other programs from capturing to the same folder."""
     lock = ControlLock(f"The capture of {folder}", f"capture {folder.resolve()}", load_settings().cache_dir / "control")
     lock.acquire(_actor())
     return lock
@@ -194,7 +199,7 @@ def _actor() -> str:
 
 
 def _presets_in_reach(opened: OpenCamera) -> list[str] | None:
-    """Return the presets that can be reached without leaving the optical centre; None if all of them can."""
+    """Return the presets at the camera's viewpoint; None if the camera has no other viewpoints."""
     if opened.scene is None:
         return None
     file = opened.scene.file
@@ -203,33 +208,35 @@ def _presets_in_reach(opened: OpenCamera) -> list[str] | None:
 
 
 def build_scene(session: CaptureSession, folder: Path, progress: Progress) -> CapturedScene:
-    """Register the frames of a capture, write them as a scene, and remove the unfinished capture.
+    """Register the frames of a capture, write the scene, and remove the capture's working folder.
 
     Args:
-        session: The capture, with all its frames.
+        session: The capture, with all of its frames.
         folder: The scene's folder, which must not exist yet.
-        progress: Called with the name of a phase, the number of finished steps, and the number of all its steps.
+        progress: Called with the name of a phase, the number of finished steps, and the total number of steps.
 
     Raises:
-        OutputError: The folder cannot be written, or a stored frame is damaged.
+        OutputError: The folder cannot be written to, or a stored frame is missing or damaged.
     """
     from scope_ptz.camera.capture.registration import register
     from scope_ptz.camera.capture.scene_writer import write_scene
 
-    found = register(session, progress)
-    written = write_scene(session, found, folder, progress)
+    registration = register(session, progress)
+    written = write_scene(session, registration, folder, progress)
     session.remove()
-    good = [angle for angle, used in zip(found.corrections_deg, found.registered, strict=True) if used]
-    factors = sorted(found.focal_factors)
+    corrections_deg = [
+        angle_deg for angle_deg, used in zip(registration.corrections_deg, registration.registered, strict=True) if used
+    ]
+    factors = sorted(registration.focal_factors)
     captured = written.file.captured
     return CapturedScene(
         name=folder.name,
         folder=folder,
-        frames=len(found.shots),
-        registered=len(good),
-        correction_deg=median(good) if good else None,
-        largest_correction_deg=max(good, default=None),
-        residual_px=found.residual_px if good else None,
+        frames=len(registration.shots),
+        registered=len(corrections_deg),
+        correction_deg=median(corrections_deg) if corrections_deg else None,
+        largest_correction_deg=max(corrections_deg, default=None),
+        residual_px=registration.residual_px if corrections_deg else None,
         focal_factor=factors[0][1] if factors else None,
         tiles=written.tiles,
         unseen_share=captured.unseen_share if captured else 0.0,

@@ -1,4 +1,4 @@
-"""Named cameras of ``scope.yaml``, and the rules that the file defines for them."""
+"""The named cameras in ``scope.yaml``, and the rules that the file defines for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.settings import find_camera_file, load_settings
 
 
 def named_cameras() -> dict[str, NamedCamera]:
-    """Return the cameras of ``scope.yaml`` by name.
+    """Return the cameras in ``scope.yaml`` by name.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid.
@@ -20,7 +20,7 @@ def named_cameras() -> dict[str, NamedCamera]:
 
 
 def audit_logs() -> list[Path]:
-    """Return the paths of the audit logs that ``scope.yaml`` configures, without duplicates. The files need not exist.
+    """Return the paths of the audit logs in ``scope.yaml``, without duplicates. The files need not exist.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid.
@@ -30,7 +30,7 @@ def audit_logs() -> list[Path]:
 
 
 def apply_rules(camera: Camera, name: str, *, actor: str) -> Camera:
-    """Wrap a camera so that it follows the rules of its entry in ``scope.yaml``: mounting, limits and audit log.
+    """Wrap a camera so that it follows the mounting, rules and audit log in its ``scope.yaml`` entry.
 
     Args:
         camera: The camera.
@@ -39,7 +39,7 @@ def apply_rules(camera: Camera, name: str, *, actor: str) -> Camera:
 
     Raises:
         ConfigError: The rules exclude every pose within the device's limits, or the name is not in the file.
-        OutputError: The audit log cannot be written.
+        OutputError: The audit log cannot be written to.
     """
     from scope_ptz.camera.guard.audit import AuditLog
     from scope_ptz.camera.guard.guarded_camera import GuardedCamera
@@ -49,7 +49,7 @@ def apply_rules(camera: Camera, name: str, *, actor: str) -> Camera:
     file, folder = _read_camera_file()
     named = file.cameras.get(name)
     if named is None:
-        raise ConfigError(f"The camera '{name}' is not in scope.yaml. Add it to the file, or name another camera.")
+        raise ConfigError(f"The camera '{name}' is not in scope.yaml. Add it to the file, or choose another camera.")
     if named.mounting != Mounting():
         camera = MountedCamera(camera, named.mounting)
     if named.rules == CameraRules() and named.audit_log is None:

@@ -1,4 +1,4 @@
-"""Network cameras from specs such as ``axis://operator@10.0.0.7``: credentials, the driver, and the control lock."""
+"""Open network cameras from specs such as ``axis://operator@10.0.0.7``: find credentials, acquire control, connect the driver."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.served import ServedTruth
 
 NETWORK_SCHEMES: tuple[str, ...] = ("axis", "onvif")
-"""The schemes of drivers for network cameras."""
+"""The schemes of network camera drivers."""
 
 STREAMS = {"axis": ("mjpeg", "rtsp"), "onvif": ("rtsp", "snapshot")}
-"""Values of the option ``stream`` for each scheme. The first is the default."""
+"""The values of the option ``stream`` for each scheme. The first value is the default."""
 
 _NUMBERS = {"width": 10_000, "height": 10_000, "channel": 64, "rtsp_port": 65_535, "latency_ms": 10_000}  # maximum values
 _DEGREES = ("hfov_wide", "hfov_tele")
@@ -39,13 +39,13 @@ OPTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class OpenNetworkCamera:
-    """A connected camera.
+    """A connected network camera.
 
     Attributes:
         camera: The camera.
-        release: Releases the control lock. Call it after the camera is closed.
-        served_truth: Connects to the ground truth that a virtual camera serves, for simulation-only perception. It raises
-            ``InputError`` for a camera that is not on this machine.
+        release: A function that releases the control lock. Call it after closing the camera.
+        served_truth: A function that connects to a virtual camera's ground truth, for simulation-only perception. It raises
+            ``InputError`` if the camera is not on this machine.
     """
 
     camera: Camera
@@ -54,7 +54,7 @@ class OpenNetworkCamera:
 
 
 def check_network_spec(spec: CameraSpec) -> None:
-    """Check the address and the options of a spec without connecting.
+    """Check a spec's address and options without connecting.
 
     Raises:
         InputError: The address or an option is invalid.
@@ -76,22 +76,23 @@ def check_network_spec(spec: CameraSpec) -> None:
     check_angles(spec)
     fields = _fields(spec)
     if ("hfov_wide" in spec.options) != ("hfov_tele" in spec.options) or (fields is not None and fields[0] <= fields[1]):
-        raise InputError("Give both hfov_wide and hfov_tele in degrees. The wide angle must be larger.")
+        raise InputError("Specify both hfov_wide and hfov_tele in degrees. hfov_wide must be the larger angle.")
 
 
 async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", for_measurement: bool = False) -> OpenNetworkCamera:
-    """Connect to a network camera and hold its control lock, so that only one program at a time can move it.
+    """Connect to a network camera and acquire its control lock, so that only one program at a time can move it.
 
     Args:
         spec: The camera.
-        actor: Who controls the camera, as shown to other programs that request control.
-        for_measurement: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the
+        actor: Name of the holder of control, which is shown to other programs that request control.
+        for_measurement: Whether the camera is opened to be probed or calibrated. If so, stored measurements are ignored, and the
             driver may assume values that are not known yet.
 
-    Raises:
-        InputError: The spec or an option is invalid, or there is no password for the account.
-        ControlHeldError: Another program has control. The message names it.
-        CameraError: The camera cannot be reached, or does not accept the account.
+        Raises:
+            InputError: The spec or an option is invalid.
+            ConfigError: There is no password for the account.
+            ControlHeldError: Another program has control. The message names the holder if known.
+            CameraError: The camera cannot be reached, or rejects the credentials.
     """
     from scope_ptz.camera.control import ControlLock
     from scope_ptz.camera.network.address import parse_address
@@ -129,7 +130,7 @@ def _served_truth(
 
 
 async def _tls_verification(spec: CameraSpec, address: DeviceAddress) -> SSLContext | bool:
-    """Return the TLS verification: a pinned fingerprint from ``scope.yaml``, or True for the system's certificate authorities."""
+    """Return a TLS context for the fingerprint in ``scope.yaml``, or True to use the system's certificate authorities."""
     if not spec.name or not address.tls:
         return True
     from anyio import to_thread

@@ -1,4 +1,4 @@
-"""ONVIF cameras from specs such as ``onvif://operator@10.0.0.7``: their options and stored measurements."""
+"""Open ONVIF cameras from specs such as ``onvif://operator@10.0.0.7``, with their options and stored measurements."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from scope_ptz.camera.spec import CameraSpec
 
 ANGLES = ("pan_min", "pan_max", "tilt_min", "tilt_max")
-"""Options for the angles, in degrees, at the ends of the generic coordinate range of pan and tilt."""
+"""Options for the angles in degrees at the ends of the generic pan and tilt ranges."""
 
 _MAX_ANGLE_DEG = 360.0
 
 
 def check_angles(spec: CameraSpec) -> None:
-    """Check the options that are angles.
+    """Check the angle options.
 
     Raises:
         InputError: An angle is missing or invalid.
@@ -33,14 +33,14 @@ def check_angles(spec: CameraSpec) -> None:
         _end_angles_deg(spec, axis)
 
 
-def mapping_of(
+def onvif_mapping(
     spec: CameraSpec, fields_deg: tuple[float, float] | None, calibration: CalibrationRecord | None
 ) -> OnvifMapping:  # fmt: skip
-    """Return the coordinate mapping of a camera from its options. Stored measurements fill in for options that are missing.
+    """Return a camera's coordinate mapping, from its options and, where options are missing, from stored measurements.
 
     Args:
         spec: The camera.
-        fields_deg: Horizontal fields of view at the widest and the closest zoom, as set by options; None if they are not set.
+        fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom, from the options; None if not set.
         calibration: The stored measurements; None if there are none.
     """
     from scope_ptz.camera.onvif.mapping import OnvifMapping
@@ -71,20 +71,20 @@ async def open_onvif(
     Args:
         spec: The camera.
         address: The camera's address.
-        credentials: The account.
-        verify: The TLS verification of its certificate.
-        fields_deg: Horizontal fields of view at the widest and the closest zoom, as set by options; None if they are not set.
-        for_measurement: Whether to assume values that are not measured yet, and to ignore stored measurements.
+        credentials: The credentials for signing in.
+        verify: Whether to verify the camera's certificate, or a TLS context that verifies it.
+        fields_deg: Horizontal fields of view in degrees at the widest and the closest zoom, from the options; None if not set.
+        for_measurement: Whether to ignore stored measurements and assume values that have not been measured yet.
 
     Raises:
-        CameraError: The camera cannot be reached, rejects the account, or must be measured first.
+        CameraError: The camera cannot be reached, rejects the credentials, or must be calibrated first.
     """
     from scope_ptz.camera.network.http import DeviceHttp
     from scope_ptz.camera.onvif.camera import OnvifCamera
 
     options = spec.options
     calibration = None if for_measurement else load_calibration(spec, address)
-    mapping = mapping_of(spec, fields_deg, calibration)
+    mapping = onvif_mapping(spec, fields_deg, calibration)
     return await OnvifCamera.open(
         DeviceHttp(address, credentials, verify=verify),
         credentials,
@@ -102,8 +102,8 @@ async def open_onvif(
 
 def _end_angles_deg(spec: CameraSpec, axis: str) -> tuple[float, float] | None:
     names = (f"{axis}_min", f"{axis}_max")
-    given = [name for name in names if name in spec.options]
-    if not given:
+    present = [name for name in names if name in spec.options]
+    if not present:
         return None
     low, high = (_angle(name, spec.options.get(name, "")) for name in names)
     if low == high:

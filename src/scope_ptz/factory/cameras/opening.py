@@ -1,4 +1,4 @@
-"""Open cameras with their clock and ground truth."""
+"""Open cameras, with their clocks and ground truth."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 
 class OpenCamera:
-    """A camera that is ready for use. Close it with ``aclose`` or use it as an async context manager.
+    """An open camera. Close it with ``aclose``, or use it as an async context manager.
 
     Attributes:
         spec: The spec from which the camera was opened.
         camera: The camera.
-        scene: The scene that the camera shows, with the ground truth of its frames if there is any; None for other cameras.
-        served_truth: Connects to the ground truth that a virtual camera serves; None for other cameras, and for one whose rules in
-            ``scope.yaml`` change its pictures or poses.
+        scene: The scene that the camera shows, with the ground truth for its frames if there is any; None for other cameras.
+        served_truth: A function that connects to a virtual camera's ground truth; None for other cameras, and for a camera whose
+            rules in ``scope.yaml`` change its pictures or poses.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class OpenCamera:
 
     @property
     def has_truth(self) -> bool:
-        """Whether ground truth exists for the camera's frames."""
+        """Whether there is ground truth for the camera's frames."""
         return self.scene is not None and self.scene.file.captured is None
 
     @property
@@ -69,7 +69,7 @@ class OpenCamera:
             self.camera.record_instruction(instruction)
 
     async def aclose(self) -> None:
-        """Close the camera and the worker process that was started for it, if any. Calling it again has no effect."""
+        """Close the camera and release its resources, such as a worker process."""
         release, self._release = self._release, None
         try:
             await self.camera.close()
@@ -100,35 +100,35 @@ async def open_camera(
 
     Args:
         spec: A parsed spec, or its text.
-        viewpoint: The camera's viewpoint in the scene; the default is that of the home preset.
-        preset: The preset to start at. It determines the viewpoint, so only one of the two may be given.
-        time_s: Scene time at the start, in seconds; the default is the scene's own start time.
-        realtime: Whether scene time follows the wall clock, so that a person can watch. Otherwise, moves take no wall-clock time.
-        actor: Who controls the camera, as recorded in the audit log and shown to other programs that request control; the default
-            is the user of the operating system.
-        for_measurement: Whether the camera is opened to be probed or calibrated. Stored measurements are then ignored, and the
+        viewpoint: The camera's viewpoint in the scene; by default, that of the home preset.
+        preset: The preset to start at. It determines the viewpoint, so it cannot be combined with ``viewpoint``.
+        time_s: Initial scene time in seconds; by default, the scene's own start time.
+        realtime: Whether scene time follows the wall clock, so that people can watch. If not, moves take no wall-clock time.
+        actor: Name of the holder of control, which is recorded in the audit log and shown to other programs that request control;
+            by default, the operating system's user name.
+        for_measurement: Whether the camera is opened to be probed or calibrated. If so, stored measurements are ignored, and the
             driver may assume values that are not known yet.
-        dry_run: If given, commands are not executed. Instead, this function is called with a sentence about each. A simulated
-            camera still starts at its preset.
-        add_on: The connection of the add-on in a Blender, for ``blender-window``; None outside a server.
+        dry_run: If given, commands are not carried out; instead, this function is called with a description of each command. A
+            simulated camera still starts at its preset.
+        add_on: The slot for the connection to a Blender add-on, for ``blender-window``; None outside a server.
 
     Returns:
-        The open camera, which the caller closes.
+        The open camera, which the caller must close.
 
     Raises:
         InputError: The spec, the viewpoint, the preset or the combination of options is invalid.
-        PackError: The files of a scene are damaged.
-        CameraError: The camera failed or did not answer.
+        PackError: A scene's files are damaged.
+        CameraError: The camera failed or did not respond.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
     if isinstance(spec, str):
         spec = parse_camera(spec)
     if viewpoint and preset:
-        raise InputError("Give --viewpoint or --preset, not both: a preset determines the viewpoint.")
+        raise InputError("Use either --viewpoint or --preset, not both: a preset determines the viewpoint.")
     if spec.scheme == "sim":
         from anyio import to_thread
 
-        # In a thread, because a server must continue to deliver pictures while it reads the tables of a scene.
+        # Open the scene in a thread, so that a server can continue to deliver pictures.
         opened = await to_thread.run_sync(partial(_open_simulated, spec, viewpoint, time_s, realtime=realtime))
     elif spec.scheme == "blender":
         from scope_ptz.factory.cameras.blender import open_live_blender
@@ -180,7 +180,7 @@ def _open_blender_window(spec: CameraSpec, add_on: AddOnSlot | None) -> OpenCame
 
     if add_on is None:
         raise InputError(
-            f"The camera {BLENDER_WINDOW} exists only on a server, to which the add-on in Blender connects. Start the server with "
+            f"The camera {BLENDER_WINDOW} is available only on a server to which Blender's add-on connects. Start a server with "
             f"`scope serve --camera {BLENDER_WINDOW}`."
         )
     return OpenCamera(spec, BlenderWindowCamera(add_on))
@@ -199,11 +199,11 @@ async def _open_network(
 def _reject_scene_options(spec: CameraSpec, viewpoint: str | None, time_s: float | None, kind: str) -> None:
     if viewpoint is not None or time_s is not None:
         option = "--viewpoint" if viewpoint is not None else "--at"
-        raise InputError(f"{option} needs a camera in a scene, but '{spec}' is {kind}. Remove the option.")
+        raise InputError(f"{option} requires a camera in a scene, but '{spec}' is {kind}. Remove the option.")
 
 
 async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
-    """Open a camera of an installed plug-in. The plug-in's factory may be a plain or an async function."""
+    """Open a camera from an installed plug-in, whose factory may be a plain or an async function."""
     entry = find(CAMERAS, spec.scheme)
     if entry is None:
         raise InputError(unknown_scheme(spec.scheme, str(spec)))
@@ -214,6 +214,6 @@ async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | 
             product = await product
         except ScopeError:
             raise
-        except Exception as error:  # the code of another package can raise anything
+        except Exception as error:  # code from another package can raise anything
             raise CameraError(f"The camera '{spec}' ({entry.package}) cannot be opened: {one_line(error)}.") from error
     return OpenCamera(spec, expect_product(entry, Camera, product))  # type: ignore[type-abstract]

@@ -26,26 +26,27 @@ def parse_camera(text: str) -> CameraSpec:
 
     Args:
         text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
-            (``blender:highway-works``, ``blender:yard.blend``), a camera on the network (``axis://operator@10.0.0.7``), or
-            ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow a question mark:
+            (``blender:highway-works``, ``blender:yard.blend``), a network camera (``axis://operator@10.0.0.7``), or
+            ``SCHEME:ADDRESS`` for a plug-in's camera. Options follow a question mark:
             ``blender:yard.blend?samples=4&width=640&height=360``. A name without a colon may also be a camera in ``scope.yaml``.
 
     Raises:
-        InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.
+        InputError: The spec is empty or contains a password, its scheme or an option is unknown, or a file does not exist.
     """
     text = text.strip()
     scheme, colon, rest = text.partition(":")
     if text == BLENDER_WINDOW:
         colon = ":"
     if not colon:
-        if (named := _named(text)) is not None:
+        if (named := _named_spec(text)) is not None:
             return named
         scheme, rest = "sim", text
     scheme = scheme.lower()
     address, _, query = rest.partition("?")
     if _has_credentials(scheme, address):
         raise InputError(
-            f"Remove user:password@ from the camera spec `{scheme}:...`: traces and the shell history would store the password."
+            f"Remove user:password@ from the camera spec `{scheme}:...`. Otherwise, traces and the shell history would contain the "
+            "password."
         )
     if scheme not in BUILT_IN_SCHEMES and find(CAMERAS, scheme) is None:
         raise InputError(unknown_scheme(scheme, text))
@@ -55,8 +56,8 @@ def parse_camera(text: str) -> CameraSpec:
     return spec
 
 
-def _named(text: str) -> CameraSpec | None:
-    """Return the spec of a camera in ``scope.yaml``; None if that file has no camera of this name."""
+def _named_spec(text: str) -> CameraSpec | None:
+    """Return the spec of a camera in ``scope.yaml``; None if the file has no camera with this name."""
     if find_camera_file(load_settings()) is None:
         return None
     from scope_ptz.factory.cameras.named_cameras import named_cameras
@@ -70,9 +71,9 @@ def _named(text: str) -> CameraSpec | None:
 
 
 def camera_names() -> tuple[str, ...]:
-    """Return the camera specs that can be opened, with placeholders such as ``axis://USER@HOST`` where an address is needed.
+    """Return the available camera specs, with placeholders such as ``axis://USER@HOST`` where an address is required.
 
-    They are the cameras in ``scope.yaml``, scenes, scenes that Blender can render live, network cameras and cameras of plug-ins.
+    These are the cameras in ``scope.yaml``, scenes, scenes that Blender can render live, network cameras and plug-in cameras.
     """
     from scope_ptz.blender.sources import scene_names
     from scope_ptz.simulator.pack import list_scenes
@@ -90,12 +91,12 @@ def camera_names() -> tuple[str, ...]:
 
 
 def frame_size(spec: CameraSpec) -> tuple[int, int]:
-    """Return the frame width and height from the options of a spec. The default is 1280 x 720 pixels."""
+    """Return the frame width and height from a spec's options. The default is 1280 x 720 pixels."""
     return int(spec.options.get("width", 1280)), int(spec.options.get("height", 720))
 
 
 def _has_credentials(scheme: str, address: str) -> bool:
-    """Return whether an address looks like ``user:password@host``. Names of Blender files may contain both characters."""
+    """Return whether an address looks like ``user:password@host``. Scenes and Blender files, whose names may too, are exempt."""
     if scheme in BUILT_IN_SCHEMES and scheme not in NETWORK_SCHEMES and not address.startswith("//"):
         return False
     before, at, _ = address.rpartition("@")
@@ -106,12 +107,12 @@ def unknown_scheme(scheme: str, text: str) -> str:
     """Return the error message for an unknown scheme.
 
     Args:
-        scheme: The scheme, in lower case.
+        scheme: The scheme in lower case.
         text: The whole spec.
     """
-    if text.lower().endswith(_BLENDER_FILES) and len(scheme) == 1:  # a drive letter of Windows
-        return f"'{text}' is a file: write blender:{text} to open it with Blender."
-    # The message omits the address, which may contain a password if the scheme is mistyped.
+    if text.lower().endswith(_BLENDER_FILES) and len(scheme) == 1:  # a Windows drive letter
+        return f"'{text}' is a file. Use blender:{text} to open it with Blender."
+    # The message omits the address, which may contain a password if the scheme was mistyped.
     return str(UnknownNameError("camera scheme", scheme, [*BUILT_IN_SCHEMES, *(entry.name for entry in installed(CAMERAS))]))
 
 
@@ -122,12 +123,12 @@ def _check_built_in(spec: CameraSpec) -> None:
     if spec.scheme == BLENDER_WINDOW:
         if spec.address or spec.options:
             raise InputError(
-                f"The camera spec {BLENDER_WINDOW}: has neither an address nor options. Set the picture size in Blender."
+                f"The camera spec {BLENDER_WINDOW} does not accept an address or options. Set the picture size in Blender."
             )
         return
     if not spec.address:
         raise InputError(
-            "The camera spec does not name a scene. Name one, for example highway-works; `scope scene list` lists the scenes."
+            "The camera spec does not name a scene. Add one, for example sim:highway-works. `scope scene list` lists the scenes."
         )
     known = _OPTIONS[spec.scheme]
     for name, value in spec.options.items():
@@ -137,7 +138,7 @@ def _check_built_in(spec: CameraSpec) -> None:
             raise InputError(f"The camera option {name} must be a whole number from 1 to 10000; got '{value[:40]}'.")
     is_file = spec.address.lower().endswith(_BLENDER_FILES)
     if spec.scheme == "sim" and is_file:
-        raise InputError(f"'{spec.address}' is a file: write blender:{spec.address} to open it with Blender.")
+        raise InputError(f"'{spec.address}' is a file. Use blender:{spec.address} to open it with Blender.")
     if spec.scheme == "blender":
         if is_file and not Path(spec.address).is_file():
             raise InputError(f"The file {spec.address} does not exist.")

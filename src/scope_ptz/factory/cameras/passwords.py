@@ -1,4 +1,4 @@
-"""The credentials of network cameras. A password is never read from the command line."""
+"""Find and store the credentials of network cameras. Passwords are never read from the command line."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.settings import load_settings, read_secret
 
 KEYRING_SERVICE = "scope-ptz"
-"""The service under which passwords are stored in the operating system's keyring. The entry's user is ``USER@HOST``."""
+"""The service name for passwords in the operating system's keyring. The user name of an entry is ``USER@HOST``."""
 
 
 def find_credentials(spec: CameraSpec) -> Credentials:
-    """Return the credentials of a camera: the user from its spec, and the password from the source that the site configures.
+    """Return a camera's credentials: the user name from its spec, and the password from the configured source.
 
-    An entry in ``scope.yaml`` may name the source. Otherwise, these sources are tried in order: the environment variable
-    SCOPE_CAMERA_PASSWORD, the keyring, and a prompt if the program runs in a terminal.
+    The camera's entry in ``scope.yaml`` may specify the source. Otherwise, these sources are tried in order: the environment
+    variable SCOPE_CAMERA_PASSWORD, the keyring, and a prompt if the program is running in a terminal.
 
     Args:
         spec: A spec such as ``axis://operator@10.0.0.7``.
 
     Raises:
-        InputError: The spec names no user.
+        InputError: The spec contains no user name.
         ConfigError: There is no password.
     """
-    account = account_of(spec)
+    account = camera_account(spec)
     password = _password(account, _password_source(spec))
     if not password:
         raise ConfigError(
@@ -38,15 +38,15 @@ def find_credentials(spec: CameraSpec) -> Credentials:
     return Credentials(account.rpartition("@")[0], password)
 
 
-def account_of(spec: CameraSpec) -> str:
-    """Return the account of a spec as ``USER@HOST``, with the port if it is given.
+def camera_account(spec: CameraSpec) -> str:
+    """Return a spec's account as ``USER@HOST``, with the port if there is one.
 
     Raises:
-        InputError: The spec names no user.
+        InputError: The spec contains no user name.
     """
     user, at, _ = spec.address.rpartition("@")
     if not at or not user:
-        raise InputError(f"The camera spec must name the account: {spec.scheme}://USER@{spec.address[:80]}")
+        raise InputError(f"The camera spec must contain a user name: {spec.scheme}://USER@{spec.address[:80]}")
     return spec.address.rstrip("/")
 
 
@@ -54,15 +54,15 @@ def store_password(spec: CameraSpec, password: str) -> None:
     """Store a password in the operating system's keyring.
 
     Raises:
-        InputError: The spec names no user, or the password is empty.
-        ConfigError: No keyring is available, or it does not store the password.
+        InputError: The spec contains no user name, or the password is empty.
+        ConfigError: No keyring is available, or the keyring did not store the password.
     """
-    account = account_of(spec)
+    account = camera_account(spec)
     if not password:
         raise InputError("The password is empty. Enter a password.")
     keyring = _keyring()
     if keyring is None:
-        raise ConfigError("No keyring can be used here. Install the extra `camera`, or set SCOPE_CAMERA_PASSWORD.")
+        raise ConfigError("No keyring is available. Install the extra `camera`, or set SCOPE_CAMERA_PASSWORD.")
     try:
         keyring.set_password(KEYRING_SERVICE, account, password)
     except Exception as error:  # each keyring backend raises its own exceptions
@@ -103,7 +103,7 @@ def _from_keyring(account: str) -> str | None:
         return None
     try:
         password: str | None = keyring.get_password(KEYRING_SERVICE, account)
-    except Exception:  # treat a locked or broken keyring as absent: another source may have the password
+    except Exception:  # treat a locked or broken keyring as missing, because another source may have the password
         return None
     return password
 

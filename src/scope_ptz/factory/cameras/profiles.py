@@ -1,4 +1,4 @@
-"""Measure cameras and store the results in their profiles."""
+"""Probe and calibrate cameras, and store the results in their profiles."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from scope_ptz.camera.measurement.profile import CalibrationRecord, CameraProfile, ProbeRecord
     from scope_ptz.camera.spec import CameraSpec
 
-_TIMED_PICTURES = 5  # number of pictures that a probe times; the median is stored
+_TIMED_PICTURES = 5  # number of pictures to time; the median is stored
 
 
 async def probe_camera(text: str) -> tuple[ProbeRecord, Path]:
-    """Read a camera's capabilities, time some pictures, and store the result. The camera does not move.
+    """Read a camera's capabilities, measure how long it takes to take a picture, and store the result. The camera does not move.
 
     Returns:
         The record, and the path of the profile.
 
     Raises:
-        ScopeError: The camera cannot be opened or fails, or the profile cannot be written.
+        ScopeError: The camera cannot be opened or failed, or the profile cannot be written.
     """
     spec = parse_camera(text)
     async with await open_camera(spec, for_measurement=True) as opened:
@@ -44,27 +44,27 @@ async def calibrate_camera(
         The record, and the path of the profile.
 
     Raises:
-        ScopeError: The camera cannot be opened or fails, no place has enough detail, or the profile cannot be written.
+        ScopeError: The camera cannot be opened or failed, no direction shows enough detail, or the profile cannot be written.
     """
     from scope_ptz.camera.measurement.calibration import calibrate
-    from scope_ptz.camera.measurement.profile import record_of
+    from scope_ptz.camera.measurement.profile import calibration_record
 
     spec = parse_camera(text)
     async with await open_camera(spec, for_measurement=True) as opened:
         info = opened.camera.info
         calibration = await calibrate(opened.camera, zooms=zooms, assumed=info.assumed, progress=progress)
         limits = info.limits
-        record = record_of(
+        record = calibration_record(
             calibration, (limits.min_pan_deg, limits.max_pan_deg), (limits.min_tilt_deg, limits.max_tilt_deg), info.assumed
         )  # fmt: skip
     return record, _store(spec, calibration=record)
 
 
 async def plan_camera_calibration(text: str, *, zooms: int = 6) -> CalibrationPlan:
-    """Return the moves that a calibration would make. The camera does not move, and nothing is stored.
+    """Plan the moves for a calibration. The camera does not move, and nothing is stored.
 
     Raises:
-        ScopeError: The camera cannot be opened or fails.
+        ScopeError: The camera cannot be opened or failed.
     """
     from scope_ptz.camera.measurement.calibration_plan import plan_calibration
 
@@ -73,10 +73,10 @@ async def plan_camera_calibration(text: str, *, zooms: int = 6) -> CalibrationPl
 
 
 def stored_calibration(text: str) -> CalibrationRecord | None:
-    """Return the stored measurements of a camera; None if there are none.
+    """Return a camera's stored calibration; None if there is none.
 
     Raises:
-        ScopeError: The spec is wrong, or the profile is damaged.
+        ScopeError: The spec is invalid, or the profile is damaged.
     """
     from scope_ptz.camera.measurement.profile import load_profile
 

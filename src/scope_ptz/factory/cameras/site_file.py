@@ -21,11 +21,11 @@ class _Part(BaseModel):
 
 
 class WhenIdle(_Part):
-    """The view to which a server returns a camera that nobody has commanded for some time.
+    """The view to which a server returns an idle camera.
 
     Attributes:
-        after_s: Seconds since the last command.
-        preset: The preset; None for the home view.
+        after_s: Seconds since the last command after which the camera counts as idle.
+        preset: The preset to go to; None for the home position.
     """
 
     after_s: float = Field(ge=1.0, le=7 * 86_400.0, allow_inf_nan=False)
@@ -33,17 +33,18 @@ class WhenIdle(_Part):
 
 
 class NamedCamera(_Part):
-    """One camera of a site.
+    """A camera at a site.
 
     Attributes:
-        camera: The spec, such as ``axis://operator@10.0.0.7`` or ``sim:highway-works``. It never contains a password.
-        password: Source of the camera's password: the ``keyring`` of the operating system, a ``prompt``, or an environment variable
+        camera: The spec, such as ``axis://operator@10.0.0.7`` or ``sim:highway-works``. It must not contain a password.
+        password: Source of the camera's password: the operating system's ``keyring``, a ``prompt``, or an environment variable
             (``env:YARD_GATE_PASSWORD``). By default, SCOPE_CAMERA_PASSWORD, the keyring and a prompt are tried in this order.
-        fingerprint: SHA-256 fingerprint of a self-signed certificate, as ``openssl x509 -fingerprint -sha256`` prints it.
+        fingerprint: SHA-256 fingerprint of a self-signed certificate, as printed by ``openssl x509 -fingerprint -sha256``.
         mounting: How the camera is mounted.
         rules: Limits, keep-out regions, masks, dead zone and minimum time between moves.
-        audit_log: File that records instructions, their authors and the moves, relative to the folder of ``scope.yaml``.
-        when_idle: The view to which a server returns the camera when nobody has commanded it for some time.
+        audit_log: File for recording instructions, their authors and the moves, relative to the folder that contains
+            ``scope.yaml``.
+        when_idle: The view to which a server returns the camera when it is idle.
     """
 
     camera: str = Field(min_length=1, max_length=500)
@@ -66,7 +67,7 @@ class NamedCamera(_Part):
     @classmethod
     def _check_fingerprint(cls, value: str | None) -> str | None:
         if value is not None and len(value.replace(":", "")) != 64:
-            raise ValueError("fingerprint must be a SHA-256 with 64 hexadecimal digits, with or without colons")
+            raise ValueError("fingerprint must be a SHA-256 fingerprint with 64 hexadecimal digits, with or without colons")
         return value
 
 
@@ -78,7 +79,7 @@ class CameraFile(_Part):
 
 
 def load_camera_file(path: Path | None) -> CameraFile:
-    """Read a camera file. If ``path`` is None, return one without cameras.
+    """Read a camera file. If ``path`` is None, return a file without cameras.
 
     Raises:
         ConfigError: The file cannot be read, or its content is invalid. The message names the invalid field or line.
@@ -90,7 +91,7 @@ def load_camera_file(path: Path | None) -> CameraFile:
     try:
         text = path.read_bytes()
         if len(text) > MAX_FILE_BYTES:
-            raise ConfigError(f"{path} has {len(text)} bytes; a camera file may have at most {MAX_FILE_BYTES}.")
+            raise ConfigError(f"{path} has {len(text)} bytes, but a camera file may have at most {MAX_FILE_BYTES}.")
         content: Any = yaml.safe_load(text.decode("utf-8"))
     except OSError as error:
         raise ConfigError(f"The camera file {path} cannot be read: {error.strerror}.") from error
@@ -98,16 +99,18 @@ def load_camera_file(path: Path | None) -> CameraFile:
         raise ConfigError(f"The camera file {path} is not UTF-8 text.") from error
     except (yaml.YAMLError, RecursionError) as error:
         mark = getattr(error, "problem_mark", None)
-        where = f" in line {mark.line + 1}" if mark else ""
-        raise ConfigError(f"The camera file {path} is not valid YAML{where}: {getattr(error, 'problem', 'too deep')}.") from error
+        line_text = f" on line {mark.line + 1}" if mark else ""
+        raise ConfigError(
+            f"The camera file {path} is not valid YAML{line_text}: {getattr(error, 'problem', 'it is nested too deeply')}."
+        ) from error
     try:
         return CameraFile.model_validate({} if content is None else content)
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the top level"
-        raise ConfigError(f"The camera file {path} is invalid at {place}: {first['msg']}.") from error
+        location = ".".join(str(part) for part in first["loc"]) or "the top level"
+        raise ConfigError(f"The camera file {path} is invalid at {location}: {first['msg']}.") from error
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON schema of ``scope.yaml``."""
+    """Return the JSON schema for ``scope.yaml``."""
     return CameraFile.model_json_schema()

@@ -1,4 +1,4 @@
-"""Create virtual cameras in scenes, and serve their protocols."""
+"""Create virtual cameras in scenes, and serve them over their protocols."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ class VirtualCameraOptions:
     """Options for serving virtual cameras.
 
     Attributes:
-        scenes: Name of the scene of each camera.
-        viewpoints: Viewpoint of each camera; empty for the home viewpoints of the scenes.
+        scenes: The scene of each camera, by name.
+        viewpoints: The viewpoint of each camera; empty for the scenes' home viewpoints.
         host: Address to listen on.
         port: Port of the first camera; further cameras use the following ports. 0 lets the system choose all ports.
-        rtsp_port: RTSP port of the first camera, assigned like ``port``.
-        time_scale: Speed of the motors, as a multiple of the real speed.
-        freeze_time: Whether scene time stands still, so that actors do not move.
-        latency_s: Time from exposure until a frame is sent, in seconds.
-        faults: Settings of the faults that the cameras simulate, by name.
-        truth: Whether clients on this machine get the ground truth of frames.
+        rtsp_port: RTSP port of the first camera, assigned in the same way as ``port``.
+        time_scale: Motor speed as a multiple of the real speed.
+        freeze_time: Whether scene time is paused, so that actors do not move.
+        latency_s: Simulated delay in seconds from the exposure of a frame to its delivery.
+        faults: The faults that the cameras simulate, by name.
+        truth: Whether clients on this machine receive the ground truth for frames.
         https: Whether the cameras serve HTTPS instead of HTTP, each with a new self-signed certificate.
-        discovery: Whether the cameras answer WS-Discovery on the interface of ``host``.
+        discovery: Whether the cameras respond to WS-Discovery on the interface with the address ``host``.
         prefetch: Whether viewpoints are read in the background when the cameras start.
     """
 
@@ -61,11 +61,11 @@ class VirtualCameraOptions:
 
 
 def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account]:
-    """Return accounts with the configured password. Without one, each account gets a random password.
+    """Create accounts with the configured password or, if there is none, with random passwords.
 
     Args:
-        users: ``NAME`` or ``NAME:ROLE``; the role is viewer, operator or administrator, which is the default.
-        settings: Settings that may contain the password.
+        users: ``NAME`` or ``NAME:ROLE``, where ROLE is viewer, operator or administrator (the default).
+        settings: The settings, which may contain the password.
 
     Raises:
         InputError: A name is empty or repeated, or contains characters that HTTP cannot transmit, or a role is unknown.
@@ -84,7 +84,7 @@ def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account
             raise UnknownNameError("role", role, roles)
         if not name or name in accounts or not (name.isascii() and name.isprintable() and '"' not in name):
             raise InputError(
-                f"Each account must have a different name of printable ASCII characters without quotes; got '{name[:60]}'."
+                f"Each account must have a unique name of printable ASCII characters without quotes; got '{name[:60]}'."
             )
         password = configured.get_secret_value() if configured is not None else secrets.token_urlsafe(12)
         accounts[name] = Account(name, password, roles[role or "administrator"])
@@ -92,11 +92,11 @@ def make_accounts(users: Sequence[str], settings: ScopeSettings) -> list[Account
 
 
 def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> list[VirtualDevice]:
-    """Open the scenes and create a virtual camera in each.
+    """Open the scenes, and create a virtual camera in each.
 
     Raises:
         InputError: A scene, viewpoint, fault or number is invalid.
-        PackError: The files of a scene are damaged.
+        PackError: A scene's files are damaged.
     """
     from scope_ptz.simulator.clock import SceneClock
     from scope_ptz.virtual_camera.device import VirtualDevice
@@ -106,7 +106,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
         raise InputError("Name at least one scene, for example --scene highway-works; `scope scene list` lists them.")
     if options.viewpoints and len(options.viewpoints) != len(options.scenes):
         raise InputError(
-            f"There are {len(options.scenes)} scenes and {len(options.viewpoints)} viewpoints. Give one viewpoint for each scene."
+            f"There are {len(options.scenes)} scenes but {len(options.viewpoints)} viewpoints. Specify one viewpoint per scene."
         )
     if not 0 < options.time_scale <= MAX_TIME_SCALE:
         raise InputError(f"The time scale must be above 0 and at most {MAX_TIME_SCALE:g}; got {options.time_scale}.")
@@ -114,7 +114,7 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
     devices = []
     for scene_name, viewpoint in zip(options.scenes, options.viewpoints or (None,) * len(options.scenes), strict=True):
         scene = open_scene(scene_name)
-        # A frozen clock does not follow the wall clock. Nothing else advances it: the motors have their own clock.
+        # A clock that does not follow the wall clock is frozen, because nothing else advances it: the motors have a separate clock.
         clock = SceneClock(scene.file.start_s, realtime=not options.freeze_time)
         device = VirtualDevice(scene, viewpoint=viewpoint, accounts=accounts, clock=clock, time_scale=options.time_scale)
         device.faults = faults
@@ -126,10 +126,10 @@ def make_devices(options: VirtualCameraOptions, accounts: Sequence[Account]) -> 
 async def serve_virtual_cameras(
     devices: Sequence[VirtualDevice], options: VirtualCameraOptions
 ) -> AsyncIterator[tuple[ServedCamera, ...]]:
-    """Serve cameras with all their protocols while the context is open.
+    """Return a context manager that serves cameras over all their protocols.
 
     Raises:
-        ConfigError: A package is missing, a port is in use, or a camera without accounts would be open to the network.
+        ConfigError: A package is not installed, a port is in use, or a camera without accounts would be open to the network.
     """
     from scope_ptz.simulator.prefetch import Prefetches
 
@@ -140,7 +140,7 @@ async def serve_virtual_cameras(
         from scope_ptz.virtual_camera.onvif.discovery import DiscoverableCamera, serve_discovery
         from scope_ptz.virtual_camera.rtsp.server import RtspServer
     except ModuleNotFoundError as error:
-        raise ConfigError(f"{error.name} is missing. Install it with: pip install 'scope-ptz[serve]'") from error
+        raise ConfigError(f"The package {error.name} is not installed. Install it with: pip install 'scope-ptz[serve]'") from error
     ports, rtsp_ports = ([first + k if first else 0 for k in range(len(devices))] for first in (options.port, options.rtsp_port))
     hosts = tuple(dict.fromkeys(("localhost", "127.0.0.1", "::1", options.host)))
     certificates = [create_certificate(device.name, hosts) for device in devices] if options.https else []

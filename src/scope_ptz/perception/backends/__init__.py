@@ -1,8 +1,8 @@
-"""Perception backends that work on pixels, one module each.
+"""Perception backends that process pixels, one module each.
 
-Every module in this package that defines ``make(spec: BackendSpec) -> Perception`` is a backend, named after the module. Other
-packages add backends with entry points of the group ``scope_ptz.perception`` that point to such a function. The module of a backend
-is imported only when the backend is created.
+Every module in this package that defines ``make(spec: BackendSpec) -> Perception`` is a backend with the module's name. Other
+packages add backends with entry points in the group ``scope_ptz.perception`` that refer to such a function. A backend's module is
+imported only when the backend is created.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.models.tiled_panoramas import TiledPerception
 
-_NOT_BACKENDS = {"spec"}  # modules of this package that define no backend
+_NOT_BACKENDS = {"spec"}  # modules in this package that define no backend
 
 
 def backend_names() -> tuple[str, ...]:
-    """Return the names of all available backends: the built-in ones and those of installed packages."""
+    """Return the names of all available backends: the built-in ones and those from installed packages."""
     return tuple(sorted(built_in_backends() | {entry.name for entry in installed(PERCEPTION)}))
 
 
@@ -30,7 +30,7 @@ def built_in_backends() -> set[str]:
 
 
 def make_backend(spec: BackendSpec) -> Perception:
-    """Create the backend that a spec describes. A built-in backend takes precedence over a plug-in of the same name.
+    """Create the backend that a spec describes. A built-in backend takes precedence over a plug-in with the same name.
 
     Raises:
         UnknownNameError: There is no such backend.

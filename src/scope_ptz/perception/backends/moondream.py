@@ -12,28 +12,28 @@ from scope_ptz.endpoints.http import JsonClient
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.models.coordinates import MAX_THINGS, convention, fit
-from scope_ptz.perception.models.encoding import picture_of
+from scope_ptz.perception.models.coordinates import MAX_LOCATIONS, fit_size, get_convention
+from scope_ptz.perception.models.encoding import encode_frame
 from scope_ptz.perception.models.vision_prompts import one_line
 from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
 KEY_HEADER = "X-Moondream-Auth"
-UNIT = convention("unit")
+UNIT = get_convention("unit")
 
 
 class MoondreamOptions(Options):
-    """Options of the backend.
+    """Options for the Moondream backend.
 
     Attributes:
-        max_pixels: Frames with more pixels are scaled down to this number. The model itself processes only a few crops of
-            378 x 378 pixels.
+        max_pixels: Frames with more pixels are scaled down to this number. The model itself processes only a few crops of 378 x 378
+            pixels.
         max_objects: Maximum number of objects to request; None selects the server's limit.
         reasoning: Whether Moondream 3 reasons before it answers a question; None selects the server's default.
         caption_length: "short", "normal" or "long".
     """
 
     max_pixels: int = 2048 * 2048
-    max_objects: int | None = MAX_THINGS
+    max_objects: int | None = MAX_LOCATIONS
     reasoning: bool | None = None
     caption_length: str = "short"
 
@@ -80,9 +80,9 @@ class MoondreamPerception(Perception):
             return reply.with_earlier_attempts(error)
 
     async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], reply_field: str) -> VisionReply:
-        """Send one request. The reply contains the text or the JSON of the response field ``reply_field``."""
+        """Send one request, and return the text or the JSON data in the response field ``reply_field`` as a reply."""
         began = perf_counter()
-        picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
+        picture = await encode_frame(frame, fit_size(frame.width, frame.height, self._options.max_pixels))
         body = _body(picture.data_url, {**fields, "stream": False})
         with server_errors(self.name):
             data, attempts = await self._client.post(path, body)
@@ -92,11 +92,11 @@ class MoondreamPerception(Perception):
         value = data.get(reply_field)
         if reply_field in ("answer", "caption"):
             if not isinstance(value, str):
-                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {reply_field}")
+                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).parse_error(f"no {reply_field}")
             return VisionReply(self.name, value, began, attempts)
         reply = VisionReply(self.name, json.dumps({"objects": value}), began, attempts)
         if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {reply_field}")
+            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).parse_error(f"no list of {reply_field}")
         return reply
 
 

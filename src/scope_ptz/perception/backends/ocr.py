@@ -1,4 +1,4 @@
-"""Text recognition with rapidocr. It runs in this process, without a server, on frames of simulated and real cameras."""
+"""Text recognition with rapidocr, in this process and without a server, on frames from simulated and real cameras."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
-from scope_ptz.perception.models.text_requests import is_reading, requested_texts, text_matches
+from scope_ptz.perception.models.text_requests import is_reading_request, requested_texts, text_matches
 from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, tiles
 
 Reader = Callable[[Image], "list[Line]"]
@@ -26,7 +26,7 @@ Reader = Callable[[Image], "list[Line]"]
 
 
 class OcrOptions(Options):
-    """Options of the backend. Lines with a score below ``min_score`` are dropped."""
+    """Options for the OCR backend. Lines with a score below ``min_score`` are dropped."""
 
     min_score: float = 0.5
 
@@ -40,17 +40,17 @@ class Line:
 
 
 class OcrPerception(Perception):
-    """Perception of text only. ``detect`` and ``point`` find text by its wording.
+    """A backend that perceives only text. ``detect`` and ``point`` find text by its wording.
 
     Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``, because an image without the text
-    "car" may still show a car. The lines of each frame are cached for later questions.
+    "car" may still show a car. The lines in each frame are cached for later questions.
     """
 
     handles_panoramas = True
 
     def __init__(self, reader: Reader, name: str = "ocr") -> None:
         self.name = name
-        self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: in_reading_order(read_tiles(reader, image)))
+        self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: sort_in_reading_order(read_tiles(reader, image)))
 
     async def lines(self, frame: Frame) -> list[Line]:
         """Return all lines of text in a frame, from top to bottom and from left to right."""
@@ -59,15 +59,15 @@ class OcrPerception(Perception):
     async def caption(self, frame: Frame) -> Caption:
         began = perf_counter()
         lines = await self.lines(frame)
-        text = f"Text in view: {quoted(lines)}." if lines else "There is no readable text in view."
+        text = f"Text in view: {quote_lines(lines)}." if lines else "There is no readable text in view."
         return Caption(text=text, source=self.name, raw=_raw(lines), latency_s=perf_counter() - began)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        if not is_reading(question):
+        if not is_reading_request(question):
             raise PerceptionError(f"OCR only reads text, and cannot answer '{question}'. Ask a vision-language model.")
         began = perf_counter()
         lines = await self.lines(frame)
-        text = f"It reads: {quoted(lines)}." if lines else "There is no readable text in view."
+        text = f"It reads: {quote_lines(lines)}." if lines else "There is no readable text in view."
         return Answer(text=text, known=bool(lines), source=self.name, raw=_raw(lines), latency_s=perf_counter() - began)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
@@ -91,7 +91,7 @@ class OcrPerception(Perception):
         return lines if not texts else [line for line in lines if any(text_matches(text, line.text) for text in texts)]
 
 
-def quoted(lines: Iterable[Line]) -> str:
+def quote_lines(lines: Iterable[Line]) -> str:
     """Return the lines in quotes, so that a planner does not mistake text in the image for an instruction."""
     return ", ".join('"' + line.text.replace('"', "'") + '"' for line in lines)
 
@@ -100,7 +100,7 @@ def _raw(lines: Iterable[Line]) -> str:
     return json.dumps([{"text": line.text, "score": line.box.score} for line in lines], ensure_ascii=False)
 
 
-def in_reading_order(lines: list[Line]) -> list[Line]:
+def sort_in_reading_order(lines: list[Line]) -> list[Line]:
     """Return the lines sorted row by row. A line belongs to a row if its vertical centre lies within the row's first line."""
     rows: list[list[Line]] = []
     for line in sorted(lines, key=lambda x: x.box.centre[1]):

@@ -1,4 +1,4 @@
-"""Vision-language models behind an OpenAI-compatible server, prompted in the coordinate convention of each model."""
+"""Vision-language models behind an OpenAI-compatible server, prompted in each model's coordinate convention."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.models.coordinates import Convention, convention
-from scope_ptz.perception.models.encoding import EncodedPicture, picture_of
+from scope_ptz.perception.models.coordinates import Convention, get_convention
+from scope_ptz.perception.models.encoding import EncodedPicture, encode_frame
 from scope_ptz.perception.models.vision_prompts import (
     CAPTION_PROMPT,
     detect_prompt,
-    place_error,
-    places_schema,
+    locations_schema,
+    no_location_error,
     point_prompt,
     query_prompt,
     sent_size,
@@ -31,14 +31,14 @@ NO_COORDINATES = "none"
 
 
 class VisionOptions(Options):
-    """Options of the backend.
+    """Options for OpenAI-compatible vision models.
 
     Attributes:
         max_pixels: Frames with more pixels are scaled down to this number.
         max_tokens: Maximum number of tokens in a reply.
         temperature: The sampling temperature; None selects the server's default.
         structured: Whether to request boxes and points with a JSON schema (``response_format``).
-        extra: Further request fields that the server or the model family needs, such as ``{"chat_template_kwargs":
+        extra: Additional request fields that the server or the model family needs, such as ``{"chat_template_kwargs":
             {"enable_thinking": false}}``.
     """
 
@@ -50,15 +50,15 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Perception by a chat model that accepts images. ``style`` is its coordinate convention, or None if it returns no boxes."""
+    """Perception by a chat model that accepts images. ``convention`` is the model's coordinate convention, or None."""
 
     def __init__(
-        self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
+        self, client: ChatClient, convention: Convention | None, options: VisionOptions | None = None, name: str = "vision"
     ) -> None:
-        self.name, self._client, self._style = name, client, style
+        self.name, self._client, self._convention = name, client, convention
         self._options = options or VisionOptions()
         self._rejected: set[str] = set()
-        self.skills = ALL_SKILLS if style is not None else frozenset[Skill](("caption", "query"))
+        self.skills = ALL_SKILLS if convention is not None else frozenset[Skill](("caption", "query"))
 
     async def caption(self, frame: Frame) -> Caption:
         began = perf_counter()
@@ -71,35 +71,35 @@ class OpenAIVisionPerception(Perception):
         return self._read(await self._ask(await self._picture(frame), query_prompt(question)), began).answer()
 
     async def detect(self, frame: Frame, description: str) -> Detections:
-        style, began = self._required_style(), perf_counter()
+        convention, began = self._required_convention(), perf_counter()
         picture = await self._picture(frame)
-        prompt = detect_prompt(style, description, picture.size)
-        reply = await self._ask(picture, prompt, places_schema(style.box_key, 4))
-        return self._read(reply, began).detections(style, picture.size)
+        prompt = detect_prompt(convention, description, picture.size)
+        reply = await self._ask(picture, prompt, locations_schema(convention.box_key, 4))
+        return self._read(reply, began).detections(convention, picture.size)
 
     async def point(self, frame: Frame, description: str) -> Points:
-        style, began = self._required_style(), perf_counter()
+        convention, began = self._required_convention(), perf_counter()
         picture = await self._picture(frame)
-        prompt = point_prompt(style, description, picture.size)
-        reply = await self._ask(picture, prompt, places_schema(style.point_key, 2))
-        return self._read(reply, began).points(style, picture.size)
+        prompt = point_prompt(convention, description, picture.size)
+        reply = await self._ask(picture, prompt, locations_schema(convention.point_key, 2))
+        return self._read(reply, began).points(convention, picture.size)
 
     async def close(self) -> None:
         await self._client.close()
 
-    def _required_style(self) -> Convention:
-        if self._style is None:
-            raise place_error(self.name)
-        return self._style
+    def _required_convention(self) -> Convention:
+        if self._convention is None:
+            raise no_location_error(self.name)
+        return self._convention
 
     async def _picture(self, frame: Frame) -> EncodedPicture:
-        size = sent_size(frame, self._style or convention("generic"), self._options.max_pixels)
-        return await picture_of(frame, size)
+        size = sent_size(frame, self._convention or get_convention("generic"), self._options.max_pixels)
+        return await encode_frame(frame, size)
 
     def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> VisionReply:
         chat_reply, earlier = reply
         return VisionReply(
-            self.name, chat_reply.text, began, (*earlier, *chat_reply.attempts), cut=chat_reply.finish_reason == "length"
+            self.name, chat_reply.text, began, (*earlier, *chat_reply.attempts), truncated=chat_reply.finish_reason == "length"
         )
 
     async def _ask(
@@ -141,13 +141,13 @@ class OpenAIVisionPerception(Perception):
 
 
 _FIELD_ALIASES = {"response_format": ("response_format", "json_schema", "json schema", "grammar", "guided", "structured")}
-"""Words that error messages use for a request field. Other fields are recognised by their names."""
+"""Words that error messages use for a request field. Other fields are recognised by name."""
 
 
 def rejected_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
     """Return the request fields that an error message rejects.
 
-    If a bad-request error names no field, the JSON schema is assumed to be the cause.
+    If a bad-request error does not name a field, the JSON schema is assumed to be the cause.
     """
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
@@ -161,5 +161,5 @@ def make(spec: BackendSpec) -> Perception:
     endpoint = spec.needed_endpoint()
     if spec.model:
         endpoint = endpoint.model_copy(update={"model": spec.model})
-    style = None if spec.coordinates == NO_COORDINATES else convention(spec.coordinates)
-    return OpenAIVisionPerception(ChatClient(endpoint), style, VisionOptions.of(spec), spec.name)
+    convention = None if spec.coordinates == NO_COORDINATES else get_convention(spec.coordinates)
+    return OpenAIVisionPerception(ChatClient(endpoint), convention, VisionOptions.of(spec), spec.name)

@@ -1,4 +1,4 @@
-"""The router backend. Its options contain the specs of the backends that it combines."""
+"""The router backend, whose options contain the specs of the backends that it combines."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from scope_ptz.perception.models.routing import RouterPerception
 
 
 class RouterOptions(Options):
-    """Options of the backend.
+    """Options for the router.
 
     Attributes:
         reader: The backend that reads text.
         detector: The backend that locates objects.
         answerer: The backend that answers questions.
-        compare: Whether to call two backends concurrently where possible, and record how well their results agree.
+        compare: Whether to call two backends concurrently where possible and record how well their results agree.
     """
 
     reader: BackendSpec | None = None

@@ -1,4 +1,4 @@
-"""Specs of perception backends, and the base class of their options."""
+"""Perception backend specs, and the base class for backend options."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class BackendSpec(BaseModel):
     """The spec of a perception backend.
 
     Attributes:
-        name: The name of the backend. Results report it as their source.
-        backend: The backend type: the name of a module in this package, or of a plug-in.
+        name: The backend's name, which results report as their source.
+        backend: The backend type: the name of a module in this package or of a plug-in.
         model: The model's name on its server or on Hugging Face.
         endpoint: The model server; None for backends that run in this process.
         coordinates: The name of a convention in ``perception.models.coordinates``.
@@ -33,7 +33,7 @@ class BackendSpec(BaseModel):
     options: dict[str, Any] = Field(default_factory=dict)
 
     def needed_endpoint(self) -> Endpoint:
-        """Return the endpoint of a backend that requires a server.
+        """Return the endpoint, for a backend that requires a server.
 
         Raises:
             ConfigError: The spec has no endpoint.
@@ -57,13 +57,13 @@ _Options = TypeVar("_Options", bound="Options")
 
 
 class Options(BaseModel):
-    """Base class of a backend's options. Unknown and invalid options raise ``ConfigError``."""
+    """Base class for backend options. Unknown and invalid options raise ``ConfigError``."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     @classmethod
     def of(cls: type[_Options], spec: BackendSpec) -> _Options:
-        """Return the validated options of a spec.
+        """Return a spec's validated options.
 
         Raises:
             ConfigError: An option is unknown or invalid.

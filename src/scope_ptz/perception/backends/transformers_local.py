@@ -18,8 +18,8 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError, PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.models.coordinates import Convention, convention
-from scope_ptz.perception.models.encoding import resized
+from scope_ptz.perception.models.coordinates import Convention, get_convention
+from scope_ptz.perception.models.encoding import resize
 from scope_ptz.perception.models.frame_memo import Image
 from scope_ptz.perception.models.vision_prompts import (
     CAPTION_PROMPT,
@@ -32,11 +32,11 @@ from scope_ptz.perception.models.vision_prompts import (
 from scope_ptz.perception.models.vision_reply import VisionReply
 
 COMMIT_HASH = re.compile(r"[0-9a-f]{40}")
-UNIT = convention("unit")
+UNIT = get_convention("unit")
 
 
 class LocalOptions(Options):
-    """Options of the backend.
+    """Options for local models.
 
     Moondream's interface is Python code in the model's repository. It runs only if ``trust_remote_code`` is set, and only from a
     local folder or from the commit that ``revision`` pins.
@@ -61,7 +61,7 @@ class LocalOptions(Options):
 
 
 class ChatModel(Protocol):
-    """A chat model. It takes an image and a prompt, and returns the reply and whether the reply was cut off at the token limit."""
+    """A chat model: a function that takes an image and a prompt, and returns the reply and whether it reached the token limit."""
 
     def __call__(self, image: Image, prompt: str) -> tuple[str, bool]: ...
 
@@ -69,8 +69,8 @@ class ChatModel(Protocol):
 class LocalChatPerception(Perception):
     """Perception by a local chat model, prompted in its coordinate convention. A worker thread processes one frame at a time."""
 
-    def __init__(self, model: ChatModel, style: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
-        self.name, self._model, self._style, self._options = name, model, style, options or LocalOptions()
+    def __init__(self, model: ChatModel, convention: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
+        self.name, self._model, self._convention, self._options = name, model, convention, options or LocalOptions()
 
     async def caption(self, frame: Frame) -> Caption:
         return (await self._ask(frame, CAPTION_PROMPT)).caption()
@@ -82,23 +82,23 @@ class LocalChatPerception(Perception):
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         size = self._size(frame)
-        return (await self._ask(frame, detect_prompt(self._style, description, size))).detections(self._style, size)
+        return (await self._ask(frame, detect_prompt(self._convention, description, size))).detections(self._convention, size)
 
     async def point(self, frame: Frame, description: str) -> Points:
         size = self._size(frame)
-        return (await self._ask(frame, point_prompt(self._style, description, size))).points(self._style, size)
+        return (await self._ask(frame, point_prompt(self._convention, description, size))).points(self._convention, size)
 
     def _size(self, frame: Frame) -> tuple[int, int]:
-        return sent_size(frame, self._style, self._options.max_pixels)
+        return sent_size(frame, self._convention, self._options.max_pixels)
 
     async def _ask(self, frame: Frame, prompt: str) -> VisionReply:
         began, size = perf_counter(), self._size(frame)
-        text, cut = await _in_thread(self.name, lambda: self._model(resized(frame.image, size), prompt))
-        return VisionReply(self.name, text, began, cut=cut)
+        text, truncated = await _run_in_thread(self.name, lambda: self._model(resize(frame.image, size), prompt))
+        return VisionReply(self.name, text, began, truncated=truncated)
 
 
 class LocalMoondreamPerception(Perception):
-    """Perception through the methods of a loaded Moondream model. ``load`` is called once, in a worker thread."""
+    """Perception through a loaded Moondream model's methods. ``load`` is called once, in a worker thread."""
 
     def __init__(self, load: Callable[[], Any], name: str = "moondream-local") -> None:
         self.name, self._load, self._model, self._lock = name, load, None, threading.Lock()
@@ -133,11 +133,11 @@ class LocalMoondreamPerception(Perception):
                     self._model = self._load()
                 return getattr(self._model, method)(_pillow(frame.image), *args, **options)[field]
 
-        return await _in_thread(self.name, call)
+        return await _run_in_thread(self.name, call)
 
 
-async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
-    """Run a model in a worker thread. Any exception becomes a ``PerceptionError``."""
+async def _run_in_thread(name: str, call: Callable[[], Any]) -> Any:
+    """Run a model in a worker thread. Any exception is raised as a ``PerceptionError``."""
     try:
         return await to_thread.run_sync(call)
     except PerceptionError:
@@ -154,7 +154,7 @@ def _pillow(image: Image) -> Any:
 
 
 class TransformersChat:
-    """A chat model of transformers, loaded on first use, with greedy decoding."""
+    """A transformers chat model with greedy decoding, loaded on first use."""
 
     def __init__(self, model: str, options: LocalOptions) -> None:
         self._name, self._options, self._lock = model, options, threading.Lock()
@@ -164,7 +164,7 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
-            # A template that does not use this option would pass it on to the processor.
+            # If the template does not use this option, the processor would receive it.
             template_options = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],
@@ -209,7 +209,7 @@ def make(spec: BackendSpec) -> Perception:
     require_packages("local", "transformers", "torch")
     options, model = LocalOptions.of(spec), spec.needed_model()
     if options.family == "chat":
-        return LocalChatPerception(TransformersChat(model, options), convention(spec.coordinates), options, spec.name)
+        return LocalChatPerception(TransformersChat(model, options), get_convention(spec.coordinates), options, spec.name)
     if not options.trust_remote_code:
         raise ConfigError(f"'{model}' contains its own code. Review the code, then set the option trust_remote_code to run it.")
     if not Path(model).is_dir() and not COMMIT_HASH.fullmatch(options.revision or ""):

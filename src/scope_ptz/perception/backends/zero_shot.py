@@ -15,17 +15,18 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, require_packages
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.models.coordinates import RawThing, convention, places_in_frame
+from scope_ptz.perception.models.coordinates import RawLocation, get_convention, locations_in_frame
 from scope_ptz.perception.models.frame_memo import Image
 from scope_ptz.perception.models.tile_geometry import non_maximum_suppression
 
 RawDetections = list[dict[str, Any]]
 Detector = Callable[[Image, str], RawDetections]
-"""A function from an RGB image and a phrase to ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]``, in pixels."""
+"""A function that takes an RGB image and a phrase and returns ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]``, in
+pixels."""
 
 
 class ZeroShotOptions(Options):
-    """Options of the backend.
+    """Options for zero-shot detectors.
 
     Attributes:
         threshold: Detections with a lower score are dropped.
@@ -39,7 +40,7 @@ class ZeroShotOptions(Options):
 
 
 class ZeroShotPerception(Perception):
-    """A detector that locates the objects that a phrase describes, best score first. It cannot answer questions."""
+    """A detector that locates the objects described by a phrase, best score first. It cannot answer questions."""
 
     skills = frozenset(("detect", "point"))
 
@@ -71,19 +72,23 @@ class ZeroShotPerception(Perception):
             raw = self._detector(image, phrase)
         except (RuntimeError, ValueError, MemoryError, IndexError) as error:
             raise PerceptionError(f"{self.name} failed on a frame of {width}x{height}: {error}") from error
-        things = [t for t in map(_thing, raw) if t.score is not None and t.score >= self._options.threshold]
-        places = places_in_frame(things, convention("pixels"), (width, height))
-        return tuple(non_maximum_suppression(places.boxes, self._options.overlap)), json.dumps(raw, default=str), places.notes
+        locations = [
+            location
+            for location in map(_raw_location, raw)
+            if location.score is not None and location.score >= self._options.threshold
+        ]
+        located = locations_in_frame(locations, get_convention("pixels"), (width, height))
+        return tuple(non_maximum_suppression(located.boxes, self._options.overlap)), json.dumps(raw, default=str), located.notes
 
 
-def _thing(detection: dict[str, Any]) -> RawThing:
+def _raw_location(detection: dict[str, Any]) -> RawLocation:
     box, score = detection["box"], float(detection["score"])
     numbers = tuple(float(box[k]) for k in ("xmin", "ymin", "xmax", "ymax"))
-    return RawThing(numbers, str(detection.get("label") or "") or None, score if math.isfinite(score) else None)
+    return RawLocation(numbers, str(detection.get("label") or "") or None, score if math.isfinite(score) else None)
 
 
 class PipelineDetector:
-    """The transformers pipeline, loaded on first use. It processes one image at a time."""
+    """A transformers pipeline, loaded on first use, that processes one image at a time."""
 
     def __init__(self, model: str, options: ZeroShotOptions) -> None:
         self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()

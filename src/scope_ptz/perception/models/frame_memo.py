@@ -1,4 +1,4 @@
-"""A cache of results that are computed from images. A result is deleted with its image."""
+"""A cache for results that are computed from images. A result is deleted together with its image."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 
 class FrameMemo(Generic[K, T]):
-    """A cache of ``make(image, key)`` for at most ``size`` pairs of image and key.
+    """A cache for the results of ``make(image, key)``, for at most ``size`` pairs of image and key.
 
     Images are compared by identity. They are read-only, so a result stays valid until its image is deleted. Callers that request
     the same result at the same time, in any thread, share one computation.
@@ -33,7 +33,7 @@ class FrameMemo(Generic[K, T]):
         return len(self._entries)
 
     def get(self, image: Image, key: K) -> T:
-        """Return the result, computing it in this thread if it is new."""
+        """Return the result. If it is not cached, compute it in this thread."""
         entry = self._entry(image, key)
         with entry.lock:
             if not entry.result:
@@ -41,7 +41,7 @@ class FrameMemo(Generic[K, T]):
             return entry.result[0]
 
     async def get_async(self, image: Image, key: K) -> T:
-        """Return the result, computing it in a worker thread if it is new."""
+        """Return the result. If it is not cached, compute it in a worker thread."""
         entry = self._entries.get((id(image), key))
         if entry is not None and entry.image() is image and entry.result:
             return entry.result[0]
@@ -59,7 +59,7 @@ class FrameMemo(Generic[K, T]):
             return entry
 
     def _remove_entry(self, slot: tuple[int, K], reference: weakref.ref[Any]) -> None:
-        # No lock: this runs when the last reference is deleted, possibly in a thread that holds the lock.
+        # The lock is not acquired: this runs when the last reference is deleted, possibly in a thread that holds the lock.
         entry = self._entries.get(slot)
         if entry is not None and entry.image is reference:
             self._entries.pop(slot, None)

@@ -1,4 +1,4 @@
-"""Parse model replies into boxes and points, or into plain answers. Many forms of JSON are accepted, even truncated ones.
+"""Parse model replies into boxes and points, or into plain answers. Many forms of JSON are accepted, even truncated JSON.
 
 A reply means "nothing found" only if it contains an empty list or a short sentence that states this. Any other reply that cannot
 be parsed raises ``PerceptionError`` of kind "malformed".
@@ -15,24 +15,24 @@ from typing import Any
 
 from scope_ptz.endpoints.bodies import safe_text
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.models.coordinates import RawThing
+from scope_ptz.perception.models.coordinates import RawLocation
 
 MAX_REPLY_CHARS = 200_000
-"""Maximum length of a reply; the rest is ignored. No valid list of boxes or points is that long."""
+"""Maximum length of a reply; the rest is ignored. Valid lists of boxes and points are shorter."""
 
 MAX_ANSWER_CHARS = 2_000
 """Maximum length of an answer. Longer answers are truncated, because they become part of the planner's context."""
 
 
 @dataclass(frozen=True, slots=True)
-class ParsedPlaces:
+class ParsedLocations:
     """The boxes and points in a reply, in order. ``complete`` is False if the reply was cut off and may have contained more."""
 
-    things: tuple[RawThing, ...]
+    locations: tuple[RawLocation, ...]
     complete: bool = True
 
 
-def read_places(text: str) -> ParsedPlaces:
+def parse_locations(text: str) -> ParsedLocations:
     """Return the boxes and points in a model's text.
 
     Accepts bare and fenced JSON (one or more documents), lists cut off at the token limit, point and box tags, and corner
@@ -41,25 +41,27 @@ def read_places(text: str) -> ParsedPlaces:
     Raises:
         PerceptionError: The reply cannot be parsed (kind "malformed").
     """
-    visible = without_reasoning(text)
+    visible = remove_reasoning(text)
     body, fits = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
-    documents, reply_complete = _documents(body)
-    things = tuple(thing for document in documents for thing in _collect(document)) or tuple(_tagged(body))
-    if things:
-        return ParsedPlaces(things, fits and reply_complete)
+    documents, reply_complete = _parse_documents(body)
+    locations = tuple(location for document in documents for location in _collect_locations(document)) or tuple(
+        _tagged_locations(body)
+    )
+    if locations:
+        return ParsedLocations(locations, fits and reply_complete)
     if fits and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
-        return ParsedPlaces(())
-    cut_note = "" if reply_complete else " (cut off before the first one was complete)"
-    raise PerceptionError(f"The reply contains no readable boxes or points{cut_note}: {excerpt(text)}", kind="malformed")
+        return ParsedLocations(())
+    truncation_note = "" if reply_complete else " (cut off before the first one was complete)"
+    raise PerceptionError(f"The reply contains no readable boxes or points{truncation_note}: {excerpt(text)}", kind="malformed")
 
 
-def read_answer(text: str) -> str:
-    """Return the answer in a reply, without reasoning, control characters and outer quotes. A long answer is truncated.
+def parse_answer(text: str) -> str:
+    """Return the answer in a reply, without reasoning, control characters or outer quotes. A long answer is truncated.
 
     Raises:
         PerceptionError: There is no answer (kind "empty").
     """
-    answer = "".join(c for c in without_reasoning(text) if c.isprintable() or c in "\n\t").strip()
+    answer = "".join(c for c in remove_reasoning(text) if c.isprintable() or c in "\n\t").strip()
     if len(answer) > 1 and answer[0] == answer[-1] == '"' and answer.count('"') == 2:
         answer = answer[1:-1].strip()
     if not answer:
@@ -67,7 +69,7 @@ def read_answer(text: str) -> str:
     return answer if len(answer) <= MAX_ANSWER_CHARS else answer[:MAX_ANSWER_CHARS].rstrip() + " …"
 
 
-def without_reasoning(text: str) -> str:
+def remove_reasoning(text: str) -> str:
     """Return the reply without ``<think>`` blocks, even if the opening or the closing tag is missing."""
     rest = re.sub(r"<think(?:ing)?>.*?</think(?:ing)?>", "", text, flags=re.DOTALL | re.IGNORECASE)
     _, closing, after = rest.rpartition("</think>")
@@ -93,7 +95,7 @@ _UNKNOWN = re.compile(
 )
 
 
-def cannot_tell(answer: str) -> bool:
+def is_unknown_answer(answer: str) -> bool:
     """Return whether an answer states that the question cannot be answered from the picture."""
     return bool(_UNKNOWN.match(answer))
 
@@ -114,7 +116,7 @@ def _says_none(body: str) -> bool:
 _START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
 
 
-def _documents(body: str) -> tuple[list[Any], bool]:
+def _parse_documents(body: str) -> tuple[list[Any], bool]:
     """Return every JSON document in a text, repaired where needed, and whether the last one was closed."""
     decoder, documents, position = json.JSONDecoder(), list[Any](), 0
     while start := _START.search(body, position):
@@ -187,68 +189,68 @@ _CORNERS = (("x_min", "y_min", "x_max", "y_max"), ("xmin", "ymin", "xmax", "ymax
 _SIZES = (("x", "y", "width", "height"), ("x", "y", "w", "h"))
 
 
-def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
+def _collect_locations(value: Any, depth: int = 0) -> Iterator[RawLocation]:
     """Yield the boxes and points anywhere in a JSON value."""
     if depth > 8:
         return
     if isinstance(value, dict):
         fields = {str(k).lower(): v for k, v in value.items()}
-        things = _from_fields(fields)
-        if things:
-            yield from things
+        locations = _from_fields(fields)
+        if locations:
+            yield from locations
             return
         for inner in fields.values():
             if isinstance(inner, dict | list):
-                yield from _collect(inner, depth + 1)
+                yield from _collect_locations(inner, depth + 1)
     elif isinstance(value, list):
         if len(value) > 1 and all(_is_number(v) for v in value):
-            yield RawThing(tuple(map(_number, value)))
+            yield RawLocation(tuple(map(_number, value)))
             return
-        things_by_item = [list(_collect(inner, depth + 1)) for inner in value]
-        for inner, things in zip(value, things_by_item, strict=True):
+        locations_by_item = [list(_collect_locations(inner, depth + 1)) for inner in value]
+        for inner, locations in zip(value, locations_by_item, strict=True):
             # If its siblings have coordinates, an object without any is malformed. It is kept without numbers, so that
-            # ``places_in_frame`` reports it as unusable.
-            malformed = [RawThing(())] if not things and isinstance(inner, dict) and any(things_by_item) else []
-            yield from things or malformed
+            # ``locations_in_frame`` reports it as unusable.
+            malformed = [RawLocation(())] if not locations and isinstance(inner, dict) and any(locations_by_item) else []
+            yield from locations or malformed
 
 
-def _from_fields(fields: dict[str, Any]) -> list[RawThing]:
+def _from_fields(fields: dict[str, Any]) -> list[RawLocation]:
     """Return the box and the point in one JSON object, if there are any."""
     label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
     score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
-    things = []
+    locations = []
     for keys in (_BOX_KEYS, _POINT_KEYS):
         value = next((fields[k] for k in keys if fields.get(k) is not None), None)
         if isinstance(value, dict):
-            things += [
-                RawThing(t.numbers, label or t.label, score, named=True)
-                for t in _from_fields({k.lower(): v for k, v in value.items()})
+            locations += [
+                RawLocation(inner.numbers, label or inner.label, score, named=True)
+                for inner in _from_fields({k.lower(): v for k, v in value.items()})
             ]
-        elif flat := _flat(_parsed(value)):
-            things.append(RawThing(tuple(flat), label, score))
-    if things:
-        return things
+        elif flat := _flatten_numbers(_parse_number_list(value)):
+            locations.append(RawLocation(tuple(flat), label, score))
+    if locations:
+        return locations
     for names in _CORNERS:
         if all(n in fields for n in names):
-            return [RawThing(tuple(_number(fields[n]) for n in names), label, score, named=True)]
+            return [RawLocation(tuple(_number(fields[n]) for n in names), label, score, named=True)]
     for names in _SIZES:
         if all(n in fields for n in names):
             x, y, width, height = (_number(fields[n]) for n in names)
-            return [RawThing((x, y, x + width, y + height), label, score, named=True)]
+            return [RawLocation((x, y, x + width, y + height), label, score, named=True)]
     if "x" in fields and "y" in fields:
-        return [RawThing((_number(fields["x"]), _number(fields["y"])), label, score, named=True)]
+        return [RawLocation((_number(fields["x"]), _number(fields["y"])), label, score, named=True)]
     return []
 
 
-def _parsed(value: Any) -> Any:
+def _parse_number_list(value: Any) -> Any:
     """Parse a list that is written as a string, such as "[1, 2, 3, 4]". Other values are returned unchanged."""
     if isinstance(value, str) and len(value) < 200 and re.fullmatch(r"[\s\[\](),.\d+-]+", value):
         return re.findall(r"[-+]?\d+\.?\d*|[-+]?\.\d+", value)
     return value
 
 
-def _flat(value: Any) -> list[float]:
-    """Return the numbers of a list that may be nested once (two corners); an empty list if it contains anything else."""
+def _flatten_numbers(value: Any) -> list[float]:
+    """Return the numbers in a list, which may be nested once (two corners). Return an empty list if it contains anything else."""
     if not isinstance(value, list):
         return []
     inner = [v for part in value for v in (part if isinstance(part, list) else [part])]
@@ -262,7 +264,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> float:
-    """Return a value as a float. If it is not a number, return NaN, which ``places_in_frame`` reports as unusable."""
+    """Return a value as a float. If it is not a number, return NaN, which ``locations_in_frame`` reports as unusable."""
     try:
         return float(value) if _is_number(value) else math.nan
     except OverflowError:
@@ -273,12 +275,12 @@ _TAG_NUMBERS = re.compile(r"\bx\d*\s*=\s*[\"']?\s*(-?[\d.]+)[\"']?\s+y\d*\s*=\s*
 _CORNER_PAIR = re.compile(r"\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)\s*,?\s*\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
 
 
-def _tagged(body: str) -> Iterator[RawThing]:
+def _tagged_locations(body: str) -> Iterator[RawLocation]:
     """Yield boxes and points outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
     for match in _TAG_NUMBERS.finditer(body) if "<point" in body else ():
-        yield RawThing(tuple(_number(v) for v in match.groups()), named=True)
+        yield RawLocation(tuple(_number(v) for v in match.groups()), named=True)
     for match in _CORNER_PAIR.finditer(body):
-        yield RawThing(tuple(_number(v) for v in match.groups()))
+        yield RawLocation(tuple(_number(v) for v in match.groups()))
 
 
 def _is_empty(document: Any) -> bool:

@@ -1,8 +1,8 @@
 """A router that combines perception backends: a reader for text, a detector for boxes and points, and an answerer for questions.
 
-Each call has an order of backends, and the first usable result is returned. With ``compare``, the first two backends are called
-concurrently, and their agreement is recorded. Without it, a backend is called only if the backends before it give no usable
-result.
+For each call, the backends are ordered, and the first usable result is returned. With ``compare``, the first two backends are
+called concurrently, and the agreement between them is recorded. Without it, a backend is called only if no earlier backend returned
+a usable result.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ import anyio
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.base import Agreement, Answer, Box, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts
+from scope_ptz.perception.models.text_requests import is_reading_request, reading_target, requested_texts
 from scope_ptz.perception.models.tile_geometry import iou
 
 ANY_TEXT = "text"
-"""The description for which a reader returns every text in view, as boxes labelled with the text."""
+"""The description for which a reader returns a box, labelled with the text, for every text in view."""
 
 SAME_BOX_IOU = 0.4
-"""Boxes of two backends with at least this intersection over union count as the same."""
+"""Boxes from two backends count as the same if their intersection over union is at least this."""
 
 SAME_POINT = 0.05
-"""Points of two backends within this fraction of the frame's width and height count as the same."""
+"""Points from two backends count as the same if they differ by at most this fraction of the frame's width and height."""
 
 R = TypeVar("R", Caption, Answer, Detections, Points)
 PerceptionCall = Callable[[Perception], Awaitable[R]]
@@ -37,7 +37,7 @@ AgreementMeasure = Callable[[R, R], float]
 
 @dataclass
 class _CallOutcome(Generic[R]):
-    """The outcome of a call to one backend. Result and error are None if it was not called."""
+    """The outcome of a call to one backend. Result and error are None if the backend was not called."""
 
     backend: Perception
     result: R | None = None
@@ -45,7 +45,7 @@ class _CallOutcome(Generic[R]):
 
     @property
     def usable(self) -> bool:
-        """Whether there is a result other than "I cannot tell"."""
+        """Whether the backend returned a result other than "I cannot tell"."""
         return self.result is not None and (not isinstance(self.result, Answer) or self.result.known)
 
 
@@ -65,66 +65,66 @@ class RouterPerception(Perception):
     ) -> None:
         self.name, self._compare = name, compare
         self._reader, self._detector, self._answerer = reader, detector, answerer
-        parts = self._available(reader, detector, answerer)
+        parts = self._backends_with_skill(reader, detector, answerer)
         self.skills = frozenset[Skill](skill for part in parts for skill in part.skills)
 
     async def caption(self, frame: Frame) -> Caption:
-        order = self._available(self._answerer, self._reader, skill="caption")
-        return await self._first_usable(order, lambda backend: backend.caption(frame), _shared_words, compare=False)
+        order = self._backends_with_skill(self._answerer, self._reader, skill="caption")
+        return await self._first_usable(order, lambda backend: backend.caption(frame), _word_agreement, compare=False)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        if not is_reading(question) or self._reader is None:
-            order = self._available(self._answerer, skill="query")
-            return await self._first_usable(order, lambda backend: backend.query(frame, question), _shared_words)
+        if not is_reading_request(question) or self._reader is None:
+            order = self._backends_with_skill(self._answerer, skill="query")
+            return await self._first_usable(order, lambda backend: backend.query(frame, question), _word_agreement)
 
         async def call(backend: Perception) -> Answer:
             return await (self._read(frame, question) if backend is self._reader else backend.query(frame, question))
 
-        order = self._available(self._reader, self._answerer, skill="query")
-        return await self._first_usable(order, call, _shared_words)
+        order = self._backends_with_skill(self._reader, self._answerer, skill="query")
+        return await self._first_usable(order, call, _word_agreement)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         order = self._finders(description, "detect")
-        return await self._first_usable(order, lambda backend: backend.detect(frame, description), _same_boxes)
+        return await self._first_usable(order, lambda backend: backend.detect(frame, description), _box_agreement)
 
     async def point(self, frame: Frame, description: str) -> Points:
         order = self._finders(description, "point")
-        return await self._first_usable(order, lambda backend: backend.point(frame, description), _same_points)
+        return await self._first_usable(order, lambda backend: backend.point(frame, description), _point_agreement)
 
     async def close(self) -> None:
-        for part in self._available(self._reader, self._detector, self._answerer):
+        for part in self._backends_with_skill(self._reader, self._detector, self._answerer):
             await part.close()
 
-    def _available(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
-        """Return the given backends that have a skill, without None and without repetition."""
-        able = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
-        return list(dict.fromkeys(able))
+    def _backends_with_skill(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
+        """Return the given backends that have a skill, without None and duplicates."""
+        capable = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
+        return list(dict.fromkeys(capable))
 
     def _finders(self, description: str, skill: Skill) -> list[Perception]:
         is_text = requested_texts(description) is not None
-        return self._available(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
+        return self._backends_with_skill(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
 
     async def _read(self, frame: Frame, question: str) -> Answer:
         """Return the text on the object that the question names if another backend finds it, otherwise all text in view."""
         assert self._reader is not None  # noqa: S101
         target = reading_target(question)
-        finders = self._available(self._detector, self._answerer, skill="detect")
+        finders = self._backends_with_skill(self._detector, self._answerer, skill="detect")
         if target is None or not finders:
             return await self._reader.query(frame, question)
         began = perf_counter()
-        all_texts, owners = await _await_both(self._reader.query(frame, question), finders[0].detect(frame, target))
+        all_texts, targets = await _await_both(self._reader.query(frame, question), finders[0].detect(frame, target))
         if isinstance(all_texts, PerceptionError):
             raise all_texts
-        if isinstance(owners, PerceptionError) or not owners.boxes:
+        if isinstance(targets, PerceptionError) or not targets.boxes:
             note = f"{finders[0].name} did not find '{target}'; all text in view is given."
             return all_texts.model_copy(update={"notes": (*all_texts.notes, note)})
         lines = (await self._reader.detect(frame, ANY_TEXT)).boxes
-        texts = [line.label or "" for line in lines if any(_contains_centre(box, line) for box in owners.boxes)]
+        texts = [line.label or "" for line in lines if any(_contains_centre(box, line) for box in targets.boxes)]
         if not texts:
             note = f"No readable text is on '{target}'; all text in view is given."
             return all_texts.model_copy(update={"notes": (*all_texts.notes, note)})
         text = "It reads: " + ", ".join(f'"{t}"' for t in texts) + "."
-        attempts = all_texts.attempts + owners.attempts
+        attempts = all_texts.attempts + targets.attempts
         return all_texts.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
 
     async def _first_usable(
@@ -142,10 +142,10 @@ class RouterPerception(Perception):
             if any(o.usable for o in outcomes):
                 break
             await _ask(outcome, call)
-        return self._conclude(outcomes, agreement, perf_counter() - began)
+        return self._best_result(outcomes, agreement, perf_counter() - began)
 
-    def _conclude(self, outcomes: Sequence[_CallOutcome[R]], agreement: AgreementMeasure[R], latency_s: float) -> R:
-        """Return the first usable result, compared with the second one. If all backends failed, raise an error with all reasons."""
+    def _best_result(self, outcomes: Sequence[_CallOutcome[R]], agreement: AgreementMeasure[R], latency_s: float) -> R:
+        """Return the first usable result, compared with the second. If all backends failed, raise an error with all reasons."""
         attempts = tuple(a for o in outcomes for a in _attempts(o))
         failed = [(o.backend.name, o.error) for o in outcomes if o.error is not None]
         results = [o.result for o in outcomes if o.result is not None]
@@ -203,8 +203,8 @@ def _contains_centre(box: Box, line: Box) -> bool:
     return box.x_min <= x <= box.x_max and box.y_min <= y <= box.y_max
 
 
-def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
-    """Return the fraction of the words in the shorter text that also occur in the other text. Stop words are ignored."""
+def _word_agreement(a: Caption | Answer, b: Caption | Answer) -> float:
+    """Return the fraction of words in the shorter text that also occur in the other text. Stop words are ignored."""
     one, other = (set(re.findall(r"\w+", x.text.casefold())) - _STOP_WORDS for x in (a, b))
     if not one or not other:
         return float(one == other)
@@ -214,23 +214,23 @@ def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
 _STOP_WORDS = {"a", "an", "the", "it", "is", "are", "says", "reads", "sign", "text", "of", "on", "in", "and", "to", "there"}
 
 
-def _same_boxes(a: Detections, b: Detections) -> float:
-    return _paired(a.boxes, b.boxes, lambda x, y: iou(x, y) >= SAME_BOX_IOU)
+def _box_agreement(a: Detections, b: Detections) -> float:
+    return _paired_fraction(a.boxes, b.boxes, lambda x, y: iou(x, y) >= SAME_BOX_IOU)
 
 
-def _same_points(a: Points, b: Points) -> float:
-    return _paired(a.points, b.points, lambda p, q: abs(p.x - q.x) <= SAME_POINT and abs(p.y - q.y) <= SAME_POINT)
+def _point_agreement(a: Points, b: Points) -> float:
+    return _paired_fraction(a.points, b.points, lambda p, q: abs(p.x - q.x) <= SAME_POINT and abs(p.y - q.y) <= SAME_POINT)
 
 
-_Place = TypeVar("_Place")
+_Location = TypeVar("_Location")
 
 
-def _paired(ones: Sequence[_Place], others: Sequence[_Place], same: Callable[[_Place, _Place], bool]) -> float:
+def _paired_fraction(ones: Sequence[_Location], others: Sequence[_Location], same: Callable[[_Location, _Location], bool]) -> float:
     """Return the fraction of all boxes or points that can be paired one to one. Two empty results agree fully."""
-    left, pairs = list(others), 0
+    unpaired, pairs = list(others), 0
     for one in ones:
-        partner = next((i for i, other in enumerate(left) if same(one, other)), None)
+        partner = next((i for i, other in enumerate(unpaired) if same(one, other)), None)
         if partner is not None:
-            left.pop(partner)
+            unpaired.pop(partner)
             pairs += 1
     return 2 * pairs / (len(ones) + len(others)) if ones or others else 1.0

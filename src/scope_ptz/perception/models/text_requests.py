@@ -1,4 +1,4 @@
-"""Heuristics for requests about text: whether a question asks to read text, on which object, and which text a description names."""
+"""Heuristics for requests about text: questions that ask to read it, and descriptions that quote it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NOT_READING = re.compile(
 )
 
 
-def is_reading(question: str) -> bool:
+def is_reading_request(question: str) -> bool:
     """Return whether a question asks to read text in view. This heuristic decides which backend is called first."""
     return bool(_READING.search(question)) and not _NOT_READING.search(question)
 
@@ -51,7 +51,7 @@ def reading_target(question: str) -> str | None:
 
 
 _QUOTED = re.compile(r"[\"“”«»„]([^\"“”«»„]+)[\"“”«»„]|(?<!\w)'([^']+)'(?!\w)")
-_SAYING = re.compile(
+_TEXT_CLAUSE = re.compile(
     r"\b(?:saying|that (?:says|reads|say|read)|reading|with the (?:text|words?|number)|marked|labelled|labeled)\s+(.+)$",
     re.IGNORECASE,
 )
@@ -62,14 +62,14 @@ _ANY_TEXT = re.compile(
 
 
 def requested_texts(description: str) -> tuple[str, ...] | None:
-    """Return the texts that a description names, in quotes or after "that says".
+    """Return the texts that a description contains, in quotes or after "that says".
 
     Returns:
-        An empty tuple when any text is meant; None if the description is not about text.
+        An empty tuple if the description means any text; None if the description is not about text.
     """
     if quoted := [a or b for a, b in _QUOTED.findall(description)]:
         return tuple(quoted)
-    if text_clause := _SAYING.search(description):
+    if text_clause := _TEXT_CLAUSE.search(description):
         return (text_clause[1].strip(" .'\""),)
     return () if _ANY_TEXT.match(description) else None
 
@@ -78,18 +78,18 @@ SAME_TEXT = 0.8
 """Minimum similarity at which two texts count as the same. It tolerates about one misread character in five."""
 
 
-def plain(text: str) -> str:
+def normalised_text(text: str) -> str:
     """Return only the letters and digits of a text, in lower case."""
     return "".join(c for c in text.casefold() if c.isalnum())
 
 
 def similarity(a: str, b: str) -> float:
-    """Return the similarity of two texts, from 0 to 1. Only letters and digits count."""
-    a, b = plain(a), plain(b)
+    """Return the similarity between two texts, from 0 to 1. Only letters and digits count."""
+    a, b = normalised_text(a), normalised_text(b)
     return SequenceMatcher(None, a, b, autojunk=False).ratio() if a and b else 0.0
 
 
 def text_matches(requested: str, line: str) -> bool:
-    """Return whether a line contains the requested text, or is similar to it despite OCR errors."""
-    a, b = plain(requested), plain(line)
+    """Return whether a line contains the requested text or, allowing for OCR errors, is similar to it."""
+    a, b = normalised_text(requested), normalised_text(line)
     return bool(a) and bool(b) and (a in b or similarity(a, b) >= SAME_TEXT)

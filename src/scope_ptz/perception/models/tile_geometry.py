@@ -10,11 +10,11 @@ from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.models.frame_memo import Image
 
 MAX_WHOLE_ASPECT = 2.4
-"""Images up to this ratio of width to height are not split; ordinary frames are 16:9."""
+"""Images are split only if their ratio of width to height exceeds this; ordinary frames are 16:9."""
 
 TILE_ASPECT = 1.6  # width / height of a tile
 OVERLAP = 0.15
-"""Fraction of a tile's width that the next tile also covers. Any narrower object is complete in one of the two tiles."""
+"""Fraction of a tile's width that the next tile also covers. A narrower object lies completely in at least one of the two tiles."""
 
 SAME_BOX = 0.5
 """Minimum overlap at which boxes from neighbouring tiles count as the same object.
@@ -32,7 +32,7 @@ TILE_BORDER = 0.01
 
 @dataclass(frozen=True, slots=True)
 class PanoramaTile:
-    """A full-height strip of an image: the columns ``left`` to ``right`` (exclusive), in pixels."""
+    """A full-height strip of an image: the pixel columns from ``left`` to ``right`` (exclusive)."""
 
     left: int
     right: int
@@ -41,13 +41,13 @@ class PanoramaTile:
         """Return the tile's part of an image."""
         return image[:, self.left : self.right]
 
-    def place(self, box: Box, width: int) -> Box:
-        """Return a box of the tile as a box of the whole image, which is ``width`` pixels wide."""
+    def box_to_image(self, box: Box, width: int) -> Box:
+        """Convert a box in the tile to a box in the whole image, which is ``width`` pixels wide."""
         scale, start = (self.right - self.left) / width, self.left / width
         return box.model_copy(update={"x_min": start + box.x_min * scale, "x_max": min(1.0, start + box.x_max * scale)})
 
-    def place_point(self, point: Point, width: int) -> Point:
-        """Return a point of the tile as a point of the whole image."""
+    def point_to_image(self, point: Point, width: int) -> Point:
+        """Convert a point in the tile to a point in the whole image."""
         return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
 
 
@@ -55,10 +55,10 @@ def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
     """Return overlapping tiles that cover an image. An image that is not wide has one tile."""
     if width <= MAX_WHOLE_ASPECT * height:
         return (PanoramaTile(0, width),)
-    wide = TILE_ASPECT * height
-    count = math.ceil((width - wide) / (wide * (1 - OVERLAP))) + 1
-    step = (width - wide) / (count - 1)
-    return tuple(PanoramaTile(round(i * step), min(width, round(i * step + wide))) for i in range(count))
+    tile_width = TILE_ASPECT * height
+    count = math.ceil((width - tile_width) / (tile_width * (1 - OVERLAP))) + 1
+    step = (width - tile_width) / (count - 1)
+    return tuple(PanoramaTile(round(i * step), min(width, round(i * step + tile_width))) for i in range(count))
 
 
 def iou(a: Box, b: Box) -> float:
@@ -69,7 +69,7 @@ def iou(a: Box, b: Box) -> float:
 
 
 def non_maximum_suppression(boxes: Iterable[Box], threshold: float) -> list[Box]:
-    """Return the boxes that non-maximum suppression keeps, best score first. ``threshold`` is the maximum IoU of two boxes."""
+    """Return the boxes that non-maximum suppression keeps, best score first. ``threshold`` is the maximum IoU between two boxes."""
     result: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
         if all(iou(box, other) <= threshold for other in result):
@@ -79,7 +79,7 @@ def non_maximum_suppression(boxes: Iterable[Box], threshold: float) -> list[Box]
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A box in coordinates of the whole image, its tile, and whether the tile's borders cut the box."""
+    """A box in whole-image coordinates, its tile, and whether the tile's borders cut the box."""
 
     tile: PanoramaTile
     box: Box
@@ -88,12 +88,12 @@ class _Part:
 
 
 def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
-    """Merge the boxes of all tiles. The boxes of an object that appears in several tiles become one."""
+    """Merge the boxes from all tiles. The boxes of an object that appears in several tiles become one."""
     result: list[_Part] = []
     for tile, boxes in parts:
         for box in boxes:
             cut_left, cut_right = tile.left > 0 and box.x_min < TILE_BORDER, tile.right < width and box.x_max > 1 - TILE_BORDER
-            part = _Part(tile, tile.place(box, width), cut_left, cut_right)
+            part = _Part(tile, tile.box_to_image(box, width), cut_left, cut_right)
             duplicate = next((i for i, other in enumerate(result) if other.tile != tile and _is_same(other, part)), None)
             if duplicate is None:
                 result.append(part)
@@ -105,21 +105,21 @@ def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int)
 
 
 def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
-    """Merge the points of all tiles. Of points in different tiles that mark the same object, the first is kept.
+    """Merge the points from all tiles. If points in different tiles mark the same object, only the first one is kept.
 
     Two points mark the same object if they differ by at most ``near`` in x, a fraction of the width, and by at most ``5 * near`` in
     y, a fraction of the height.
     """
     result: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
-        for point in (tile.place_point(p, width) for p in points):
+        for point in (tile.point_to_image(p, width) for p in points):
             duplicates = (p for other, p in result if other != tile)
             if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in duplicates):
                 result.append((tile, point))
     return [point for _, point in result]
 
 
-def without_seam_duplicates(boxes: list[Box]) -> list[Box]:
+def remove_seam_duplicates(boxes: list[Box]) -> list[Box]:
     """Drop the narrower half of each object that appears at both ends of a 360-degree panorama."""
     duplicates = {
         (i, j)
@@ -136,12 +136,12 @@ def _same_heights(a: Box, b: Box) -> bool:
 
 
 def _intersection(a: Box, b: Box) -> float:
-    wide, high = min(a.x_max, b.x_max) - max(a.x_min, b.x_min), min(a.y_max, b.y_max) - max(a.y_min, b.y_min)
-    return wide * high if wide > 0 and high > 0 else 0.0
+    width, height = min(a.x_max, b.x_max) - max(a.x_min, b.x_min), min(a.y_max, b.y_max) - max(a.y_min, b.y_min)
+    return width * height if width > 0 and height > 0 else 0.0
 
 
 def _is_same(left: _Part, right: _Part) -> bool:
-    """Return whether a box of a tile further right continues or repeats a box of an earlier tile."""
+    """Return whether ``right``, a box from a tile further to the right, continues or repeats ``left``."""
     a, b = left.box, right.box
     smaller = min(a.width * a.height, b.width * b.height)
     if smaller > 0 and _intersection(a, b) / smaller >= SAME_BOX:

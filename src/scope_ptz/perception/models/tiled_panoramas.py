@@ -1,4 +1,4 @@
-"""Detection in panoramas, tile by tile at the resolution of ordinary frames, for backends that would scale a panorama down."""
+"""Tile-by-tile detection in panoramas, for backends that would otherwise scale a panorama down."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError, RequestRecord
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, merge_points, tiles, without_seam_duplicates
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merge_boxes, merge_points, remove_seam_duplicates, tiles
 
 MAX_CONCURRENT_TILES = 4
 """Maximum number of tiles that are processed concurrently."""
 
 SAME_POINT = 0.15
-"""Maximum distance of two points in different tiles that mark the same object, as a fraction of the panorama's height.
+"""Maximum distance between two points in different tiles that mark the same object, as a fraction of the panorama's height.
 
 Vertically, the fraction is divided by the ratio of width to height; horizontally, it is divided by 5.
 """
@@ -53,23 +53,23 @@ class TiledPerception(Perception):
         if len(parts) == 1:
             return await self.backend.detect(frame, description)
         began = perf_counter()
-        results = await _all([(tile, partial(self.backend.detect, part, description)) for tile, part in parts])
+        results = await _run_all([(tile, partial(self.backend.detect, part, description)) for tile, part in parts])
         boxes = merge_boxes(((tile, result.boxes) for tile, result in results), frame.width)
         if isinstance(frame.projection, Equirectangular) and frame.projection.pan_span_deg >= FULL_TURN_DEG:
-            boxes = without_seam_duplicates(boxes)
+            boxes = remove_seam_duplicates(boxes)
         if all(box.score is not None for box in boxes):
             boxes.sort(key=lambda b: -(b.score or 0.0))
-        return _combined([result for _, result in results], began).model_copy(update={"boxes": tuple(boxes)})
+        return _combine([result for _, result in results], began).model_copy(update={"boxes": tuple(boxes)})
 
     async def point(self, frame: Frame, description: str) -> Points:
         parts = _parts(frame)
         if len(parts) == 1:
             return await self.backend.point(frame, description)
         began = perf_counter()
-        results = await _all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
+        results = await _run_all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
         max_distance = SAME_POINT / 5 * frame.height / frame.width
         points = merge_points(((tile, result.points) for tile, result in results), frame.width, max_distance)
-        return _combined([result for _, result in results], began).model_copy(update={"points": tuple(points)})
+        return _combine([result for _, result in results], began).model_copy(update={"points": tuple(points)})
 
     async def close(self) -> None:
         await self.backend.close()
@@ -93,7 +93,7 @@ def _part(frame: Frame, panorama: Equirectangular, tile: PanoramaTile) -> Frame:
     return Frame(np.ascontiguousarray(tile.crop(frame.image)), frame.pose, span_deg, frame.time_s, projection, frame.origin)
 
 
-async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> list[tuple[PanoramaTile, R]]:
+async def _run_all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> list[tuple[PanoramaTile, R]]:
     """Run all calls concurrently, and return the results in order.
 
     Raises:
@@ -122,7 +122,7 @@ async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> 
     return [(tile, results[index]) for index, (tile, _) in enumerate(calls)]
 
 
-def _combined(parts: list[R], began: float) -> R:
+def _combine(parts: list[R], began: float) -> R:
     """Combine the results of all tiles into one, except for their boxes or points."""
     update = {
         "raw": "\n".join(part.raw for part in parts),

@@ -1,4 +1,4 @@
-"""Check a perception backend and its server on one frame."""
+"""Check a perception backend and its server with one frame."""
 
 from __future__ import annotations
 

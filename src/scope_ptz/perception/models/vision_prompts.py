@@ -1,4 +1,4 @@
-"""Prompts and JSON schemas for vision-language models, in the coordinate convention of each model."""
+"""Prompts and JSON schemas for vision-language models, in each model's coordinate convention."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.models.coordinates import Convention, fit, smart_resize
+from scope_ptz.perception.models.coordinates import Convention, fit_size, smart_resize
 from scope_ptz.perception.models.encoding import Size
 
 MIN_PIXELS = 56 * 56  # images with fewer pixels are enlarged for models that answer in pixels
@@ -29,25 +29,27 @@ def sent_size(frame: Frame, convention: Convention, max_pixels: int) -> Size:
     models, only the aspect ratio matters.
     """
     if convention.factor is None or convention.space != "pixels":
-        return fit(frame.width, frame.height, max_pixels)
+        return fit_size(frame.width, frame.height, max_pixels)
     return smart_resize(frame.width, frame.height, factor=convention.factor, min_pixels=MIN_PIXELS, max_pixels=max_pixels)
 
 
-def detect_prompt(convention: Convention, description: str, sent: Size) -> str:
+def detect_prompt(convention: Convention, description: str, image_size: Size) -> str:
     """Return the prompt that asks for boxes."""
     corners = "[y_min, x_min, y_max, x_max]" if convention.y_first else "[x1, y1, x2, y2]"
     return (
         f'Locate every instance of "{one_line(description)}" in the picture. Report bbox coordinates in JSON format, '
-        f'one object each: {{"objects": [{{"{convention.box_key}": {corners}, "label": "..."}}]}}. {_places(convention, sent)}'
+        f'one object each: {{"objects": [{{"{convention.box_key}": {corners}, "label": "..."}}]}}. '
+        f"{_location_format(convention, image_size)}"
     )
 
 
-def point_prompt(convention: Convention, description: str, sent: Size) -> str:
+def point_prompt(convention: Convention, description: str, image_size: Size) -> str:
     """Return the prompt that asks for points."""
-    place = "[y, x]" if convention.y_first else "[x, y]"
+    location = "[y, x]" if convention.y_first else "[x, y]"
     return (
         f'Point to every instance of "{one_line(description)}" in the picture. Report point coordinates in JSON format, '
-        f'one object each: {{"objects": [{{"{convention.point_key}": {place}, "label": "..."}}]}}. {_places(convention, sent)}'
+        f'one object each: {{"objects": [{{"{convention.point_key}": {location}, "label": "..."}}]}}. '
+        f"{_location_format(convention, image_size)}"
     )
 
 
@@ -59,25 +61,25 @@ def query_prompt(question: str) -> str:
     )
 
 
-def _places(convention: Convention, sent: Size) -> str:
-    size = f" of a picture of {sent[0]}x{sent[1]}" if convention.space == "pixels" else ""
+def _location_format(convention: Convention, image_size: Size) -> str:
+    size = f" of a picture of {image_size[0]}x{image_size[1]}" if convention.space == "pixels" else ""
     return (
         f"Coordinates are {_UNITS[convention.space]}{size}, with the origin at the top left. "
         'If there is none, answer {"objects": []}. Answer with JSON only.'
     )
 
 
-def places_schema(key: str, numbers: int) -> dict[str, Any]:
-    """Return the JSON schema of a list of boxes or points. The root is an object, as hosted APIs require.
+def locations_schema(key: str, numbers: int) -> dict[str, Any]:
+    """Return the JSON schema for a list of boxes or points. The root is an object, as hosted APIs require.
 
     Args:
-        key: The key of a box or point.
+        key: The key for a box or point.
         numbers: The number of coordinates: 4 for a box, 2 for a point.
     """
-    place = {"type": "array", "items": {"type": "number"}, "minItems": numbers, "maxItems": numbers}
+    location = {"type": "array", "items": {"type": "number"}, "minItems": numbers, "maxItems": numbers}
     thing = {
         "type": "object",
-        "properties": {key: place, "label": {"type": "string"}},
+        "properties": {key: location, "label": {"type": "string"}},
         "required": [key, "label"],
         "additionalProperties": False,
     }
@@ -101,6 +103,6 @@ def one_line(text: str) -> str:
     return line
 
 
-def place_error(source: str) -> PerceptionError:
+def no_location_error(source: str) -> PerceptionError:
     """Return the error for a model that returns neither boxes nor points."""
     return PerceptionError(f"{source} cannot locate objects in a picture. Use a detector, or a model that returns boxes.")

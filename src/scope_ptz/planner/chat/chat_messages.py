@@ -16,7 +16,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Exchange, Picture, State, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.observations import observation
 from scope_ptz.planner.chat.prompts import Prompt
-from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.planner.chat.schemas import simplify_schemas
 
 Message = dict[str, Any]
 Notation = Literal["native", "text"]
@@ -42,14 +42,14 @@ def build_messages(
     switch: str = "",
     shorten_oldest: int = 0,
 ) -> list[Message]:
-    """Return the messages for a state.
+    """Return the chat messages for a state.
 
     Args:
         state: The state of the run.
         prompt: The system prompt.
         notation: How tool calls are exchanged.
         accepts_images: Whether the model accepts images.
-        switch: Text appended to the user messages to switch the model's reasoning on or off.
+        switch: Text to append to the user messages to switch the model's reasoning on or off.
         shorten_oldest: How many of the oldest exchanges to shorten.
     """
     writer = _Writer(notation, shorten_oldest, in_parts=accepts_images)
@@ -58,7 +58,9 @@ def build_messages(
     first = start_poses[0] or briefing.pose
     system = prompt.fill(briefing.presets, briefing.limits, first, accepts_images=accepts_images)
     if notation == "text":
-        system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in plain_schemas(state.tools))
+        system += _TEXT_TOOLS + "\n".join(
+            json.dumps(tool["function"], ensure_ascii=False) for tool in simplify_schemas(state.tools)
+        )
     writer.add({"role": "system", "content": system})
     for turn, start in zip(state.conversation, start_poses[:-1], strict=True):
         writer.user(_instruction(turn.instruction, None if start == first else start, switch))
@@ -82,7 +84,7 @@ def _instruction(text: str, start: Pose | None, switch: str) -> str:
 
 
 class _Writer:
-    """A builder of the list of messages. Consecutive user messages are merged, because chat templates require alternating roles."""
+    """Builds the list of messages. Consecutive user messages are merged, because chat templates require alternating roles."""
 
     def __init__(self, notation: Notation, shorten_oldest: int, *, in_parts: bool) -> None:
         """Set up the writer.
@@ -103,7 +105,7 @@ class _Writer:
     def user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
-            # The old message is not changed in place, because a caller may still have a reference to it.
+            # The old message is not changed in place, because a caller may still refer to it.
             self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
@@ -115,14 +117,14 @@ class _Writer:
         brief = self._exchanges < self._shorten_oldest
         self._exchanges += 1
         if self._notation == "native":
-            self._as_native_calls(exchange, brief)
+            self._add_native_calls(exchange, brief)
         else:
-            self._as_text_calls(exchange, brief)
+            self._add_text_calls(exchange, brief)
         pictures = [o.picture for o in exchange.outcomes if o.picture is not None]
         if pictures and self._in_parts and not brief:
             self.pictures(pictures)
 
-    def _as_native_calls(self, exchange: Exchange, brief: bool) -> None:
+    def _add_native_calls(self, exchange: Exchange, brief: bool) -> None:
         ids = [self._unique_id(outcome.call.id) for outcome in exchange.outcomes]
         calls = [
             {"id": i, "type": "function", "function": {"name": valid_tool_name(o.call.name), "arguments": _arguments(o.call)}}
@@ -132,14 +134,14 @@ class _Writer:
         for call_id, outcome in zip(ids, exchange.outcomes, strict=True):
             self.add({"role": "tool", "tool_call_id": call_id, "content": observation(outcome, brief=brief)})
 
-    def _as_text_calls(self, exchange: Exchange, brief: bool) -> None:
+    def _add_text_calls(self, exchange: Exchange, brief: bool) -> None:
         calls = "\n".join(_call_element(outcome) for outcome in exchange.outcomes)
         self.add({"role": "assistant", "content": f"{exchange.thought}\n{calls}".strip()})
         results = (f"<tool_response>\n{observation(o, brief=brief)}\n</tool_response>" for o in exchange.outcomes)
         self.user("\n".join(results))
 
     def _unique_id(self, call_id: str) -> str:
-        """Return the id of a call, or a new id if it is empty or already used. Some servers give every call the same id."""
+        """Return a call's id, or a new one if the id is empty or already used. Some servers give every call the same id."""
         if not call_id or call_id in self._used:
             call_id = f"call{len(self._used) + 1:05d}"  # nine letters and digits, as Mistral's templates require
         self._used.add(call_id)
@@ -147,12 +149,12 @@ class _Writer:
 
 
 def valid_tool_name(name: str) -> str:
-    """Replace characters that the OpenAI API does not allow in tool names with underscores. Models may invent any name."""
+    """Replace characters that the OpenAI API does not allow in tool names with underscores. Models can invent any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 
 
 def _arguments(call: ToolCall) -> str:
-    """Return the arguments as a JSON object.
+    """Return a call's arguments as a JSON object.
 
     Servers render the arguments with chat templates, which fail on anything but an object. A malformed call has no arguments; its
     error message quotes the original text.

@@ -1,7 +1,7 @@
 """Adapt requests to the features that a server supports.
 
 OpenAI-compatible servers differ in the request fields, roles and tool interface that they support. When a server rejects one of
-these, later requests to the server omit it.
+these, later requests to that server omit it.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.chat_messages import Message, Notation
 
 _REJECTION_KINDS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
-"""Kinds of failures with which servers reject a request feature."""
+"""Failure kinds that can mean that the server rejects a request feature."""
 
 _TOOLS_REJECTED = re.compile(
     r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja|roles? must alternate|(unknown|unexpected|unsupported|invalid) role",
     re.IGNORECASE,
 )
-"""The pattern of error messages that reject tools, including those of chat templates without the role "tool"."""
+"""Pattern for error messages that reject tools, including those from chat templates that lack the role "tool"."""
 
 _SYSTEM_ROLE_REJECTED = re.compile(
     r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE
@@ -35,10 +35,10 @@ class Dialect:
     """
 
     def __init__(self, notation: Notation, *, fixed: bool) -> None:
-        """Set up a dialect that supports everything.
+        """Create a dialect that supports everything.
 
         Args:
-            notation: How to exchange tool calls at first.
+            notation: How to exchange tool calls initially.
             fixed: Whether to keep the notation even if the server rejects tools.
         """
         self.notation: Notation = notation
@@ -48,7 +48,7 @@ class Dialect:
         self._max_tokens_field = "max_tokens"
 
     def fields(self, requested: dict[str, Any]) -> dict[str, Any]:
-        """Return the request fields without those that are None or rejected, under the names that the server uses."""
+        """Return the request fields, without those that are None or rejected, under the names that the server uses."""
         return {
             self._max_tokens_field if name == "max_tokens" else name: value
             for name, value in requested.items()
@@ -56,9 +56,9 @@ class Dialect:
         }
 
     def messages(self, messages: list[Message]) -> list[Message]:
-        """Return the messages in the roles that the server accepts.
+        """Return the messages, using only roles that the server accepts.
 
-        If it rejects the system role, the system text becomes the beginning of the first user message.
+        If the server rejects the system role, the system text becomes the beginning of the first user message.
         """
         if self._system_role or not messages or messages[0]["role"] != "system":
             return messages
@@ -73,11 +73,11 @@ class Dialect:
 
         Args:
             failure: How the request failed.
-            sent: The optional fields of the request.
+            sent: The request's optional fields.
             with_tools: Whether the request contained tools.
 
         Returns:
-            True if the server rejected a feature that the next request omits; False if a retry would fail in the same way.
+            True if the server rejected a feature that the next request will omit; False if a retry would fail in the same way.
         """
         if failure.kind not in _REJECTION_KINDS:
             return False

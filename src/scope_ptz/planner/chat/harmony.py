@@ -1,6 +1,6 @@
-"""Parse the harmony format of the gpt-oss models, for servers that return it unparsed.
+"""Parse the harmony format used by the gpt-oss models, for servers that return it unparsed.
 
-A reply is a sequence of messages in channels. The channel ``analysis`` contains reasoning
+A reply is a sequence of messages in channels. The channel ``analysis`` contains the reasoning
 (``<|channel|>analysis<|message|>...<|end|>``), and ``final`` contains the answer. A tool call is a message whose recipient is the
 tool:
 ``<|channel|>commentary to=functions.go_home <|constrain|>json<|message|>{}<|call|>``.
@@ -17,7 +17,7 @@ _RECIPIENT = re.compile(r"to=(?:functions\.)?([\w.-]+)")
 def read_harmony(text: str) -> tuple[str, list[str]]:
     """Separate a reply into its visible text and its reasoning messages. Text in another format is returned unchanged.
 
-    Tool calls become ``<tool_call>`` elements of the visible text, with their arguments as written.
+    Tool calls become ``<tool_call>`` elements in the visible text, with their arguments as written.
     """
     if "<|channel|>" not in text:
         return text, []
@@ -27,7 +27,7 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     in_body = False
     pieces = _TOKEN.split(text)
     if pieces[0].strip():
-        header = pieces[0]  # the prompt contains the start of the header, so the reply begins inside it
+        header = pieces[0]  # the prompt contains the start of the header, so the reply begins inside the header
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
         if token == "message":  # noqa: S105 - a token of the format, not a password
             in_body = True

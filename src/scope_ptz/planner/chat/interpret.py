@@ -1,9 +1,9 @@
-"""Convert a server's reply to a decision by fixed rules.
+"""Convert a server's reply to a decision, with fixed rules.
 
-- Calls are taken from the ``tool_calls`` field of the reply. If it is empty, they are parsed from the text, in any notation that
+- Calls are taken from the reply's ``tool_calls`` field. If it is empty, they are parsed from the text, in any notation that
 ``tool_text`` supports.
-- A reply without calls ends the run. It is a clarification when it begins with ``CLARIFY:``, or when it ends with a question before
-any tool was called; a refusal when it begins with ``REFUSE:``; otherwise it is the answer.
+- A reply without calls ends the run. It is a clarification if it begins with ``CLARIFY:``, or if it ends with a question before
+any tool has been called; a refusal if it begins with ``REFUSE:``; and otherwise the answer.
 - A reply that was cut off at the token limit is a planner error, unless it contains calls.
 """
 
@@ -20,12 +20,12 @@ from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
 from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, plain_name, read_arguments, unreadable_arguments
 
 MAX_CALLS = 32
-"""Maximum number of calls in one step. Further calls are not executed, and an error message tells the planner so."""
+"""Maximum number of calls in one step. Further calls are not executed, and the planner receives an error message."""
 
 MAX_CHARS = 20_000
-"""Maximum characters of an answer, or of the text that accompanies calls. Longer texts are truncated and marked."""
+"""Maximum number of characters in an answer, or in the text that accompanies calls. Longer texts are truncated and marked."""
 
-_FULL_FRACTION = 0.98  # a context filled to at least this fraction counts as full
+_FULL_FRACTION = 0.98  # a context that is filled to at least this fraction counts as full
 _CONTROL_TOKENS = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
 _KIND_PREFIX = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
 _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
@@ -40,7 +40,7 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
         context_tokens: The size of the model's context in tokens; None if it is unknown.
 
     Raises:
-        PlannerError: The reply contains no decision; ``kind`` gives the reason.
+        PlannerError: The reply contains no decision; ``kind`` states why.
     """
     separated = separate_reasoning(reply.text, reply.reasoning)
     parsed = _native_calls(reply, separated.text) or _text_calls(separated.text, separated.reasoning, state)
@@ -53,7 +53,7 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
         calls_from=parsed.notation,
         attempts=reply.attempts,
     )
-    text = _truncated(_CONTROL_TOKENS.sub("", parsed.rest).strip())
+    text = _truncate(_CONTROL_TOKENS.sub("", parsed.rest).strip())
     if parsed.calls:
         calls = _tool_calls(reply, parsed, len(state.history))
         return CallTools(calls=calls, thought=text, usage=usage, reasoning=separated.reasoning, served=served)
@@ -64,12 +64,12 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
         raise PlannerError(
             f"The planner's reply contains {content}.", kind=FailureKind.EMPTY.value, attempts=_attempts_with_usage(reply)
         )
-    kind, text = _ending(text, called=any(exchange.outcomes for exchange in state.history))
+    kind, text = _kind_and_text(text, called=any(exchange.outcomes for exchange in state.history))
     return Finish.model_validate({"kind": kind, "text": text, "usage": usage, "reasoning": separated.reasoning, "served": served})
 
 
 def _attempts_with_usage(reply: ChatReply) -> tuple[Attempt, ...]:
-    """Return the attempts of a reply without a decision; the last attempt includes the tokens that the reply used."""
+    """Return the attempts behind a reply without a decision. The last attempt includes the tokens that the reply used."""
     cost = {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens}
     return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 
@@ -89,7 +89,7 @@ def _text_calls(text: str, reasoning: str, state: State) -> FoundCalls:
     tools = Signatures.of(state.tools)
     parsed = find_calls(text, tools)
     if not parsed.calls and not text:
-        # If a model calls a tool before it closes its reasoning, the server returns the call as reasoning.
+        # If a model calls a tool before closing its reasoning, the server returns the call as reasoning.
         inside = find_calls(reasoning, tools, tagged_only=True)
         if inside.calls:
             return FoundCalls(inside.calls, "", inside.notation)
@@ -110,12 +110,12 @@ def _tool_calls(reply: ChatReply, parsed: FoundCalls, step: int) -> tuple[ToolCa
     return tuple(calls)
 
 
-def _truncated(text: str) -> str:
+def _truncate(text: str) -> str:
     excess = len(text) - MAX_CHARS
     return text if excess <= 0 else f"{text[:MAX_CHARS]} (cut: it went on for {excess} more characters)"
 
 
-def _ending(text: str, *, called: bool) -> tuple[str, str]:
+def _kind_and_text(text: str, *, called: bool) -> tuple[str, str]:
     prefix = _KIND_PREFIX.match(text)
     if prefix and (rest := text[prefix.end() :].strip()):
         return ("clarification" if prefix["kind"].upper() == "CLARIFY" else "refused"), rest

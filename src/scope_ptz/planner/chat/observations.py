@@ -11,11 +11,11 @@ from typing import Any
 
 from scope_ptz.planner.base import ToolOutcome
 
-MAX_BOXES = 12  # boxes listed; the others are only counted
+MAX_BOXES = 12  # further boxes are counted, but not listed
 MAX_CHARS = 4000
-"""Longer texts from perception are truncated. They are usually produced by models that did not stop generating."""
+"""Maximum length of texts from perception. Longer texts usually come from models that did not stop generating."""
 
-BRIEF_CHARS = 120  # longer texts are truncated in shortened outcomes
+BRIEF_CHARS = 120  # maximum length of texts in shortened outcomes
 
 _RESULT_FIELDS = (
     "count", "known", "found", "matches", "fill", "held_share", "duration_s", "presets", "preset", "file", "view",
@@ -26,12 +26,14 @@ _REPLACED_BRACKETS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞":
 
 
 def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
-    """Return the outcome as one line of JSON. ``brief`` keeps only what later steps may need, to save context."""
+    """Return an outcome as one line of JSON. To save context, ``brief`` keeps only what later steps may need."""
     if outcome.error is not None or outcome.result is None:
         error = as_data(outcome.error or "The tool gave no result.", mark=False)
         return _line({"error": error[:BRIEF_CHARS] if brief else error})
     result = outcome.result
-    content: dict[str, Any] = {key: _rounded(result[key]) for key in _RESULT_FIELDS if result.get(key) not in (None, (), [], "")}
+    content: dict[str, Any] = {
+        key: _round_numbers(result[key]) for key in _RESULT_FIELDS if result.get(key) not in (None, (), [], "")
+    }
     if result.get("complete") is False:
         content["complete"] = False
     if brief:
@@ -40,23 +42,23 @@ def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
         content |= _boxes(result.get("boxes") or ())
         # The message contains everything else: the answer, its source, corrections and a second opinion.
         content["message"] = as_data(str(result.get("message", "")), mark="source" in result)
-    content["pose"] = _rounded(result.get("pose"))
+    content["pose"] = _round_numbers(result.get("pose"))
     return _line(content)
 
 
 def as_data(text: str, *, mark: bool = True) -> str:
-    """Return untrusted text, such as a perception reply, as data.
+    """Format untrusted text, such as a perception reply, as data.
 
-    Angle brackets are replaced, so that the text can neither close the ``camera_text`` element nor contain control tokens of a
-    chat template. ``mark`` encloses the text in that element.
+    Angle brackets are replaced, so that the text can neither close the ``camera_text`` element nor contain a chat template's
+    control tokens. ``mark`` encloses the text in that element.
     """
     cut = text if len(text) <= MAX_CHARS else text[:MAX_CHARS] + " (cut)"
-    harmless = cut.translate(_REPLACED_BRACKETS)
-    return f"<camera_text>{harmless}</camera_text>" if mark else harmless
+    escaped = cut.translate(_REPLACED_BRACKETS)
+    return f"<camera_text>{escaped}</camera_text>" if mark else escaped
 
 
 def _boxes(boxes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the corners of the first ``MAX_BOXES`` boxes as fractions of the frame, rounded to two decimals."""
+    """Return the corners of the first ``MAX_BOXES`` boxes as fractions of the frame, rounded to two decimal places."""
     if not boxes:
         return {}
     corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MAX_BOXES]]
@@ -64,11 +66,11 @@ def _boxes(boxes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {"boxes_xyxy": corners, **({"boxes_not_listed": more} if more > 0 else {})}
 
 
-def _rounded(value: Any) -> Any:
+def _round_numbers(value: Any) -> Any:
     if isinstance(value, float):
         return round(value, 2)
     if isinstance(value, Mapping):
-        return {key: _rounded(item) for key, item in value.items()}
+        return {key: _round_numbers(item) for key, item in value.items()}
     return value
 
 

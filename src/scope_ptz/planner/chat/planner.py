@@ -1,4 +1,4 @@
-"""The planner that asks a model behind an OpenAI-compatible server."""
+"""The planner that asks a chat model behind an OpenAI-compatible server."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.planner.chat.chat_messages import Message, build_messages
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.families import Server, Thinking, family_of, switch_for, temperature_for, usual_server
+from scope_ptz.planner.chat.families import Server, Thinking, family_of, reasoning_switch, temperature_for, usual_server
 from scope_ptz.planner.chat.interpret import decide
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
-from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.planner.chat.schemas import simplify_schemas
 from scope_ptz.planner.chat.window import fits, shortenings
 
 _OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
 _MAX_ADAPTATIONS = 6
-"""Maximum number of retries of a request, each without one more rejected feature. A further rejection is an error."""
+"""Maximum number of retries for a request, each without one more rejected feature. Any further rejection is an error."""
 
 
 class ChatOptions(BaseModel):
     """Options for planning with a chat model.
 
     Attributes:
-        prompt: The name of the packaged system prompt.
+        prompt: Name of the packaged system prompt.
         thinking: Whether to switch the model's reasoning on or off; "default" leaves it unchanged.
         tools: How tool calls are exchanged: in the API's native fields ("native"), in the text of messages ("text"), or
             natively until the server rejects tools ("auto").
         sees: Whether the model accepts images.
-        summarise: Whether to shorten old observations, instead of ending the run, when the context is full. Never used in
+        summarise: Whether to shorten old observations instead of ending the run when the context is full. Never used in
             evaluations.
         context_tokens: The size of the model's context; None if it is unknown.
         max_tokens: The maximum length of a reply; None selects the server's default.
-        temperature: The sampling temperature; None selects the default of the model's family.
-        seed: The seed of the server's sampling; None sends no seed.
+        temperature: The sampling temperature; None selects the model family's default.
+        seed: The seed for the server's sampling; None sends no seed.
         stream: Whether to request streamed replies.
         server: The server program; None to infer it from the address.
         family: The model name that determines the family, if the server uses a different name for the model.
@@ -65,7 +65,7 @@ class ChatOptions(BaseModel):
 class ChatPlanner(Planner):
     """A planner that asks a chat model at each step.
 
-    Between steps, it keeps the connection and the features that the server rejected, but no state of the run.
+    Between steps, it keeps the connection and the features that the server rejected, but no run state.
     """
 
     def __init__(
@@ -76,13 +76,13 @@ class ChatPlanner(Planner):
         client: ChatClient | None = None,
         prompt: Prompt | None = None,
     ) -> None:
-        """Set up the planner.
+        """Create the planner.
 
         Args:
             endpoint: The server.
             options: Options for planning; None selects the defaults.
             client: A client to use instead of a new one.
-            prompt: A prompt to use instead of the named one, for variants without a file.
+            prompt: A prompt to use instead of the named one, for prompt variants without a file.
         """
         self.options = options or ChatOptions()
         self.endpoint, self.client = endpoint, client or ChatClient(endpoint)
@@ -91,7 +91,7 @@ class ChatPlanner(Planner):
         tools, model = self.options.tools, self.options.family or endpoint.model
         server = self.options.server or usual_server(endpoint.url)
         self._dialect = Dialect("text" if tools == "text" else "native", fixed=tools != "auto")
-        self._switch = switch_for(model, self.options.thinking, server)
+        self._switch = reasoning_switch(model, self.options.thinking, server)
         temperature = self.options.temperature
         self._fields: dict[str, Any] = {
             "temperature": temperature_for(model, self.options.thinking) if temperature is None else temperature,
@@ -131,7 +131,7 @@ class ChatPlanner(Planner):
         await self.client.close()
 
     def _levels(self, state: State) -> Iterator[int]:
-        """Yield how many of the oldest exchanges to shorten, in the order in which to try these numbers."""
+        """Yield the numbers of oldest exchanges to shorten, in the order in which to try them."""
         levels = [0, *shortenings(state)] if self.options.summarise else [0]
         for level in levels:
             window = self.options.context_tokens
@@ -150,14 +150,14 @@ class ChatPlanner(Planner):
         return self._dialect.messages(messages)
 
     async def _ask(self, state: State, shorten_oldest: int, attempts: list[Attempt]) -> ChatReply:
-        """Send the messages and return the reply. Retry without optional features that the server rejects.
+        """Send the messages and return the reply. If the server rejects optional features, retry without them.
 
         Every request is appended to ``attempts``.
         """
         for adaptations in range(_MAX_ADAPTATIONS + 1):
             native = self._dialect.notation == "native"
             fields = self._dialect.fields(self._fields)
-            tools = plain_schemas(state.tools) if native and state.tools else None
+            tools = simplify_schemas(state.tools) if native and state.tools else None
             messages = self._messages(state, shorten_oldest)
             try:
                 reply = await self.client.complete(messages, tools=tools, stream=self.options.stream, extra=fields)

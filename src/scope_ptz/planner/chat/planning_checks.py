@@ -27,7 +27,7 @@ async def check_planning(
 
     Args:
         endpoint: The server.
-        tools: The schemas of the nine tools.
+        tools: The schemas for the nine tools.
         options: Options for planning; ``stream`` and ``sees`` are ignored.
     """
     options = options or ChatOptions()
@@ -45,7 +45,7 @@ async def check_planning(
 
 
 def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange) -> State:
-    """Return a state in which the right decision is obvious."""
+    """Return a state for which the correct decision is obvious."""
     briefing = Briefing(presets=("gate", "highway"), pose=Pose(), limits=Limits())
     return State(instruction=instruction, briefing=briefing, history=history, tools=tuple(tools))
 
@@ -58,37 +58,37 @@ def picture_step() -> Exchange:
 async def _check_call(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(PICTURE_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
-        return "failed", f"no call; it answered: {_brief(decision)}"
+        return "failed", f"no call; the model answered: {_describe_briefly(decision)}"
     if "take_image" not in [call.name for call in decision.calls]:
-        return "partly", f"an unexpected call: {_brief(decision)}"
+        return "partly", f"an unexpected call: {_describe_briefly(decision)}"
     source = decision.served.calls_from if decision.served else ""
     if source != "native":
         return "partly", f"the server does not parse this model's calls; SCOPE parses them from the text (notation: {source})"
-    return "ok", _brief(decision)
+    return "ok", _describe_briefly(decision)
 
 
 async def _check_arguments(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(TURN_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
-        return "partly", f"no call; it answered: {_brief(decision)}"
+        return "partly", f"no call; the model answered: {_describe_briefly(decision)}"
     call = decision.calls[0]
     if call.name != "adjust_ptz" or call.arguments.get("pan_deg") != 20:
-        return "partly", f"adjust_ptz(pan_deg=20) was expected; it called {_brief(decision)}"
-    return "ok", _brief(decision)
+        return "partly", f"adjust_ptz(pan_deg=20) was expected; the model called {_describe_briefly(decision)}"
+    return "ok", _describe_briefly(decision)
 
 
 async def _check_answer(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(PICTURE_INSTRUCTION, tools, picture_step()))
     if not isinstance(decision, Finish):
-        return "partly", f"it makes another call although the task is done: {_brief(decision)}"
+        return "partly", f"the model makes another call although the task is done: {_describe_briefly(decision)}"
     if "<think" in decision.text:
-        return "failed", f"its reasoning is in the answer: {_brief(decision)}"
+        return "failed", f"the answer contains the reasoning: {_describe_briefly(decision)}"
     if not (decision.usage.input_tokens and decision.usage.output_tokens):
-        return "partly", f"the server does not report token counts; it answered: {_brief(decision)}"
-    return "ok", _brief(decision)
+        return "partly", f"the server does not report token counts; the model answered: {_describe_briefly(decision)}"
+    return "ok", _describe_briefly(decision)
 
 
-def _brief(decision: Decision) -> str:
+def _describe_briefly(decision: Decision) -> str:
     if isinstance(decision, Finish):
         text = " ".join(decision.text.split())
         return f"'{text[:_MAX_DETAIL_CHARS]}{'…' if len(text) > _MAX_DETAIL_CHARS else ''}'"

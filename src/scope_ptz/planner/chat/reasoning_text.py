@@ -1,7 +1,7 @@
 """Separate a reply's reasoning from its answer. Traces keep the reasoning, but it is never part of the answer.
 
-Servers that support the model return its reasoning in a separate field. Others leave it in the text, between tags that differ by
-model family.
+Servers that support the model return its reasoning in a separate field. Other servers leave it in the text, between tags that
+differ by model family.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ _TAG_PAIRS = (
 _GRANITE = re.compile(
     r"\A\s*here(?:'s| is) my thought process:(?P<thought>.*?)here(?:'s| is) my response:", re.IGNORECASE | re.DOTALL
 )
-_CALL_BEGINS = re.compile(r"<tool_call>|<function=|<\|tool_call|\[TOOL_CALLS\]|<｜tool▁calls▁begin｜>")
-"""The start of a tool call, which also ends reasoning whose closing tag is missing."""
+_CALL_START = re.compile(r"<tool_call>|<function=|<\|tool_call|\[TOOL_CALLS\]|<｜tool▁calls▁begin｜>")
+"""The start of a tool call, which also ends reasoning that has no closing tag."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeparatedReply:
-    """A reply's answer and reasoning, stripped of white space; either may be empty."""
+    """A reply's answer and reasoning, stripped of whitespace; either may be empty."""
 
     text: str
     reasoning: str
@@ -41,7 +41,7 @@ def separate_reasoning(text: str, field: str = "") -> SeparatedReply:
     """Separate a reply into text and reasoning.
 
     Args:
-        text: The content as the server returned it.
+        text: The reply's content, as returned by the server.
         field: The reasoning that the server returned in a separate field.
     """
     rest, reasoning_parts = read_harmony(text)
@@ -62,13 +62,13 @@ def _extract(text: str, opening: str, closing: str, reasoning_parts: list[str]) 
         opens = tag[0] == opening
         if inside and opens:
             continue
-        # A closing tag without an opening one: the chat template put the opening tag into the prompt.
+        # A closing tag without an opening tag: the chat template put the opening tag into the prompt.
         (reasoning_parts if inside or not (opens or tag_seen) else visible).append(text[position : tag.start()])
         position, inside, tag_seen = tag.end(), opens, True
     rest = text[position:]
     if not inside:
         return "".join((*visible, rest))
-    call = _CALL_BEGINS.search(rest)
+    call = _CALL_START.search(rest)
     cut = call.start() if call else len(rest)
     reasoning_parts.append(rest[:cut])
     return "".join((*visible, rest[cut:]))

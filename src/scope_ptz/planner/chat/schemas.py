@@ -1,7 +1,7 @@
 """Simplify tool schemas to a form that all servers accept.
 
-Some servers compile a schema into a grammar and reject keywords that they cannot compile, such as a pattern without anchors;
-others do not support unions. Calls are validated before they run, so the simplified schemas do not have to enforce any constraint.
+Some servers compile a schema into a grammar and reject keywords that they cannot compile, such as a pattern without anchors.
+Others do not support unions. Calls are validated before they run, so the simplified schemas need not enforce any constraints.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ _DROPPED_KEYWORDS = (
 )
 
 
-def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with simpler parameters: without constraints, and without null as an alternative type."""
+def simplify_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the tools with simplified parameters, without constraints and without null as an alternative type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 
 def _parameters(schema: dict[str, Any]) -> dict[str, Any]:
-    properties = {name: _plain(prop) for name, prop in schema.get("properties", {}).items()}
+    properties = {name: _simplify_property(prop) for name, prop in schema.get("properties", {}).items()}
     return {**schema, "properties": properties}
 
 
-def _plain(prop: dict[str, Any]) -> dict[str, Any]:
+def _simplify_property(prop: dict[str, Any]) -> dict[str, Any]:
     options = [option for option in prop.get("anyOf", ()) if option.get("type") != "null"]
     merged = {**prop, **options[0]} if len(options) == 1 else prop
     dropped = (*_DROPPED_KEYWORDS, "anyOf") if len(options) == 1 else _DROPPED_KEYWORDS

@@ -16,15 +16,15 @@ def strict_json(text: str) -> Any:
         ValueError: The text is not valid JSON, or contains a value that is not allowed.
     """
     try:
-        value = json.loads(encodable(text), parse_constant=_reject_constant, parse_float=_finite)
-        # Lone surrogates can only come from escapes such as \ud800.
+        value = json.loads(encodable(text), parse_constant=_reject_constant, parse_float=_parse_finite)
+        # Lone surrogates can come only from escapes such as \ud800.
         return _clean(value) if "\\ud" in text.lower() else value
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error
 
 
 def encodable(text: str) -> str:
-    """Return the text with lone surrogates, which UTF-8 cannot encode, replaced by question marks."""
+    """Replace lone surrogates, which UTF-8 cannot encode, with question marks."""
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
@@ -42,7 +42,7 @@ def _reject_constant(name: str) -> Any:
     raise ValueError(f"{name} is not a finite number")
 
 
-def _finite(digits: str) -> float:
+def _parse_finite(digits: str) -> float:
     value = float(digits)
     if not math.isfinite(value):
         raise ValueError(f"{digits[:20]} is too large")

@@ -1,7 +1,7 @@
 """Find and parse the tool calls in a reply's text, for servers that return calls as text.
 
 Everything inside the tags of a tagged notation is treated as a call, and calls that cannot be parsed are reported to the planner.
-Notations without tags (JSON or Python calls, bare or in a code fence) count as calls only if they name an offered tool, so that an
+Text without tags (JSON or Python calls, bare or in a code fence) counts as a call only if it names an offered tool, so that an
 answer in JSON remains an answer.
 """
 
@@ -34,8 +34,8 @@ class FoundCalls:
     """The calls found in a text.
 
     Attributes:
-        rest: The text without its calls.
-        notation: The name of the notation of the calls; empty if there are no calls.
+        rest: The text without the calls.
+        notation: Name of the notation in which the calls are written; empty if there are no calls.
     """
 
     calls: tuple[WrittenCall, ...]
@@ -55,15 +55,15 @@ def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> Fo
         The calls in the first notation of ``_TAGGED_NOTATIONS`` that occurs in the text, otherwise the calls without tags.
     """
     text = encodable(text)
-    for notation, pattern, reader in _TAGGED_NOTATIONS:
-        inside = [(match, reader(match["body"], tools)) for match in pattern.finditer(text)]
-        if any(calls for _, calls in inside):
-            return FoundCalls(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
+    for notation, pattern, parse in _TAGGED_NOTATIONS:
+        parsed = [(match, parse(match["body"], tools)) for match in pattern.finditer(text)]
+        if any(calls for _, calls in parsed):
+            return FoundCalls(tuple(call for _, calls in parsed for call in calls), pattern.sub("", text).strip(), notation)
     return FoundCalls((), text.strip(), "") if tagged_only else _find_untagged(text, tools)
 
 
 def _json_or_xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Parse the content of a ``<tool_call>`` element: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
+    """Parse the contents of a ``<tool_call>`` element: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
     if "<function" in body:
         return _xml_calls(body, tools)
     if "<arg_key>" in body:
@@ -73,7 +73,7 @@ def _json_or_xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - all parsers share one signature
-    """Parse a sequence of JSON objects or lists of them. A value that cannot be parsed becomes a malformed call."""
+    """Parse a sequence of JSON objects or lists of JSON objects. A value that cannot be parsed becomes a malformed call."""
     calls: list[WrittenCall] = []
     for chunk in _json_chunks(body):
         try:
@@ -122,14 +122,14 @@ def _xml_calls(body: str, tools: Signatures) -> list[WrittenCall]:
             arguments, malformed = read_arguments(inside)
             calls.append(WrittenCall(name, arguments, malformed))
             continue
-        arguments = {m["key"]: tools.value(name, m["key"], _unwrapped(m["value"])) for m in _PARAMETER.finditer(inside)}
+        arguments = {m["key"]: tools.value(name, m["key"], _unwrap(m["value"])) for m in _PARAMETER.finditer(inside)}
         unparsed = _PARAMETER.sub("", inside).strip()
         calls.append(WrittenCall(name, {}, inside[:MAX_QUOTED_CHARS]) if unparsed else WrittenCall(name, arguments))
     return calls or [malformed_call(body)]
 
 
-def _unwrapped(value: str) -> str:
-    """Return a value without the line breaks that the notation puts around it."""
+def _unwrap(value: str) -> str:
+    """Remove the line breaks that the notation puts around a value."""
     return value.removeprefix("\n").removesuffix("\n")
 
 
@@ -198,7 +198,7 @@ _TAGGED_NOTATIONS: tuple[tuple[str, re.Pattern[str], _CallParser], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MAX_START_LINES = 20
-"""Maximum number of lines with an opening bracket to try as the start of calls. A text with more is a table or a program."""
+"""Maximum number of lines with an opening bracket to try as the start of calls. A text with more such lines is a table or code."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
@@ -212,7 +212,7 @@ def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
         return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
     if calls := _calls_to_tools(text, tools):
         return FoundCalls(tuple(calls), "", "bare")
-    # Prose that is followed only by calls.
+    # Try prose that is followed only by calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MAX_START_LINES):
         if calls := _calls_to_tools(text[match.start() :], tools):
             return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
@@ -220,7 +220,7 @@ def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
 
 
 def _calls_to_tools(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Return the calls in a text that consists only of calls to offered tools; an empty list for any other text."""
+    """Parse a text that consists only of calls to offered tools. Return an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

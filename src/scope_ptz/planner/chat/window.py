@@ -1,6 +1,6 @@
-"""Estimate the tokens of a conversation, and shorten conversations that exceed the model's context.
+"""Estimate a conversation's tokens, and shorten conversations that exceed the model's context.
 
-By default the run ends with a context overflow. With ``ChatOptions.summarise``, old observations are shortened instead: all calls
+By default, the run ends with a context overflow. With ``ChatOptions.summarise``, old observations are shortened instead: all calls
 are kept, and their results keep only counts, answers, poses and other short fields.
 """
 
@@ -13,20 +13,20 @@ from typing import Any
 from scope_ptz.planner.base import State
 
 CHARS_PER_TOKEN = 3.2
-"""A conservative value; tokenizers average 3.5 to 4.5 characters for English and JSON."""
+"""A conservative value; tokenizers average 3.5 to 4.5 characters per token for English and JSON."""
 
 PICTURE_TOKENS = 1300
-"""The approximate cost of a 1280x720 frame for current vision models."""
+"""The approximate number of tokens that current vision models need for a 1280x720 frame."""
 
 NEVER_SHORTENED = 2
-"""The number of newest exchanges that are never shortened, because the planner is about to act on them."""
+"""Number of newest exchanges that are never shortened, because the planner is about to act on them."""
 
-_USABLE_FRACTION = 0.9  # usable fraction of the context, because the token count is an estimate
-_REPLY_TOKENS = 512  # reserved for the reply
+_USABLE_FRACTION = 0.9  # usable fraction of the context; the rest is a margin, because the token count is an estimate
+_REPLY_TOKENS = 512  # tokens reserved for the reply
 
 
 def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]]) -> int:
-    """Estimate the tokens of messages and tools without the model's tokenizer."""
+    """Estimate the number of tokens in messages and tools, without the model's tokenizer."""
     chars, pictures = len(json.dumps(tools)), 0
     for message in messages:
         content = message.get("content") or ""
@@ -43,7 +43,7 @@ def fits(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any
 
 
 def shortenings(state: State) -> Iterator[int]:
-    """Yield how many of the oldest exchanges to shorten: first about half of them, then all but ``NEVER_SHORTENED``.
+    """Yield how many of the oldest exchanges to shorten: first about half of all exchanges, then all but ``NEVER_SHORTENED``.
 
     Half is rounded down to an even number, so that the beginning of the messages rarely changes and prefix caches keep working.
     """

@@ -10,7 +10,7 @@ from typing import Any
 from scope_ptz.planner.chat.strict import encodable, strict_json
 
 _NAME = re.compile(r"""["']name["']\s*:\s*["'](?P<name>[^"']{1,80})["']""")
-MAX_QUOTED_CHARS = 300  # maximum number of characters of a malformed call that its error message quotes
+MAX_QUOTED_CHARS = 300  # maximum number of characters that an error message quotes from a malformed call
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class WrittenCall:
     """A tool call that was parsed from text.
 
     Attributes:
-        malformed: The text found in place of a JSON object, in which case ``arguments`` is empty; otherwise None.
+        malformed: The text found in place of a JSON object; None if the arguments are valid. If it is set, ``arguments`` is empty.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Signatures:
 
     @classmethod
     def of(cls, tools: Sequence[Mapping[str, Any]]) -> Signatures:
-        """Return the signatures of tool schemas."""
+        """Create signatures from tool schemas."""
         functions = [tool["function"] for tool in tools]
         return cls({f["name"]: {p: _types(s) for p, s in f["parameters"].get("properties", {}).items()} for f in functions})
 
@@ -42,7 +42,7 @@ class Signatures:
         return name in self.types
 
     def value(self, tool: str, parameter: str, text: str) -> Any:
-        """Return a value that was written without quotes, converted to the type in the schema.
+        """Convert a value that was written without quotes to its type in the schema.
 
         Text that cannot be converted is returned unchanged, so that validation rejects it.
         """
@@ -58,8 +58,7 @@ class Signatures:
 
 def _types(schema: Mapping[str, Any]) -> frozenset[str]:
     options = [schema, *schema.get("anyOf", ())]
-    named = {option["type"] for option in options if isinstance(option.get("type"), str)}
-    return frozenset(named)
+    return frozenset(option["type"] for option in options if isinstance(option.get("type"), str))
 
 
 def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
@@ -81,14 +80,14 @@ def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
 
 
 def unreadable_arguments(name: str, malformed: str) -> str:
-    """Return the error message for a call whose arguments are not a JSON object, for the model."""
+    """Return the error message for the model about a call whose arguments are not a JSON object."""
     return f"The call of {name or 'a tool'} cannot be read: its arguments must be a JSON object, got {malformed}"
 
 
 def call_from_object(value: Any) -> WrittenCall | None:
-    """Return the call in a JSON object, or None.
+    """Return the call in a JSON object; None if the object is not a call.
 
-    The usual form is ``{"name": ..., "arguments": {...}}``; other keys that models use are accepted, too.
+    The usual form is ``{"name": ..., "arguments": {...}}``, but other keys that models use are also accepted.
     """
     if not isinstance(value, dict):
         return None
@@ -108,7 +107,7 @@ def call_from_object(value: Any) -> WrittenCall | None:
 
 
 def malformed_call(text: str) -> WrittenCall:
-    """Return a malformed call for tagged text that cannot be parsed, with the tool's name if the text contains one."""
+    """Return a malformed call for tagged text that cannot be parsed, with the tool's name if the text contains it."""
     match = _NAME.search(text)
     return WrittenCall(plain_name(match["name"]) if match else "", {}, text.strip()[:MAX_QUOTED_CHARS] or "nothing")
 

@@ -1,7 +1,7 @@
-"""The hybrid planner: the grammar plans what it understands, and a language model plans the rest.
+"""The hybrid planner. The grammar plans the instructions that it understands, and a language model plans the others.
 
-``grounds`` collects what the user said and what was seen, ``grounding`` compares a call with it, ``call_words`` names calls in
-words, and ``confirmation`` asks the user about calls without grounds.
+``evidence`` collects words from the user and from perception, ``support`` finds the parts of a call that this evidence does not
+support, ``call_words`` describes calls in words, and ``confirmation`` asks the user to confirm unsupported calls.
 """
 
 from scope_ptz.planner.hybrid.planner import HybridPlanner

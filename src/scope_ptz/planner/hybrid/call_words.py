@@ -1,7 +1,7 @@
-"""Name tool calls in words, and read these words back.
+"""Describe tool calls in words, and parse these descriptions.
 
-The words are shown to the user, who confirms them in the next turn. A planner keeps no state between turns, so it reads the calls
-from its own question in the conversation. Reading is the exact inverse of naming.
+The user sees a description and confirms it in the next turn. A planner keeps no state between turns, so it parses the calls from
+its own question in the conversation. Parsing is the exact inverse of describing.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ _ZOOM = (
 )
 
 
-def named(call: ToolCall) -> str:
-    """Return a valid call in words that can follow "Shall I": 'pan right 20 degrees', 'count "cars" in this view'."""
+def call_in_words(call: ToolCall) -> str:
+    """Describe a valid call in words that can follow "Shall I": 'pan right 20 degrees', 'count "cars" in this view'."""
     arguments = call.arguments
     view = _VIEWS_IN_WORDS[arguments.get("view", "current")]
     match call.name:
         case "adjust_ptz":
             return " and ".join(_move_words(arguments)) or "leave the camera where it is"
         case "go_to_preset":
-            return f"go to the preset {_quoted(arguments['name'])}"
+            return f"go to the preset {_quote(arguments['name'])}"
         case "go_home":
             return "go to the home view"
         case "get_presets":
@@ -42,18 +42,18 @@ def named(call: ToolCall) -> str:
         case "take_image":
             return "take a picture"
         case "count_objects":
-            return f"count {_quoted(arguments['description'])} in {view}"
+            return f"count {_quote(arguments['description'])} in {view}"
         case "query_answer":
-            return f"find out {_quoted(arguments['question'])} from {view}"
+            return f"find out {_quote(arguments['question'])} from {view}"
         case "zoom_to_object":
-            return f"zoom in on {_quoted(arguments['description'])}"
+            return f"zoom in on {_quote(arguments['description'])}"
         case "track_object":
-            return f"follow {_quoted(arguments['description'])} for {_number(arguments.get('duration_s', 10))} seconds"
+            return f"follow {_quote(arguments['description'])} for {_number(arguments.get('duration_s', 10))} seconds"
     return f"call {call.name} with {json.dumps(arguments, ensure_ascii=False)}"
 
 
-def read(words: str) -> tuple[str, dict[str, Any]] | None:
-    """Return the tool and the arguments of a call in words; None for other texts."""
+def call_from_words(words: str) -> tuple[str, dict[str, Any]] | None:
+    """Parse a description of a call, and return the tool and the arguments; None for other texts."""
     for pattern, call in _FORMS:
         if match := pattern.fullmatch(words):
             return call(match)
@@ -75,7 +75,7 @@ def _move_words(arguments: dict[str, Any]) -> list[str]:
     return words
 
 
-def _read_move(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
+def _parse_move(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
     found = match.groupdict()
     arguments: dict[str, Any] = {}
     if found["pan"]:
@@ -91,7 +91,7 @@ def _read_move(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
     return "adjust_ptz", arguments
 
 
-def _with_text(tool: str, field: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
+def _text_call(tool: str, field: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
     def call(match: re.Match[str]) -> tuple[str, dict[str, Any]]:
         found = match.groupdict()
         arguments: dict[str, Any] = {field: json.loads(found["text"])}
@@ -104,34 +104,34 @@ def _with_text(tool: str, field: str) -> Callable[[re.Match[str]], tuple[str, di
     return call
 
 
-def _plain(tool: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
+def _bare_call(tool: str) -> Callable[[re.Match[str]], tuple[str, dict[str, Any]]]:
     return lambda _: (tool, {})
 
 
 _FORMS: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, dict[str, Any]]]], ...] = (
-    (re.compile("leave the camera where it is"), _plain("adjust_ptz")),
+    (re.compile("leave the camera where it is"), _bare_call("adjust_ptz")),
     (
         re.compile(rf"(?=pan |tilt |zoom (?:in|out) (?:to|by) |zoom all )(?:{_PAN})?(?: and )?(?:{_TILT})?(?: and )?(?:{_ZOOM})?"),
-        _read_move,
+        _parse_move,
     ),
-    (re.compile(f"go to the preset {_TEXT}", re.DOTALL), _with_text("go_to_preset", "name")),
-    (re.compile("go to the home view"), _plain("go_home")),
-    (re.compile("list the presets"), _plain("get_presets")),
-    (re.compile("take a picture"), _plain("take_image")),
-    (re.compile(f"count {_TEXT} in {_VIEW}", re.DOTALL), _with_text("count_objects", "description")),
-    (re.compile(f"find out {_TEXT} from {_VIEW}", re.DOTALL), _with_text("query_answer", "question")),
-    (re.compile(f"zoom in on {_TEXT}", re.DOTALL), _with_text("zoom_to_object", "description")),
-    (re.compile(f"follow {_TEXT} for {_NUMBER.format('seconds')} seconds", re.DOTALL), _with_text("track_object", "description")),
+    (re.compile(f"go to the preset {_TEXT}", re.DOTALL), _text_call("go_to_preset", "name")),
+    (re.compile("go to the home view"), _bare_call("go_home")),
+    (re.compile("list the presets"), _bare_call("get_presets")),
+    (re.compile("take a picture"), _bare_call("take_image")),
+    (re.compile(f"count {_TEXT} in {_VIEW}", re.DOTALL), _text_call("count_objects", "description")),
+    (re.compile(f"find out {_TEXT} from {_VIEW}", re.DOTALL), _text_call("query_answer", "question")),
+    (re.compile(f"zoom in on {_TEXT}", re.DOTALL), _text_call("zoom_to_object", "description")),
+    (re.compile(f"follow {_TEXT} for {_NUMBER.format('seconds')} seconds", re.DOTALL), _text_call("track_object", "description")),
     (re.compile(r"call (?P<tool>\S+) with (?P<json>\{.*\})", re.DOTALL), lambda m: (m["tool"], json.loads(m["json"]))),
 )
 
 
-def _quoted(text: Any) -> str:
+def _quote(text: Any) -> str:
     return json.dumps(str(text), ensure_ascii=False)
 
 
 def _number(value: float) -> str:
-    """Return a number without a trailing ".0", so that it can be read back exactly."""
+    """Format a number without a trailing ".0", such that parsing gives exactly the same number."""
     return str(int(value)) if float(value).is_integer() and abs(value) < 1e15 else repr(float(value))
 
 

@@ -1,4 +1,4 @@
-"""Ask the user to confirm calls, and find out from the conversation what was confirmed."""
+"""Ask the user to confirm calls, and find the confirmed calls in the conversation."""
 
 from __future__ import annotations
 
@@ -8,24 +8,23 @@ from dataclasses import dataclass
 from scope_ptz import english
 from scope_ptz.planner.base import Exchange, PastTurn, ToolCall
 from scope_ptz.planner.confirmations import yes_or_no
-from scope_ptz.planner.hybrid.call_words import named, read
+from scope_ptz.planner.hybrid.call_words import call_from_words, call_in_words
 
 _BEGIN = "Shall I do this: "
 _END = "? Please answer yes or no."
 _SEPARATOR = "; then "
-_MAX_REASONS = 4  # further parts without grounds are not listed
+_MAX_REASONS = 4  # maximum number of unsupported parts to list
 
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """Calls about which the user was asked in the last turn.
+    """The calls that the user was asked to confirm in the last turn.
 
     Attributes:
-        calls: The calls.
-        instruction: The instruction for which they were planned.
-        texts: What the user said or confirmed: the instruction, and the calls of earlier confirmations in words.
-        exchanges: The calls that were carried out for this instruction, with their results.
-        first: The index of the turn with the instruction in the conversation.
+        instruction: The instruction for which the calls were planned.
+        texts: The instruction, and the descriptions of the calls that the user confirmed earlier.
+        exchanges: The calls already carried out for this instruction, with their results.
+        first: Index, in the conversation, of the turn with the instruction.
     """
 
     calls: tuple[ToolCall, ...]
@@ -36,22 +35,22 @@ class Proposal:
 
 
 def confirmation_question(calls: Sequence[ToolCall], missing: Sequence[str]) -> str:
-    """Return the question that names calls in words.
+    """Return the question that asks the user to confirm calls.
 
     Args:
-        calls: The calls, in the order in which they would be made.
-        missing: The parts of the calls that stand neither in the instruction nor in earlier results.
+        calls: The calls, in order.
+        missing: The parts of the calls that neither the instruction nor earlier results support.
     """
     reasons = english.listing(list(dict.fromkeys(missing))[:_MAX_REASONS])
-    return f"You did not mention {reasons}. {_BEGIN}{_SEPARATOR.join(named(call) for call in calls)}{_END}"
+    return f"You did not mention {reasons}. {_BEGIN}{_SEPARATOR.join(call_in_words(call) for call in calls)}{_END}"
 
 
 def proposed_calls(reply: str) -> tuple[ToolCall, ...]:
-    """Return the calls that a reply asks about; none for other replies."""
+    """Return the calls that a reply asks the user to confirm; empty for other replies."""
     start = reply.rfind(_BEGIN)
     if start < 0 or not reply.endswith(_END):
         return ()
-    calls = [read(words) for words in _split(reply[start + len(_BEGIN) : -len(_END)])]
+    calls = [call_from_words(words) for words in _split(reply[start + len(_BEGIN) : -len(_END)])]
     found = [call for call in calls if call is not None]
     if len(found) < len(calls):
         return ()
@@ -61,7 +60,7 @@ def proposed_calls(reply: str) -> tuple[ToolCall, ...]:
 
 
 def _split(text: str) -> list[str]:
-    """Split words of calls at the separator, but not inside quotation marks."""
+    """Split call descriptions at the separator, but not inside quotation marks."""
     parts, quoted, start, i = list[str](), False, 0, 0
     while i < len(text):
         if text[i] == "\\" and quoted:
@@ -76,10 +75,10 @@ def _split(text: str) -> list[str]:
     return [*parts, text[start:]]
 
 
-def open_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
-    """Return the calls about which the last turn asked; None if it did not ask about any.
+def pending_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
+    """Return the proposal that is waiting for the user's confirmation; None if the last turn proposed no calls.
 
-    A turn that only confirms earlier calls continues the turn before it, so that the proposal belongs to the first instruction.
+    A turn that only confirms earlier calls continues the turn before it, so the proposal belongs to the first instruction.
     """
     if not conversation or not (calls := proposed_calls(conversation[-1].reply)):
         return None
@@ -87,7 +86,7 @@ def open_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
     while first > 0 and yes_or_no(conversation[first].instruction) == "yes" and proposed_calls(conversation[first - 1].reply):
         first -= 1
     turns = conversation[first:]
-    confirmed = [named(call) for turn in turns[:-1] for call in proposed_calls(turn.reply)]
+    confirmed = [call_in_words(call) for turn in turns[:-1] for call in proposed_calls(turn.reply)]
     return Proposal(
         calls=calls,
         instruction=turns[0].instruction,

@@ -1,4 +1,4 @@
-"""Words of descriptions and questions that name nothing, so that they need not stand in the instruction."""
+"""Words in descriptions and questions that name no object, so that the instruction need not contain them."""
 
 FUNCTION_WORDS = frozenset(
     """
@@ -19,4 +19,4 @@ ABOUT_THE_PICTURE = frozenset(
     describe count number total thing object anything something kind type sort
     """.split()  # noqa: SIM905 - one word list
 )
-"""Words about the picture itself, which every question about it may use."""
+"""Words about the picture itself, which any question may contain."""

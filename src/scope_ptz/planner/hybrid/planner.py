@@ -8,18 +8,18 @@ from scope_ptz.errors import ToolCallError
 from scope_ptz.planner.base import CallTools, Decision, Exchange, Finish, Planner, State, ToolCall
 from scope_ptz.planner.confirmations import yes_or_no
 from scope_ptz.planner.grammar.planner import GRAMMAR_VERSION, decide_on, meaning_of
-from scope_ptz.planner.hybrid.call_words import named
+from scope_ptz.planner.hybrid.call_words import call_in_words
 from scope_ptz.planner.hybrid.confirmation import (
     Proposal,
     confirmation_question,
-    open_proposal,
+    pending_proposal,
 )
-from scope_ptz.planner.hybrid.grounding import without_grounds
-from scope_ptz.planner.hybrid.grounds import grounds_of
+from scope_ptz.planner.hybrid.evidence import collect_evidence
+from scope_ptz.planner.hybrid.support import unsupported_parts
 from scope_ptz.tools.registry import TOOLS
 
 HYBRID_VERSION = "1"
-"""Version of the rules that decide which calls of the model need a confirmation, in traces and run cards."""
+"""Version of the rules that decide which of the model's calls need confirmation, for traces and run cards."""
 
 GRAMMAR_PART, MODEL_PART, USER_PART = "grammar", "model", "confirmed"
 """The values of ``planned_by`` in decisions: the grammar, the language model, and calls that the user confirmed."""
@@ -28,16 +28,16 @@ GRAMMAR_PART, MODEL_PART, USER_PART = "grammar", "model", "confirmed"
 class HybridPlanner(Planner):
     """A planner that asks a language model only about instructions that the grammar does not understand.
 
-    Calls of the model are carried out without a confirmation only if everything that they state stands in the instruction or in
-    earlier results. Otherwise, the planner asks the user, and a "yes" in the next turn of the conversation carries them out.
+    The model's calls are carried out without confirmation only if the instruction or earlier results support every part of them.
+    Otherwise, the planner asks the user, and carries the calls out if the user replies "yes" in the next turn.
     """
 
     def __init__(self, model: Planner, name: str | None = None) -> None:
-        """Set up the planner.
+        """Create the planner.
 
         Args:
             model: The planner that asks the language model.
-            name: The planner's name in traces and results; None to derive it from that of the model.
+            name: The planner's name in traces and results; None to derive it from the model's name.
         """
         self.model = model
         self.name = name or f"hybrid:{model.name}"
@@ -48,30 +48,30 @@ class HybridPlanner(Planner):
         return {**self.model.details, "hybrid": HYBRID_VERSION, "grammar": GRAMMAR_VERSION, "model": self.model.name}
 
     async def step(self, state: State) -> Decision:
-        proposal = open_proposal(state.conversation)
+        proposal = pending_proposal(state.conversation)
         if proposal is not None and (reply := yes_or_no(state.instruction)) is not None:
             if reply == "no":
                 return Finish(kind="answered", text="All right, I did nothing.", planned_by=USER_PART)
             if not state.history:
                 return CallTools(calls=proposal.calls, planned_by=USER_PART)
-            return await self._by_model(_continued(state, proposal), _said(proposal))
+            return await self._model_step(_resumed_state(state, proposal), _confirmed_texts(proposal))
         meaning = meaning_of(state)
         if meaning.clarification is None:
             return decide_on(meaning, state).model_copy(update={"planned_by": GRAMMAR_PART})
-        return await self._by_model(state, (state.instruction,))
+        return await self._model_step(state, (state.instruction,))
 
-    async def _by_model(self, state: State, said: Sequence[str]) -> Decision:
-        """Return the model's decision, or a question about those of its calls that need a confirmation."""
+    async def _model_step(self, state: State, user_texts: Sequence[str]) -> Decision:
+        """Return the model's decision, or a question if its calls need confirmation."""
         decision = await self.model.step(state)
         if isinstance(decision, Finish):
             return decision.model_copy(update={"planned_by": MODEL_PART})
         earlier = [exchange for turn in state.conversation for exchange in turn.exchanges]
-        grounds = grounds_of(said, [*earlier, *state.history])
-        made, missing = _calls_made(state.history), list[str]()
+        evidence = collect_evidence(user_texts, [*earlier, *state.history])
+        earlier_calls, missing = _successful_calls(state.history), list[str]()
         valid = [call for call in decision.calls if _is_valid(call, state)]
         for call in valid:
-            missing += without_grounds(call, grounds, made)
-            made.append(call)
+            missing += unsupported_parts(call, evidence, earlier_calls)
+            earlier_calls.append(call)
         if not missing:
             return decision.model_copy(update={"planned_by": MODEL_PART})
         text = confirmation_question(valid, missing)
@@ -101,16 +101,16 @@ def _is_valid(call: ToolCall, state: State) -> bool:
     return True
 
 
-def _calls_made(history: Sequence[Exchange]) -> list[ToolCall]:
+def _successful_calls(history: Sequence[Exchange]) -> list[ToolCall]:
     return [outcome.call for exchange in history for outcome in exchange.outcomes if outcome.error is None]
 
 
-def _said(proposal: Proposal) -> tuple[str, ...]:
-    return (*proposal.texts, *(named(call) for call in proposal.calls))
+def _confirmed_texts(proposal: Proposal) -> tuple[str, ...]:
+    return (*proposal.texts, *(call_in_words(call) for call in proposal.calls))
 
 
-def _continued(state: State, proposal: Proposal) -> State:
-    """Return the state in which the model continues the confirmed instruction, as if the user had not been asked."""
+def _resumed_state(state: State, proposal: Proposal) -> State:
+    """Return a state in which the model continues the confirmed instruction as if the user had not been asked."""
     start = state.conversation[proposal.first].start
     briefing = state.briefing if start is None else state.briefing.model_copy(update={"pose": start})
     return state.model_copy(

@@ -1,4 +1,4 @@
-"""Define small, deterministic edits of instructions and prompts that should not change the calls of a planner."""
+"""Define small, deterministic edits to instructions and prompts that should not change a planner's calls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit of the prompt or of an instruction. If ``apply`` returns a text unchanged, the text is not measured again."""
+    """An edit to the prompt or to an instruction. If ``apply`` returns a text unchanged, the text is not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]
@@ -20,7 +20,7 @@ class Edit:
 
 
 _NUMBERS = {str(number): number_word(number) for number in (5, 8, 10, 15, 20, 25, 30, 45, 90)}
-_OTHER_WORDS = (
+_SYNONYMS = (
     (r"\bpan\b", "turn"),
     (r"\btake a (picture|snapshot)\b", "take a photo"),
     (r"\bhow many ([\w ]+?) are\b", r"what number of \1 are"),
@@ -38,7 +38,7 @@ def _lower_first(text: str) -> str:
 
 
 def _request(opening: str, ending: str) -> Callable[[str], str]:
-    """Return an edit that puts words around a command, such as "please". Questions and conditions remain unchanged."""
+    """Return an edit that adds words such as "please" around a command. Questions and conditions remain unchanged."""
     return lambda text: text if _QUESTION_START.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
 
 
@@ -52,12 +52,12 @@ def _misspell(text: str) -> str:
     return text.replace(word, word[: middle - 1] + word[middle] + word[middle - 1] + word[middle + 1 :], 1)
 
 
-def _number_words(text: str) -> str:
+def _spell_numbers(text: str) -> str:
     return re.sub(r"\b\d+\b(?!\s*%|x)", lambda m: _NUMBERS.get(m[0], m[0]), text)
 
 
-def _other_words(text: str) -> str:
-    for pattern, words in _OTHER_WORDS:
+def _use_synonyms(text: str) -> str:
+    for pattern, words in _SYNONYMS:
         text = re.sub(pattern, words, text, count=1)
     return text
 
@@ -66,19 +66,19 @@ INSTRUCTION_EDITS: tuple[Edit, ...] = (
     Edit("lower case", "instruction", str.lower),
     Edit("capital and full stop", "instruction", lambda t: t[:1].upper() + t[1:] + ("" if t[-1] in ".?!" else ".")),
     Edit("upper case", "instruction", str.upper),
-    Edit("please before", "instruction", _request("please ", "")),
-    Edit("please behind", "instruction", _request("", ", please")),
+    Edit("please first", "instruction", _request("please ", "")),
+    Edit("please last", "instruction", _request("", ", please")),
     Edit("can you", "instruction", _request("can you ", "?")),
     Edit("I want you to", "instruction", _request("I want you to ", "")),
     Edit("degree signs", "instruction", lambda t: re.sub(r"(\d) degrees?\b", r"\1°", t)),
-    Edit("numbers in words", "instruction", _number_words),
-    Edit("other words", "instruction", _other_words),
-    Edit("a typing error", "instruction", _misspell),
+    Edit("numbers in words", "instruction", _spell_numbers),
+    Edit("synonyms", "instruction", _use_synonyms),
+    Edit("typing error", "instruction", _misspell),
     Edit("double spaces", "instruction", lambda t: t.replace(" ", "  ")),
 )
 
 
-def _reversed_rules(text: str) -> str:
+def _reverse_rules(text: str) -> str:
     """Reverse the order of the rules in each list."""
     lines, out, rules = text.split("\n"), list[str](), list[str]()
     for line in [*lines, ""]:
@@ -90,19 +90,19 @@ def _reversed_rules(text: str) -> str:
     return "\n".join(out[:-1])
 
 
-def _without_last_sentence(text: str) -> str:
+def _remove_last_sentence(text: str) -> str:
     return re.sub(r"(?<=[.:]) [^.\n]*\.\s*\Z", "", text)
 
 
 PROMPT_EDITS: tuple[Edit, ...] = (
     Edit("blank lines at the end", "prompt", lambda t: t + "\n\n"),
-    Edit("an assistant first", "prompt", lambda t: "You are a helpful assistant. " + t),
+    Edit("assistant sentence first", "prompt", lambda t: "You are a helpful assistant. " + t),
     Edit("other bullets", "prompt", lambda t: re.sub(r"^- ", "* ", t, flags=re.MULTILINE)),
     Edit("no bullets", "prompt", lambda t: re.sub(r"^- ", "", t, flags=re.MULTILINE)),
-    Edit("headings marked", "prompt", lambda t: re.sub(r"^([A-Z][A-Za-z ]{3,30})$", r"## \1", t, flags=re.MULTILINE)),
+    Edit("marked headings", "prompt", lambda t: re.sub(r"^([A-Z][A-Za-z ]{3,30})$", r"## \1", t, flags=re.MULTILINE)),
     Edit("no emphasis", "prompt", lambda t: re.sub(r"\b(RIGHT|LEFT|UP|DOWN)\b", lambda m: m[0].lower(), t)),
     Edit("contractions", "prompt", lambda t: t.replace("do not", "don't").replace("it is", "it's").replace("cannot", "can't")),
-    Edit("rules reversed", "prompt", _reversed_rules),
-    Edit("last sentence left out", "prompt", _without_last_sentence),
+    Edit("reversed rules", "prompt", _reverse_rules),
+    Edit("no last sentence", "prompt", _remove_last_sentence),
     Edit("no blank lines", "prompt", lambda t: re.sub(r"\n{2,}", "\n", t)),
 )

@@ -1,4 +1,4 @@
-"""Send one instruction to a planner without a camera, and check the calls of its first step.
+"""Send an instruction to a planner without a camera, and check the calls in its first step.
 
 The checks test whether each call is valid, whether the first call is the expected one, and whether its direction is inverted.
 """
@@ -30,7 +30,7 @@ class _Model(BaseModel):
 
 
 class FirstCall(_Model):
-    """A tool call: the name of the tool and the arguments."""
+    """A tool call: the tool's name and the arguments."""
 
     name: str
     arguments: dict[str, Any] = {}
@@ -51,15 +51,15 @@ class InstructionRow(_Model):
 
 
 class PlannerTrial(_Model):
-    """The first step of a planner for an instruction.
+    """A planner's first step for an instruction.
 
     Attributes:
-        edit: The name of the edit that was applied to the instruction; empty for the original wording.
-        asked: The instruction as it was sent, after the edit.
+        edit: Name of the edit that was applied to the instruction; empty for the original wording.
+        asked: The instruction as sent, after the edit.
         calls: The valid calls.
-        invalid: The number of invalid calls.
-        text: The text of the reply or, if the planner failed, the error message.
-        failure: The kind of failure; None if the planner did not fail.
+        invalid: Number of invalid calls.
+        text: The reply's text or, if the planner failed, the error message.
+        failure: The failure kind; None if the planner did not fail.
         right: Whether the first call is the expected one.
         inverted: Whether the first move turns or zooms opposite to the expected direction.
     """
@@ -85,7 +85,7 @@ def load_rows() -> tuple[InstructionRow, ...]:
 
 
 def read_rows(source: Path) -> tuple[InstructionRow, ...]:
-    """Read instructions with expected calls from a file of JSON lines.
+    """Read instructions with expected calls from a JSON Lines file.
 
     Lines without calls are skipped, because they expect a question instead of calls.
 
@@ -114,7 +114,7 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
 
 
 class _Line(BaseModel):
-    """A line of a file that contains instructions with expected calls."""
+    """A line in a file of instructions with expected calls."""
 
     instruction: str
     kind: str = ""
@@ -123,7 +123,7 @@ class _Line(BaseModel):
 
 
 async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
-    """Send an instruction to a planner. If it was edited, ``asked`` is its new wording, and ``edit`` the name of the edit."""
+    """Send an instruction to a planner. For an edited instruction, ``asked`` is the new wording and ``edit`` the edit's name."""
     instruction = row.instruction if asked is None else asked
     state = State(
         instruction=instruction, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
@@ -137,7 +137,7 @@ async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None =
     seconds = perf_counter() - began
     requested = decision.calls if isinstance(decision, CallTools) else ()
     calls = tuple(
-        FirstCall(name=c.name, arguments=c.arguments) for c in requested if c.problem is None and _valid(c.name, c.arguments)
+        FirstCall(name=c.name, arguments=c.arguments) for c in requested if c.problem is None and _is_valid(c.name, c.arguments)
     )
     return PlannerTrial(
         row=row,
@@ -154,7 +154,7 @@ async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None =
     )
 
 
-def _valid(name: str, arguments: dict[str, Any]) -> bool:
+def _is_valid(name: str, arguments: dict[str, Any]) -> bool:
     try:
         parse_call(name, arguments)
     except ToolCallError:
@@ -163,19 +163,19 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
 
 
 def is_expected_call(row: InstructionRow, call: FirstCall) -> bool:
-    """Return whether a call is correct as the first one: it uses an alternative tool, or is equivalent to the expected call."""
+    """Return whether a call is correct as the first call: it uses an alternative tool or is equivalent to the expected call."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True
-    return call.name == expected.name and same_arguments(expected, call)
+    return call.name == expected.name and have_same_arguments(expected, call)
 
 
-def same_arguments(one: FirstCall, other: FirstCall) -> bool:
-    """Return whether two calls of a tool have equivalent arguments.
+def have_same_arguments(one: FirstCall, other: FirstCall) -> bool:
+    """Return whether two calls to the same tool have equivalent arguments.
 
     Numbers may differ by ``_TOLERANCE``. Descriptions must consist of the same words, apart from articles, "all", "any" and a final
-    "s". The texts of questions are not compared. If ``one`` is an expected call, it may contain ``{"contains": [words, ...]}``
-    instead of a text; the text of the other call must then contain these words, in any order.
+    "s". Question texts are not compared. If ``one`` is an expected call, it may contain ``{"contains": [words, ...]}`` instead of a
+    text; the other call's text must then contain these words, in any order.
     """
     required_words = {
         key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value
@@ -187,10 +187,10 @@ def same_arguments(one: FirstCall, other: FirstCall) -> bool:
         a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (expected_call, other))
     except ToolCallError:
         return False
-    return all(set(_words(a[key])) <= set(_words(b[key])) if key in required_words else _same(a[key], b[key]) for key in a)
+    return all(set(_words(a[key])) <= set(_words(b[key])) if key in required_words else _is_equivalent(a[key], b[key]) for key in a)
 
 
-def _same(one: Any, other: Any) -> bool:
+def _is_equivalent(one: Any, other: Any) -> bool:
     if isinstance(one, str) and isinstance(other, str):
         return _words(one) == _words(other)
     if isinstance(one, int | float) and isinstance(other, int | float):
@@ -202,16 +202,16 @@ def _words(text: str) -> list[str]:
     return [w.removesuffix("s") for w in re.findall(r"\w+", text.lower()) if w not in ("the", "a", "an", "all", "any")]
 
 
-def same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
+def is_same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
     """Return whether two sequences of calls use the same tools, up to the length of the shorter one."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))
 
 
-def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
+def are_same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
     """Return whether two sequences of calls use the same tools and arguments, up to the length of the shorter one."""
-    return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
+    return is_same_choice(one, other) and all(have_same_arguments(a, b) for a, b in zip(one, other, strict=False))
 
 
 def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
@@ -222,7 +222,7 @@ def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
 
 
 def _directions(call: FirstCall) -> tuple[float, float, float]:
-    """Return the pan, tilt and zoom of a move. Only their signs, which give the directions, matter. An invalid call gives zeros."""
+    """Return a move's pan, tilt and zoom. Only the signs matter, because they give the directions. An invalid call gives zeros."""
     try:
         move = AdjustPtz.model_validate(call.arguments)
     except ValidationError:

@@ -1,4 +1,4 @@
-"""Measure the speed of each perception skill on frames of a scene."""
+"""Measure the speed of each perception skill on frames from a scene."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ OBJECT, QUESTION = "car", "What is the main thing in this picture? Answer in a f
 
 
 class PerceptionSpeed(BaseModel):
-    """The measured seconds per call of each skill.
+    """The measured seconds per call for each skill.
 
     Attributes:
         frames: Number of frames.
-        by_skill: Median and 95th percentile of the seconds per successful call.
+        by_skill: Median and 95th percentile of the seconds per successful call, by skill.
         never_worked: Skills without a successful call.
-        failures: Number of failed calls by kind.
-        first_failure: The error message of the first failed call.
+        failures: Number of failed calls by failure kind.
+        first_failure: The error message from the first failed call.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -36,7 +36,7 @@ class PerceptionSpeed(BaseModel):
 
     @property
     def slowest_median_s(self) -> float | None:
-        """The median time of the slowest skill; None if any skill had no successful call, because its speed is unknown."""
+        """The slowest skill's median time; None if any skill had no successful call, because that skill's speed is unknown."""
         if self.never_worked:
             return None
         return max((spread.median for spread in self.by_skill.values()), default=None)
@@ -45,13 +45,13 @@ class PerceptionSpeed(BaseModel):
 async def measure_perception(
     perception: Perception, frames: Sequence[Frame], on_call: Callable[[], None] = lambda: None
 ) -> PerceptionSpeed:
-    """Call every skill of a backend on every frame, and measure the time.
+    """Call each of a backend's skills on every frame, and measure the time.
 
     A warm-up round, which loads the model and opens the connection, is not counted.
 
     Args:
         perception: The perception backend to measure.
-        frames: The frames. They must all differ, so that no reply comes from a cache.
+        frames: The frames. All must differ, so that no reply comes from a cache.
         on_call: Called after each call outside the warm-up round.
     """
     skills: dict[str, Callable[[Frame], Awaitable[object]]] = {

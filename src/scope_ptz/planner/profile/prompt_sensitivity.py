@@ -1,4 +1,4 @@
-"""Measure how sensitive a planner is to edits of the prompt and the instruction.
+"""Measure how sensitive a planner is to edits to the prompt and the instruction.
 
 Each instruction is sent unedited, once more unedited (to measure the server's own variation), and with each edit.
 """
@@ -15,10 +15,10 @@ from pydantic import BaseModel, ConfigDict
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.prompts import Prompt
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
-from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, same_calls, same_choice
+from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, are_same_calls, ask_once, is_same_choice, load_rows
 
-AGAIN = "asked again unchanged"
-_Z = 1.96  # the normal quantile of a 95% interval
+AGAIN = "repeated unchanged"
+_Z = 1.96  # the normal quantile for a 95% interval
 
 
 class _Model(BaseModel):
@@ -26,7 +26,7 @@ class _Model(BaseModel):
 
 
 class Rate(_Model):
-    """A count out of a total, as a fraction with its 95% Wilson interval. Fraction and interval are None for a total of zero."""
+    """A count out of a total, as a fraction with its 95% Wilson interval. Fraction and interval are None if the total is zero."""
 
     count: int
     of: int
@@ -36,7 +36,7 @@ class Rate(_Model):
 
     @classmethod
     def over(cls, hits: Iterable[bool]) -> Rate:
-        """Return the rate of true values among ``hits``."""
+        """Return the rate of True among ``hits``."""
         values = list(hits)
         count, of = sum(values), len(values)
         if not of:
@@ -52,7 +52,7 @@ class EditEffect(_Model):
     """The effect of an edit.
 
     Attributes:
-        tools_changed: The rate at which the planner chose different tools than without the edit.
+        tools_changed: The rate at which the planner chose other tools than without the edit.
         calls_changed: The rate at which the tools or their arguments changed.
         right: The rate at which the first call with the edit was the expected one.
         inverted: The rate of inverted moves with the edit, among the instructions that request a move.
@@ -71,8 +71,8 @@ class Sensitivity(_Model):
 
     ``valid``, ``right``, ``inverted`` and ``failed`` are rates over the unedited instructions. A trial in which the planner or its
     server failed counts only in ``failed``. ``noise`` is the rate at which the tools change without any edit; an edit has an effect
-    only if its rate is higher. ``by_prompt`` and ``by_instruction`` are the rates at which the tools change with edits of the
-    prompt and of the instruction. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` list examples
+    only if its rate is higher. ``by_prompt`` and ``by_instruction`` are the rates at which the tools change with edits to the
+    prompt and to the instruction. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` list examples
     of inverted moves and of changed tools.
     """
 
@@ -93,12 +93,12 @@ class Sensitivity(_Model):
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A trial to run: an instruction, and the prompt to send it with.
+    """A trial to run: an instruction, and the prompt with which to send it.
 
     Attributes:
-        edit: The name of the edit; empty or ``AGAIN`` if nothing is edited.
+        edit: Name of the edit; empty or ``AGAIN`` if nothing is edited.
         where: What the edit changes: "prompt" or "instruction"; empty if nothing is edited.
-        asked: The instruction as it is sent.
+        asked: The instruction as sent.
     """
 
     row: InstructionRow
@@ -120,12 +120,12 @@ async def measure_sensitivity(
     """Run all instructions with all edits, and report how the calls change.
 
     Args:
-        make_planner: Creates a planner; called once for each variant of the prompt.
+        make_planner: Creates a planner; called once for each prompt variant.
         prompt: The unedited prompt.
         rows: The instructions; None selects the packaged ones.
         edits: The edits to try.
         max_concurrent: The maximum number of concurrent requests.
-        progress: Called after each trial with the number of completed trials and their total.
+        progress: Called after each trial with the number of completed trials and the total.
     """
     rows = load_rows() if rows is None else rows
     cases = _cases(rows, prompt, edits)
@@ -175,12 +175,12 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
         instructions=len(rows),
         valid=Rate.over(not t.invalid and bool(t.calls) for t in planned),
         right=Rate.over(t.right for t in planned),
-        inverted=_inverted(planned),
+        inverted=_inverted_rate(planned),
         failed=Rate.over(t.failure is not None for t in unedited.values()),
-        noise=_changed(pair for pair in pairs if pair.case.edit == AGAIN),
-        by_prompt=_changed(by_target["prompt"]),
-        by_instruction=_changed(by_target["instruction"]),
-        inverted_anywhere=_inverted(t for t in trials if t.failure is None),
+        noise=_changed_rate(pair for pair in pairs if pair.case.edit == AGAIN),
+        by_prompt=_changed_rate(by_target["prompt"]),
+        by_instruction=_changed_rate(by_target["instruction"]),
+        inverted_anywhere=_inverted_rate(t for t in trials if t.failure is None),
         edits=_effects(cases, pairs),
         inversions=tuple(_example(t) for t in trials if t.inverted)[:20],
         changes=tuple(_example(pair.edited) for pair in pairs if pair.case.where and pair.changed)[:20],
@@ -189,7 +189,7 @@ def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Cas
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """The trials of an instruction without and with an edit. The planner succeeded in both."""
+    """An instruction's trials without and with an edit. The planner succeeded in both."""
 
     case: _Case
     unedited: PlannerTrial
@@ -197,11 +197,11 @@ class _Pair:
 
     @property
     def changed(self) -> bool:
-        return not same_choice(self.unedited.calls, self.edited.calls)
+        return not is_same_choice(self.unedited.calls, self.edited.calls)
 
 
 def _pairs(cases: Sequence[_Case], trials: Sequence[PlannerTrial], unedited: Mapping[str, PlannerTrial]) -> list[_Pair]:
-    """Pair every edited trial with the unedited trial of its instruction, unless the planner failed in one of them."""
+    """Pair every edited trial with the unedited trial for the same instruction, unless the planner failed in one of them."""
     return [
         _Pair(case, unedited[case.row.instruction], trial)
         for case, trial in zip(cases, trials, strict=True)
@@ -209,7 +209,7 @@ def _pairs(cases: Sequence[_Case], trials: Sequence[PlannerTrial], unedited: Map
     ]
 
 
-def _changed(pairs: Iterable[_Pair]) -> Rate:
+def _changed_rate(pairs: Iterable[_Pair]) -> Rate:
     return Rate.over(pair.changed for pair in pairs)
 
 
@@ -223,14 +223,14 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
     return EditEffect(
         edit=name,
         where=where,
-        tools_changed=_changed(pairs),
-        calls_changed=Rate.over(not same_calls(pair.unedited.calls, pair.edited.calls) for pair in pairs),
+        tools_changed=_changed_rate(pairs),
+        calls_changed=Rate.over(not are_same_calls(pair.unedited.calls, pair.edited.calls) for pair in pairs),
         right=Rate.over(pair.edited.right for pair in pairs),
-        inverted=_inverted(pair.edited for pair in pairs),
+        inverted=_inverted_rate(pair.edited for pair in pairs),
     )
 
 
-def _inverted(trials: Iterable[PlannerTrial]) -> Rate:
+def _inverted_rate(trials: Iterable[PlannerTrial]) -> Rate:
     """Return the rate of inverted moves among the instructions that request a move."""
     return Rate.over(t.inverted for t in trials if _moves(t))
 

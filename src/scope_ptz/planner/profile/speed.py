@@ -1,4 +1,4 @@
-"""Summarise the speed of a planner and its rate of valid calls in trials of individual instructions."""
+"""Summarise a planner's speed and its rate of valid calls in trials with individual instructions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Spread(BaseModel):
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread | None:
-        """Return the spread of values; None if there are none."""
+        """Return the spread of values; None if there are no values."""
         if not values:
             return None
         ordered = sorted(values)
@@ -30,14 +30,14 @@ class Spread(BaseModel):
 
 
 class Speed(BaseModel):
-    """The speed of a planner, in seconds and tokens per second.
+    """A planner's speed, in seconds and tokens per second.
 
     Attributes:
-        valid: Turns with only valid calls, out of the turns with calls.
-        right: Turns whose first call was the expected one.
-        inverted: Turns with an inverted move, out of the turns whose instruction requests a move.
-        failures: Number of failed turns by kind of failure. Failed turns are excluded from all rates and times.
-        first_failure: The error message of the first failure, which may be that of the warm-up.
+        valid: Rate of turns with only valid calls, out of the turns with calls.
+        right: Rate of turns whose first call was the expected one.
+        inverted: Rate of turns with an inverted move, out of the turns whose instruction requests a move.
+        failures: Number of failed turns by failure kind. Failed turns are excluded from all rates and times.
+        first_failure: The error message from the first failure, which may have occurred in the warm-up.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -54,7 +54,7 @@ class Speed(BaseModel):
 
 
 def speed_of(trials: Sequence[PlannerTrial], warm_up: PlannerTrial | None = None) -> Speed:
-    """Return the speed of a planner. ``warm_up`` is an earlier trial, of which only the error message is used."""
+    """Return a planner's speed. ``warm_up`` is an earlier trial, from which only the error message is used."""
     succeeded = [t for t in trials if t.failure is None]
     called = [t for t in succeeded if t.calls or t.invalid]
     return Speed(

@@ -1,4 +1,4 @@
-"""The evaluation of one participant, as the host sees it: whose turn it is, and the messages that pass.
+"""The host's view of one participant's evaluation: its phase, and the messages exchanged.
 
 The host knows a run only by an opaque key. The worker, which knows the tasks, offers runs one after another.
 """
@@ -25,16 +25,16 @@ from scope_ptz.errors import PlannerError, ScopeError
 from scope_ptz.serve.bench_host.journal import Journal
 from scope_ptz.serve.bench_host.links import HostSide, OpenLink
 from scope_ptz.serve.bench_host.wire import (
+    AgentGone,
     Begin,
     Deliver,
     Event,
     Failed,
     Finished,
-    Gone,
-    Offered,
-    Over,
+    MessageToAgent,
     Ready,
-    Sent,
+    RunEnded,
+    RunOffered,
     WorkerSettings,
 )
 
@@ -43,21 +43,21 @@ logger = logging.getLogger(__name__)
 Phase = Literal["stopped", "preparing", "offered", "turn", "working", "finished", "failed"]
 """The phases of an evaluation.
 
-"stopped": no worker runs. "preparing": the worker has not offered the next run yet. "offered": a run waits for the agent's hello.
-"turn": it is the agent's turn. "working": the engine works on the agent's message. "finished": every run has ended. "failed": the
-worker failed repeatedly.
+"stopped": no worker is running. "preparing": the worker has not yet offered the next run. "offered": a run is waiting for a hello.
+"turn": it is the agent's turn. "working": the engine is processing the agent's message. "finished": every run has ended. "failed":
+the worker failed repeatedly.
 """
 MAX_RESTARTS = 3
-"""A worker that ends this often without making progress is not started again."""
+"""A worker that has ended this many times without progress is not restarted."""
 MAX_WAIT_S = 300.0
-"""Maximum seconds that ``hello`` waits for the next run."""
+"""Maximum time, in seconds, for which ``hello`` waits for the next run."""
 BROKEN = "The host cannot continue this evaluation. Its operator must restart it. No task was lost."
 ALL_DONE = "All tasks have been attempted. The evaluation is finished."
 ABSENT = "The participant did not continue before the host closed the evaluation."
 
 
 class NotYourTurnError(ScopeError):
-    """The message does not fit the phase of the evaluation."""
+    """The message is not allowed in the current phase of the evaluation."""
 
 
 class NotReadyError(ScopeError):
@@ -66,13 +66,13 @@ class NotReadyError(ScopeError):
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """What a participant may know about its evaluation.
+    """An evaluation's progress, as shown to its participant.
 
     Attributes:
         phase: "ready" for the next hello, "your_turn", "wait", or "finished".
         runs: Number of runs; None until the worker has reported it.
         begun: Number of runs that have begun.
-        last: The last message of the host in the current run, for an agent that lost its connection.
+        last: The host's last message in the current run, for an agent that lost its connection.
     """
 
     phase: Literal["ready", "your_turn", "wait", "finished"]
@@ -82,13 +82,13 @@ class Progress:
 
 
 class HostedEvaluation:
-    """The evaluation of one participant.
+    """One participant's evaluation.
 
     Args:
-        settings: The settings of its worker.
-        journal: Its journal.
-        open_link: Starts a worker.
-        absent: Whether the participant is absent: all runs that have not ended fail, so that the evaluation can be finished.
+        settings: The worker's settings.
+        journal: The participant's journal.
+        open_link: Function that starts a worker.
+        absent: Whether to fail all unfinished runs, so that the evaluation can be finished without the participant.
     """
 
     def __init__(self, settings: WorkerSettings, journal: Journal, open_link: OpenLink, *, absent: bool = False) -> None:
@@ -100,7 +100,7 @@ class HostedEvaluation:
         self._last: HostMessage | None = None
         self._replay: deque[str] = deque()
         self._link: HostSide | None = None
-        self._working: asyncio.Task[None] | None = None
+        self._supervisor: asyncio.Task[None] | None = None
         self._changed = asyncio.Condition()
         self._answer: asyncio.Future[HostMessage] | None = None
 
@@ -111,7 +111,7 @@ class HostedEvaluation:
 
     @property
     def progress(self) -> Progress:
-        """What the participant may know about its evaluation."""
+        """The evaluation's progress, as shown to the participant."""
         phase: Literal["ready", "your_turn", "wait", "finished"] = "wait"
         if self.phase in ("stopped", "offered"):
             phase = "ready"
@@ -122,28 +122,28 @@ class HostedEvaluation:
         return Progress(phase, self.runs, self.journal.attempted, self._last)
 
     def start(self) -> None:
-        """Start the worker if it does not run."""
+        """Start the worker if it is not running."""
         if self.phase == "stopped":
             self.phase = "preparing"
-            self._working = asyncio.ensure_future(self._supervise())
+            self._supervisor = asyncio.ensure_future(self._supervise())
 
     async def close(self) -> None:
         """Stop the worker. The evaluation can be resumed later."""
-        if self._working is not None:
-            self._working.cancel()
-            await asyncio.gather(self._working, return_exceptions=True)
+        if self._supervisor is not None:
+            self._supervisor.cancel()
+            await asyncio.gather(self._supervisor, return_exceptions=True)
         self.journal.close()
 
     async def exchange(self, line: bytes) -> HostMessage:
-        """Pass a message of the agent to the engine, and return the host's next message.
+        """Pass a message from the agent to the engine, and return the host's next message.
 
-        ``hello`` begins the next run. While a run is in progress it returns the run's task again, and nothing begins anew.
+        ``hello`` begins the next run. While a run is in progress, ``hello`` returns the task again and does not start a new run.
 
         Args:
-            line: The message as the agent sent it. A message that is not valid ends the run.
+            line: The message as the agent sent it. An invalid message ends the run.
 
         Raises:
-            NotYourTurnError: There is no run in progress, or an earlier message is still being worked on.
+            NotYourTurnError: There is no run in progress, or an earlier message is still being processed.
             NotReadyError: The next run was not ready in time, or the worker has failed repeatedly.
         """
         hello = _hello_of(line)
@@ -175,7 +175,7 @@ class HostedEvaluation:
                 raise NotYourTurnError(ALL_DONE)
             self._check_alive()
             if self.phase == "working":
-                raise NotYourTurnError("Your earlier message is still being worked on. Wait for its reply.")
+                raise NotYourTurnError("Your earlier message is still being processed. Wait for its reply.")
             if self.phase != "turn":
                 ended = f" The last one ended: {self._last.message}" if isinstance(self._last, Error) else ""
                 raise NotYourTurnError(f"No task is in progress.{ended} Send hello to begin the next one.")
@@ -187,7 +187,7 @@ class HostedEvaluation:
             raise NotReadyError(BROKEN)
 
     async def _deliver(self, line: bytes) -> asyncio.Future[HostMessage]:
-        """Record a message and pass it to the worker. Return the future of the answer. The caller holds the condition."""
+        """Record a message, pass it to the worker, and return a future for the answer. The caller must hold the condition."""
         assert self._link is not None  # noqa: S101 - the worker offered the run
         text = line[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")
         self.journal.record(self._run, text)
@@ -199,19 +199,19 @@ class HostedEvaluation:
         return answer
 
     def _respond(self, message: HostMessage) -> None:
-        """Answer the agent's message, if it waits for an answer, and keep the answer for an agent that lost its connection."""
+        """Answer the agent's pending message, if any, and keep the answer in case the agent loses its connection."""
         self._last = message
         if self._answer is not None and not self._answer.done():
             self._answer.set_result(message)
 
     async def _supervise(self) -> None:
-        """Run the worker, and start it again if it ends early."""
+        """Run the worker, and restart it if it ends early."""
         failures = 0
         while not self.finished and failures < MAX_RESTARTS:
             ended = self.journal.ended
             try:
-                await self._work()
-            except Exception:  # for example a full disk; the host and its other participants go on
+                await self._run_worker()
+            except Exception:  # for example, a full disk; other participants' evaluations continue
                 logger.exception("The evaluation of %s stopped", self.settings.participant)
             failures = failures + 1 if self.journal.ended == ended else 1
             if not self.finished:
@@ -222,7 +222,7 @@ class HostedEvaluation:
             if self._answer is not None and not self._answer.done():
                 self._answer.set_exception(NotReadyError(BROKEN))
 
-    async def _work(self) -> None:
+    async def _run_worker(self) -> None:
         """Start a worker, and handle its events until it ends."""
         self._link = link = await self._open_link(self.settings)
         try:
@@ -243,48 +243,48 @@ class HostedEvaluation:
         match event:
             case Ready():
                 self.runs = event.runs
-            case Offered():
-                await self._offered(event.run, link)
-            case Sent():
-                await self._sent(event, link)
-            case Over():
-                self._over(event)
+            case RunOffered():
+                await self._handle_offer(event.run, link)
+            case MessageToAgent():
+                await self._handle_message(event, link)
+            case RunEnded():
+                self._handle_end(event)
             case Finished():
                 self.journal.record_done(event.submission)
                 self.phase = "finished"
             case Failed():
                 logger.warning("The evaluation of %s failed: %s", self.settings.participant, event.message)
 
-    async def _offered(self, run: str, link: HostSide) -> None:
-        """Offer a run to the agent. A run that had begun before a restart is carried on from the journal."""
+    async def _handle_offer(self, run: str, link: HostSide) -> None:
+        """Offer a run to the agent. A run that began before a restart is resumed from the journal."""
         self._run, self._task, self._last = run, None, None
         self._replay = deque(self.journal.messages(run))
         if self._replay or self._absent or self.journal.has_ended(run):
             self.phase = "working"
             await link.send(Begin(run=run))
-            await self._next_recorded(link)
+            await self._send_next_recorded(link)
         else:
             self.phase = "offered"
 
-    async def _next_recorded(self, link: HostSide) -> None:
-        """Give the engine the next recorded message, or report that no further message will come."""
+    async def _send_next_recorded(self, link: HostSide) -> None:
+        """Send the next recorded message to the engine, or report that the agent will send no more messages."""
         if self._replay:
             await link.send(Deliver(run=self._run, line=self._replay.popleft()))
         else:
-            await link.send(Gone(run=self._run, reason=ABSENT))
+            await link.send(AgentGone(run=self._run, reason=ABSENT))
 
-    async def _sent(self, event: Sent, link: HostSide) -> None:
+    async def _handle_message(self, event: MessageToAgent, link: HostSide) -> None:
         if isinstance(event.message, TaskMessage):
             self._task = event.message
         if isinstance(event.message, Error):
-            self._respond(event.message)  # The run is about to end.
+            self._respond(event.message)  # the run is about to end
         elif self._replay or self._absent or self.journal.has_ended(event.run):
-            await self._next_recorded(link)
+            await self._send_next_recorded(link)
         else:
             self.phase = "turn"
             self._respond(event.message)
 
-    def _over(self, event: Over) -> None:
+    def _handle_end(self, event: RunEnded) -> None:
         self.journal.record_end(event.run)
         self._replay.clear()
         if not isinstance(self._last, Error):
@@ -293,7 +293,7 @@ class HostedEvaluation:
 
 
 def _hello_of(line: bytes) -> Hello | None:
-    """Return a message if it is a valid hello, else None."""
+    """Parse a message as a hello. Return None if it is anything else."""
     try:
         message = parse_agent_message(line)
     except PlannerError:

@@ -1,4 +1,4 @@
-"""The host: its folder, its participants, and one evaluation for each of them."""
+"""The host: its folder, its participants, and one evaluation for each participant."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ POLL_S = 0.5
 
 
 class _State(BaseModel):
-    """The content of the host's state file.
+    """The contents of the host's state file.
 
     Attributes:
-        seed: Secret from which the task order of every participant is derived.
-        settings: What is evaluated.
+        seed: Secret from which every participant's task order is derived.
+        settings: The evaluation settings.
         tasks_sha256: Digest of the task file; empty for a published split.
     """
 
@@ -50,19 +50,19 @@ class _State(BaseModel):
 
 
 class Host:
-    """Evaluates the participants of one folder.
+    """Evaluates the participants in one folder.
 
     Args:
-        folder: The host's folder: secret seed, tokens, journals, logs and submissions. It is resumed if it exists.
-        settings: What is evaluated.
-        key: File of the private key that signs submissions.
-        open_link: Starts a worker.
-        absent: Whether to fail every run that has not ended, so that all evaluations finish without their participants.
-        notify: Receives a line when an evaluation is finished.
+        folder: The host's folder, with the secret seed, tokens, journals, logs and submissions. It is resumed if it exists.
+        settings: The evaluation settings.
+        key: Private key file for signing submissions.
+        open_link: Function that starts a worker.
+        absent: Whether to fail all unfinished runs, so that all evaluations can be finished without their participants.
+        notify: Function that receives a line of text when an evaluation is finished.
 
     Raises:
         InputError: The folder belongs to a host with other settings.
-        OutputError: The folder cannot be written.
+        OutputError: The folder cannot be written to.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class Host:
         self.closing = asyncio.Event()
 
     async def check(self) -> int:
-        """Check the settings in a worker, and return the number of runs of each evaluation.
+        """Check the settings in a worker, and return the number of runs in each evaluation.
 
         Raises:
             InputError: The tasks, the scenes, the perception or the key cannot be used.
@@ -102,7 +102,7 @@ class Host:
         raise NotReadyError("The process that runs the evaluation did not start.")
 
     def evaluation(self, participant: str) -> HostedEvaluation:
-        """Return the evaluation of a participant. The caller must have checked that the name is registered."""
+        """Return a participant's evaluation. The caller must check that the name is registered."""
         if participant not in self._evaluations:
             settings = self._worker_settings(participant)
             self._evaluations[participant] = HostedEvaluation(
@@ -111,10 +111,10 @@ class Host:
         return self._evaluations[participant]
 
     async def finish(self, *, start: bool) -> None:
-        """Wait until the evaluation of every registered participant is finished.
+        """Wait until every registered participant's evaluation is finished.
 
         Args:
-            start: Whether to start all evaluations, instead of waiting until their participants begin.
+            start: Whether to start all evaluations instead of waiting for the participants to begin.
         """
         reported: set[str] = set()
         while True:
@@ -145,29 +145,29 @@ class Host:
 
 
 def participants_file(folder: Path) -> Path:
-    """Return the file with the tokens of a host's participants."""
+    """Return the path of the file with the participants' tokens."""
     return folder / PARTICIPANTS_FILE
 
 
 def folder_name(participant: str) -> str:
-    """Return the name of a participant's folder. It is unique even on file systems that ignore case."""
+    """Return a participant's folder name, which is unique even on file systems that ignore case."""
     digest = hashlib.sha256(participant.encode()).hexdigest()[:NAME_DIGEST_CHARS]
     return f"{re.sub('[^A-Za-z0-9-]', '_', participant)}-{digest}"
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def lock_folder(folder: Path) -> Iterator[None]:
     """Lock a host's folder, so that a second host cannot use it at the same time.
 
     Raises:
         InputError: Another host uses the folder.
-        OutputError: The folder cannot be written.
+        OutputError: The folder cannot be written to.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         lock = (folder / LOCK_FILE).open("w")
     except OSError as error:
-        raise OutputError(f"The folder {folder} cannot be written: {error.strerror}. Choose another one with --out.") from error
+        raise OutputError(f"The folder {folder} cannot be written to: {error.strerror}. Choose another one with --out.") from error
     with lock:
         if not lock_file(lock):
             raise InputError(f"Another host is using {folder}. Stop it first, or choose another folder with --out.")
@@ -175,7 +175,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def _load_state(folder: Path, settings: EvaluationSettings) -> _State:
-    """Read the state of a folder, or create it with a new secret seed. Raises ``InputError`` and ``OutputError``."""
+    """Read a folder's state, or create it with a new secret seed. Raises ``InputError`` and ``OutputError``."""
     path, digest = folder / STATE_FILE, _digest_of_file(settings.tasks)
     try:
         state = _State.model_validate_json(path.read_bytes())

@@ -49,21 +49,21 @@ def http_routes(host: Host, access: Access) -> list[Route]:
 
 
 def progress_data(evaluation: HostedEvaluation) -> dict[str, Any]:
-    """Return what a participant may know about its evaluation, as JSON data."""
+    """Return an evaluation's progress as JSON data."""
     progress = evaluation.progress
     last = progress.last.model_dump(mode="json") if progress.last is not None else None
     return {**asdict(progress), "last": last}
 
 
 async def scope_error(_: Request, error: Exception) -> Response:
-    """Reply to a request that failed. Messages of unexpected errors stay on the host."""
+    """Reply to a request that failed. The messages of unexpected errors stay on the host."""
     status, code = host_status_of(error)
     headers = {"Retry-After": str(round(error.retry_s))} if isinstance(error, TooManyRequestsError) else None
     return error_reply(status, code, public_message(error), headers)
 
 
 def host_status_of(error: Exception) -> tuple[int, str]:
-    """Return the HTTP status and the code of an error."""
+    """Return the HTTP status and the error code for an error."""
     if isinstance(error, NotYourTurnError):
         return 409, "not_your_turn"
     if isinstance(error, NotReadyError):
@@ -72,7 +72,7 @@ def host_status_of(error: Exception) -> tuple[int, str]:
 
 
 def public_message(error: Exception) -> str:
-    """Return the message of an error for participants. Only errors about the order of messages may describe themselves."""
+    """Return an error's message for participants. Only errors about message order, readiness and rate limits show details."""
     if isinstance(error, NotYourTurnError | NotReadyError | TooManyRequestsError):
         return str(error)
     return "The host failed. Its operator can find the reason in its log."

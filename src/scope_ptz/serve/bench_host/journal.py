@@ -1,7 +1,7 @@
-"""The journal of a participant: every message of the agent, written to disk before the engine receives it.
+"""A participant's journal: every message from the agent, written to disk before the engine receives it.
 
-A host that is killed resumes from the journal. A run that had begun is carried on: its recorded messages are given to the engine
-again, and the agent continues where it was. No task is attempted twice.
+After a host was killed, it resumes from the journal. For a run in progress, the recorded messages are sent to the engine again, and
+the agent continues where it stopped. No task is attempted twice.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class _Entry(BaseModel):
 
 
 class Received(_Entry):
-    """A message of the agent in a run. The first message of a run is its ``hello``."""
+    """A message from the agent in a run. A run's first message is its ``hello``."""
 
     type: Literal["received"] = "received"
     run: str
@@ -48,7 +48,7 @@ _ENTRY: TypeAdapter[Received | Ended | Done] = TypeAdapter(Annotated[Received | 
 
 
 class Journal:
-    """The journal of one participant.
+    """One participant's journal.
 
     Args:
         folder: The participant's folder.
@@ -81,7 +81,7 @@ class Journal:
         return len(self._ended)
 
     def messages(self, run: str) -> tuple[str, ...]:
-        """Return the agent's messages in a run; empty if it has not begun."""
+        """Return the agent's messages in a run; empty if the run has not begun."""
         return tuple(self._received.get(run, ()))
 
     def has_ended(self, run: str) -> bool:
@@ -89,7 +89,7 @@ class Journal:
         return run in self._ended
 
     def record(self, run: str, line: str) -> None:
-        """Record a message of the agent before it is delivered."""
+        """Record a message from the agent before it is delivered."""
         self._write(Received(run=run, line=line))
         self._received.setdefault(run, []).append(line)
 
@@ -116,7 +116,7 @@ class Journal:
         except OSError as error:
             raise InputError(f"The journal {self.path} cannot be read: {error.strerror}.") from error
         whole = content[: content.rfind(b"\n") + 1]
-        if len(whole) < len(content):  # the host was killed while it wrote the last line
+        if len(whole) < len(content):  # the host was killed while it was writing the last line
             self._truncate(len(whole))
         for number, line in enumerate(whole.splitlines(), 1):
             try:

@@ -1,4 +1,4 @@
-"""The connection between the host and a worker: a process with pipes, or two queues in one process."""
+"""The connection between the host and a worker: pipes to a separate process, or two queues within one process."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from contextlib import suppress
 from scope_ptz.serve.bench_host.wire import COMMAND, EVENT, MAX_LINE_BYTES, Command, Event, WorkerSettings
 
 STOP_S = 20.0
-"""Seconds that a worker has to write its log after its input was closed."""
+"""Seconds that a worker has to write its log after its input is closed."""
 
 RunWorker = Callable[["WorkerSide", WorkerSettings], Awaitable[None]]
-"""Runs a worker: it reads commands from its side of a link, and writes events to it."""
+"""A function that runs a worker. It reads commands from the worker's side of a link and sends events to the host."""
 
 
 class HostSide(ABC):
@@ -42,15 +42,15 @@ class WorkerSide(ABC):
 
     @abstractmethod
     async def receive(self) -> Command | None:
-        """Return the next command; None when the host has gone."""
+        """Return the next command; None when the host has disconnected."""
 
 
 OpenLink = Callable[[WorkerSettings], Awaitable[HostSide]]
-"""Starts a worker and returns the link to it."""
+"""A function that starts a worker and returns the link to it."""
 
 
 class ProcessLink(HostSide):
-    """The link to a worker in a process of its own. Create it with ``start``."""
+    """The link to a worker in a separate process. Create it with ``start``."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdin is not None and process.stdout is not None  # noqa: S101 - both are pipes
@@ -58,7 +58,7 @@ class ProcessLink(HostSide):
 
     @classmethod
     async def start(cls, settings: WorkerSettings) -> ProcessLink:
-        """Start a worker. Its settings are sent over the pipe, because other users can see the arguments of a process."""
+        """Start a worker. Its settings are sent over the pipe, because other users can see a process's arguments."""
         process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", "scope_ptz.serve.bench_host.worker",
             stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, limit=MAX_LINE_BYTES,
@@ -75,7 +75,7 @@ class ProcessLink(HostSide):
         try:
             line = await self._output.readline()
             return EVENT.validate_json(line) if line.endswith(b"\n") else None
-        except ValueError:  # a line that is too long, or no event: the worker is broken
+        except ValueError:  # a line that is too long or is not an event, so the worker has failed
             return None
 
     async def close(self) -> None:
@@ -117,7 +117,7 @@ class _Queues(WorkerSide):
         self.commands: asyncio.Queue[Command | None] = asyncio.Queue()
 
     async def send(self, event: Event) -> None:
-        # Events pass through JSON as over a pipe, so that the host sees nothing that it would not see there.
+        # Events pass through JSON as over a pipe, so that the host receives the same data.
         await self.events.put(EVENT.validate_json(event.model_dump_json()))
 
     async def receive(self) -> Command | None:
@@ -125,7 +125,7 @@ class _Queues(WorkerSide):
 
 
 class LocalLink(HostSide):
-    """The link to a worker that runs in the event loop of the host. Only one such worker can run at a time."""
+    """The link to a worker that runs in the host's event loop. Only one such worker can run at a time."""
 
     def __init__(self, run: RunWorker, settings: WorkerSettings) -> None:
         self._queues = _Queues()

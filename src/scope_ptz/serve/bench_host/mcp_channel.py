@@ -1,4 +1,4 @@
-"""The MCP channel: tools to begin a task, to operate the camera, to see a frame, and to answer."""
+"""The MCP channel, with tools to begin a task, operate the camera, see a frame, and answer."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from scope_ptz.bench.agents.messages import (
     TaskMessage,
     View,
     ViewRequest,
-    line_of,
+    encode_message,
 )
 from scope_ptz.errors import ScopeError, ToolCallError
 from scope_ptz.serve.bench_host.host import Host
@@ -50,8 +50,8 @@ from scope_ptz.serve.bench_host.http_routes import host_status_of, public_messag
 from scope_ptz.serve.mcp.http import MAX_SESSIONS, McpEndpoint, client_of
 from scope_ptz.serve.mcp.pictures import UNTRUSTED_META
 from scope_ptz.serve.mcp.server import Context
-from scope_ptz.serve.mcp.tool import ToolArguments, failure, parse_arguments, reply, without_titles
-from scope_ptz.serve.mcp.untrusted import between_markers, mark_texts
+from scope_ptz.serve.mcp.tool import ToolArguments, failure, parse_arguments, remove_titles, reply
+from scope_ptz.serve.mcp.untrusted import enclose_in_markers, mark_texts
 from scope_ptz.serve.security.access import MAX_BODY_BYTES, MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.tools.registry import TOOLS
@@ -87,8 +87,8 @@ _OWN_TOOLS: dict[str, type[ToolArguments]] = {"begin_task": BeginTask, "view": V
 
 
 @asynccontextmanager
-async def serving_mcp_channel(host: Host, access: Access) -> AsyncIterator[Route]:
-    """Serve the MCP channel while the context is open, and yield its route, which must be mounted behind a ``AccessMiddleware``."""
+async def serve_mcp_channel(host: Host, access: Access) -> AsyncIterator[Route]:
+    """Serve the MCP channel while the context is open, and yield its route. Mount the route behind an ``AccessMiddleware``."""
     handlers = _Handlers(host, access.limits)
     server: Server[Any] = Server(
         "scope-ptz-host",
@@ -105,12 +105,12 @@ async def serving_mcp_channel(host: Host, access: Access) -> AsyncIterator[Route
 
 
 class _Handlers:
-    """The handlers of requests."""
+    """Handles MCP requests."""
 
     def __init__(self, host: Host, limits: RateLimits) -> None:
         self._host, self._limits = host, limits
         self._tools = {tool.name: tool for tool in _listed_tools()}
-        # Agents may make several calls at once. A participant's calls are carried out one after another.
+        # Agents may send several calls at once. A participant's calls are processed one after the other.
         self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
 
     def input_schema(self, name: str) -> dict[str, Any] | None:
@@ -132,22 +132,22 @@ class _Handlers:
             participant = self._count(context, "command")
             message = _message(params.name, params.arguments or {})
             async with self._turns[participant]:
-                answer = await self._host.evaluation(participant).exchange(line_of(message))
+                answer = await self._host.evaluation(participant).exchange(encode_message(message))
         except ScopeError as error:
-            return failure(_for_agent(error), host_status_of(error)[1])
+            return failure(_message_for_agent(error), host_status_of(error)[1])
         except Exception:  # a bug must not reveal internals to the participant
             logger.exception("The MCP tool %s failed unexpectedly", params.name)
             return failure("The host failed. Its operator can find the reason in its log.", "failed")
         return _result(params.name, answer)
 
     def _count(self, context: Context, kind: Literal["read", "command"]) -> str:
-        """Count a request, and return the name of the participant."""
+        """Count a request, and return the participant's name."""
         client = client_of(context)
         self._limits.count(client.name, kind)
         return client.name
 
 
-def _for_agent(error: ScopeError) -> str:
+def _message_for_agent(error: ScopeError) -> str:
     return str(error) if isinstance(error, ToolCallError) else public_message(error)
 
 
@@ -175,15 +175,15 @@ def _listed_tools() -> list[ListedTool]:
 
 
 def _schema_of(model: type[ToolArguments]) -> dict[str, Any]:
-    schema: dict[str, Any] = without_titles(model.model_json_schema())
+    schema: dict[str, Any] = remove_titles(model.model_json_schema())
     return {**schema, "properties": schema.get("properties", {})}
 
 
 def _message(name: str, arguments: dict[str, Any]) -> AgentMessage:
-    """Return the message of the agent protocol for a call. Wrong arguments of camera tools are the camera's to report.
+    """Convert a call to an agent protocol message. The engine reports invalid arguments for camera tools.
 
     Raises:
-        ToolCallError: The arguments of one of the other tools are wrong.
+        ToolCallError: The arguments for one of the other tools are invalid.
     """
     if name == "begin_task":
         return Hello(protocol=PROTOCOL, name="mcp", sees=parse_arguments(BeginTask, name, arguments).frames)
@@ -191,13 +191,13 @@ def _message(name: str, arguments: dict[str, Any]) -> AgentMessage:
         parse_arguments(ViewFrame, name, arguments)
         return ViewRequest()
     if name == "answer":
-        given = parse_arguments(GiveAnswer, name, arguments)
-        return Reply(kind=given.kind, text=given.text)
+        parsed = parse_arguments(GiveAnswer, name, arguments)
+        return Reply(kind=parsed.kind, text=parsed.text)
     return Calls(calls=(RequestedCall(id="call", name=name, arguments=arguments),))
 
 
 def _result(name: str, message: HostMessage) -> CallToolResult:
-    """Return a message of the host as the result of a call. Text that may come from a picture is marked."""
+    """Convert a message from the host to a call's result. Text that may come from a picture is marked."""
     match message:
         case TaskMessage():
             data = message.model_dump(mode="json", exclude={"tools", "protocol", "type"})
@@ -207,7 +207,7 @@ def _result(name: str, message: HostMessage) -> CallToolResult:
             perceived = name in TOOLS.perceiving
             text = result.error if result.error is not None else str((result.result or {}).get("message", ""))
             data = {"result": mark_texts(result.result, perceived=perceived), "error": result.error}
-            return reply(between_markers(text) if perceived else text, data, failed=result.error is not None)
+            return reply(enclose_in_markers(text) if perceived else text, data, failed=result.error is not None)
         case View():
             return _view_result(message)
         case End():

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 from scope_ptz.bench.agents.messages import HostMessage
 
 MAX_LINE_BYTES = 64 * 1024 * 1024
-"""Maximum size of a line. A frame of a simulated camera has less than 1 MB."""
+"""Maximum size of a line in bytes. A simulated camera's frame takes less than 1 MB."""
 
 
 class _Part(BaseModel):
@@ -18,7 +18,7 @@ class _Part(BaseModel):
 
 
 class PerceptionSettings(_Part):
-    """The perception that the host provides to all participants. The fields are those of ``factory.models.ModelOptions``."""
+    """The perception that the host provides to all participants. It has the same fields as ``factory.models.ModelOptions``."""
 
     perception: str | None = None
     perception_url: str | None = None
@@ -28,16 +28,16 @@ class PerceptionSettings(_Part):
 
 
 class EvaluationSettings(_Part):
-    """What is evaluated. A host folder belongs to one such setting.
+    """Settings for hosted evaluations. All evaluations in a host's folder have the same settings.
 
     Attributes:
         tasks: Split or task file.
         perception: The perception that the host provides.
-        epochs: Number of runs of each task.
-        seed: Seed of the evaluation, for example for noisy perception.
-        max_steps: Maximum number of steps of a run.
-        step_s: Maximum seconds that an agent may take for one step.
-        task_s: Maximum seconds that an agent may take for all steps of a task.
+        epochs: Number of runs per task.
+        seed: The evaluation's seed, for example for noisy perception.
+        max_steps: Maximum number of steps in a run.
+        step_s: Maximum time that an agent may take for one step, in seconds.
+        task_s: Maximum time that an agent may take for all steps of a task, in seconds.
     """
 
     tasks: str
@@ -53,11 +53,11 @@ class WorkerSettings(_Part):
     """The first line that a worker receives.
 
     Attributes:
-        evaluation: What is evaluated.
+        evaluation: The evaluation settings.
         participant: Name of the participant.
         folder: Folder for the log, the submission and its signature.
-        key: File of the private key that signs the submission.
-        order_seed: Secret seed of the participant's task order.
+        key: Private key file for signing the submission.
+        order_seed: Secret seed for the participant's task order.
         check_only: Whether to check the settings, report the number of runs, and end.
     """
 
@@ -70,22 +70,22 @@ class WorkerSettings(_Part):
 
 
 class Begin(_Part):
-    """The host wants to begin the offered run."""
+    """A command to begin the offered run."""
 
     type: Literal["begin"] = "begin"
     run: str
 
 
 class Deliver(_Part):
-    """A message from the agent, as it was sent. ``run`` is the key of the run that it belongs to."""
+    """A message from the agent, as sent. ``run`` is the key of the run that the message belongs to."""
 
     type: Literal["deliver"] = "deliver"
     run: str
     line: str = Field(repr=False)
 
 
-class Gone(_Part):
-    """The agent will send nothing more in this run."""
+class AgentGone(_Part):
+    """The agent will send no more messages in this run."""
 
     type: Literal["gone"] = "gone"
     run: str
@@ -93,20 +93,20 @@ class Gone(_Part):
 
 
 class Ready(_Part):
-    """The worker has loaded its tasks. ``runs`` is the number of runs of the evaluation."""
+    """The worker has loaded its tasks. ``runs`` is the number of runs in the evaluation."""
 
     type: Literal["ready"] = "ready"
     runs: int
 
 
-class Offered(_Part):
-    """A run waits for its agent. ``run`` is an opaque key, which is the same after a restart."""
+class RunOffered(_Part):
+    """A run is waiting for its agent. ``run`` is an opaque key that stays the same after a restart."""
 
     type: Literal["offered"] = "offered"
     run: str
 
 
-class Sent(_Part):
+class MessageToAgent(_Part):
     """A message for the agent."""
 
     type: Literal["sent"] = "sent"
@@ -114,7 +114,7 @@ class Sent(_Part):
     message: Annotated[HostMessage, Field(discriminator="type")]
 
 
-class Over(_Part):
+class RunEnded(_Part):
     """A run has ended for its agent."""
 
     type: Literal["over"] = "over"
@@ -123,22 +123,22 @@ class Over(_Part):
 
 
 class Finished(_Part):
-    """Every run has ended. ``submission`` is the file that the worker has written and signed."""
+    """Every run has ended. ``submission`` is the path of the signed submission."""
 
     type: Literal["finished"] = "finished"
     submission: Path
 
 
 class Failed(_Part):
-    """The worker cannot go on. The message is for the operator only."""
+    """The worker cannot continue. The message is for the operator only."""
 
     type: Literal["failed"] = "failed"
     message: str
 
 
-Command = Begin | Deliver | Gone
+Command = Begin | Deliver | AgentGone
 """A message from the host to a worker."""
-Event = Ready | Offered | Sent | Over | Finished | Failed
+Event = Ready | RunOffered | MessageToAgent | RunEnded | Finished | Failed
 """A message from a worker to the host."""
 
 COMMAND: TypeAdapter[Command] = TypeAdapter(Annotated[Command, Field(discriminator="type")])

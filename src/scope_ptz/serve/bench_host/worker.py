@@ -1,4 +1,4 @@
-"""A worker: it runs the evaluation of one participant, and signs its submission.
+"""The worker process, which runs one participant's evaluation and signs the submission.
 
 Only this process holds the tasks and the signing key.
 """
@@ -25,8 +25,8 @@ from scope_ptz.serve.bench_host.wire import (
     Begin,
     Failed,
     Finished,
-    Offered,
     Ready,
+    RunOffered,
     WorkerSettings,
 )
 
@@ -36,18 +36,18 @@ if TYPE_CHECKING:
 
 SUBMISSION_FILE = "submission.jsonl"
 RUN_KEY_CHARS = 16
-LOCK_ATTEMPTS, LOCK_PAUSE_S = 20, 1.0  # an evaluation may still be locked by the worker of a host that was killed
+LOCK_ATTEMPTS, LOCK_PAUSE_S = 20, 1.0  # an evaluation may still be locked by a killed host's worker
 
 
 class Worker:
-    """Runs the evaluation of one participant.
+    """Runs one participant's evaluation.
 
     Args:
         link: The link to the host.
-        settings: What to evaluate.
+        settings: The worker's settings.
 
     Attributes:
-        sample: Name of the sample that runs. Samples run one after another.
+        sample: Name of the running sample. Samples run one after the other.
     """
 
     def __init__(self, link: WorkerSide, settings: WorkerSettings) -> None:
@@ -57,7 +57,7 @@ class Worker:
         self.sample = ""
 
     async def run(self) -> None:
-        """Run the evaluation until it is finished or the host has gone. Errors are reported to the host."""
+        """Run the evaluation until it is finished or the host disconnects. Errors are reported to the host."""
         work = asyncio.ensure_future(self._work())
         listening = asyncio.ensure_future(self._listen())
         try:
@@ -68,21 +68,21 @@ class Worker:
             await asyncio.gather(work, listening, return_exceptions=True)
 
     async def _listen(self) -> None:
-        """Pass the host's commands on until the host has gone."""
+        """Forward the host's commands to the channel until the host disconnects."""
         while (command := await self._link.receive()) is not None:
             if self._channel is None or command.run != self._channel.run:
-                continue  # A message for a run that has ended in the meantime.
+                continue  # a message for a run that has ended in the meantime
             if isinstance(command, Begin):
                 self._begin.set()
             else:
-                self._channel.arrived(command)
+                self._channel.accept(command)
 
     async def _work(self) -> None:
         try:
             await self._evaluate()
         except ScopeError as error:
             await self._link.send(Failed(message=str(error)))
-        except Exception as error:  # a bug: the host starts the worker again, and the operator learns of it
+        except Exception as error:  # a bug; the host restarts the worker, and the host's log shows the error
             await self._link.send(Failed(message=f"{type(error).__name__}: {error}"))
 
     async def _evaluate(self) -> None:
@@ -123,7 +123,7 @@ class Worker:
         settings = self._settings
         self._begin.clear()
         self._channel = HostedChannel(self._run_key(self.sample), self._link.send)
-        await self._link.send(Offered(run=self._channel.run))
+        await self._link.send(RunOffered(run=self._channel.run))
         await self._begin.wait()
         times = AgentTimes(step_s=settings.evaluation.step_s, run_s=settings.evaluation.task_s)
         planner = ChannelPlanner(self._channel, settings.participant, times)
@@ -147,53 +147,53 @@ class _Samples(EvaluationProgress):
     def __init__(self, worker: Worker) -> None:
         self._worker = worker
 
-    def run_began(self, sample: str, entry: Entry) -> None:  # noqa: ARG002 - the signature of watchers
+    def run_began(self, sample: str, entry: Entry) -> None:  # noqa: ARG002 - the signature of the base class
         self._worker.sample = sample
 
 
 async def run_worker(link: WorkerSide, settings: WorkerSettings) -> None:
-    """Run the evaluation of one participant. It is a ``links.RunWorker``."""
+    """Run one participant's evaluation. This function is a ``links.RunWorker``."""
     await Worker(link, settings).run()
 
 
 def evaluation_options(settings: WorkerSettings) -> EvaluationOptions:
-    """Return the options with which the engine evaluates a participant."""
+    """Return the engine's options for evaluating a participant."""
     from scope_ptz.factory.models import ModelOptions
 
-    wanted = settings.evaluation
+    evaluation = settings.evaluation
     return EvaluationOptions(
-        models=ModelOptions(**wanted.perception.model_dump()),
+        models=ModelOptions(**evaluation.perception.model_dump()),
         out=settings.folder,
-        tasks=wanted.tasks,
-        epochs=wanted.epochs,
-        seed=wanted.seed,
-        max_steps=wanted.max_steps,
+        tasks=evaluation.tasks,
+        epochs=evaluation.epochs,
+        seed=evaluation.seed,
+        max_steps=evaluation.max_steps,
         concurrency=1,
     )
 
 
 async def _number_of_runs(options: EvaluationOptions) -> int:
-    """Return the number of runs of an evaluation, and check that its tasks and its perception can be opened."""
-    from scope_ptz.factory.evaluation import tasks_of
+    """Check that an evaluation's tasks and perception can be opened, and return its number of runs."""
+    from scope_ptz.factory.evaluation import load_entries
     from scope_ptz.factory.models import resolve_models
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library
 
     await resolve_models(options.models)
-    entries = await asyncio.to_thread(tasks_of, options.tasks, Library(scene_search(load_settings())))
+    entries = await asyncio.to_thread(load_entries, options.tasks, Library(scene_search(load_settings())))
     if any(entry.task is None for entry in entries):
-        raise InputError("Hosted tasks need executable checks, but the tasks of this file can only be scored by a judge.")
+        raise InputError("Hosted tasks must have executable checks, but some tasks in this file can only be scored by a judge.")
     return len(entries) * options.epochs
 
 
 def _write_submission(log: Path, out: Path) -> Path:
     from scope_ptz.bench.engine.logs import read_evaluation
-    from scope_ptz.bench.engine.traces.log_runs import runs_of_log
+    from scope_ptz.bench.engine.traces.log_runs import read_runs
     from scope_ptz.bench.submissions.submission import submission_lines, write_submission
-    from scope_ptz.bench.submissions.submission_traces import public_runs
+    from scope_ptz.bench.submissions.submission_traces import publish_runs
 
-    public = public_runs(read_evaluation(log), runs_of_log(log))
+    public = publish_runs(read_evaluation(log), read_runs(log))
     header, lines = submission_lines(public.evaluation, public.runs, public.places)
     write_submission((header.model_copy(update={"evaluated": "hosted"}), lines), out)
     return out
@@ -201,7 +201,7 @@ def _write_submission(log: Path, out: Path) -> Path:
 
 async def _main() -> None:
     output = os.dup(1)
-    os.dup2(2, 1)  # whatever a library prints must not reach the host as an event
+    os.dup2(2, 1)  # output from libraries must not reach the host as events
     loop = asyncio.get_running_loop()
     reader = asyncio.StreamReader(limit=MAX_LINE_BYTES)
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
@@ -215,7 +215,7 @@ async def _main() -> None:
     try:
         await run_worker(StandardStreams(reader, write), settings)
     except BrokenPipeError:
-        return  # The host has gone.
+        return  # the host has disconnected
 
 
 if __name__ == "__main__":

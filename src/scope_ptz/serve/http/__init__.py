@@ -1,1 +1,1 @@
-"""The HTTP API, in FastAPI."""
+"""The HTTP API, built with FastAPI."""

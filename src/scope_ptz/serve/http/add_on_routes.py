@@ -1,7 +1,7 @@
-"""Routes for the add-on in a Blender, whose open scene is a camera of the server.
+"""Routes for the Blender add-on. The scene that is open in Blender is one of the server's cameras.
 
-The add-on posts a description of its scene, and reads requests from a stream of server-sent events. It sends each reply or picture
-as a request of its own.
+The add-on posts a description of its scene and reads requests from a stream of server-sent events. It sends each reply or picture
+in a separate request.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import RefusedByCameraError
 from scope_ptz.serve.site.station import Station
 
-MAX_MESSAGE_CHARS = 500  # of the reason for a failure; longer ones are truncated
+MAX_MESSAGE_CHARS = 500  # longer error messages are truncated
 
 router = APIRouter(prefix="/cameras/{camera}/add-on", tags=["add-on"])
 Connection = Annotated[str, Path(min_length=1, max_length=60)]
@@ -36,13 +36,13 @@ _ERRORS = responses(404, 409, 503)
 
 
 class AddOnModel(BaseModel):
-    """A connection. ``connection`` is its id, which is part of the path of all further requests."""
+    """A connection. ``connection`` is its id, which is part of the path in all further requests."""
 
     connection: str
 
 
 class ReplyBody(Body):
-    """The reply to a request: its ``result``, or the reason for its failure as ``error``."""
+    """The reply to a request: its ``result``, or ``error`` if it failed."""
 
     result: dict[str, Any] | None = None
     error: Annotated[str, Field(min_length=1, max_length=10_000)] | None = None
@@ -50,13 +50,15 @@ class ReplyBody(Body):
 
 @router.post("", status_code=201, responses=_ERRORS)
 async def connect_add_on(station: StationDep, client: StoppingOperator, body: SceneDescription) -> AddOnModel:
-    """Connect a Blender with the scene that is open in it. The camera must be of the kind `blender-window`.
+    """Connect a Blender instance with its open scene. The camera must be of the kind `blender-window`.
 
-    A second Blender can connect after the first one has disconnected. A client that connects again replaces its earlier connection.
+    Another Blender instance can connect only after the first one has disconnected. A client that connects again replaces its
+    earlier connection.
     """
     if not is_blender_window(station.spec):
         raise RefusedByCameraError(
-            f"{station.name} is not the scene of a Blender. Start the server with `scope serve --camera blender-window`."
+            f"{station.name} is not the open scene of a Blender window. "
+            "Start the server with `scope serve --camera blender-window`."
         )
     current = station.add_on.current
     if current is not None and current.owner != client.key:
@@ -74,13 +76,13 @@ async def connect_add_on(station: StationDep, client: StoppingOperator, body: Sc
 async def add_on_requests(
     site: SiteDep, station: StationDep, client: StoppingOperator, connection: Connection
 ) -> StreamingResponse:
-    """Stream the requests to the add-on as server-sent events with the name `request`, until the add-on disconnects.
+    """Stream requests to the add-on as server-sent events with the name `request`, until the add-on disconnects.
 
-    The data of an event has the fields `number`, `operation` and `arguments`. When the stream ends, the connection ends.
+    An event's data has the fields `number`, `operation` and `arguments`. When the stream ends, the connection ends.
     """
-    found = _find(station, client, connection)
+    add_on = _find(station, client, connection)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(found, site.closing), media_type="text/event-stream", headers=headers)
+    return StreamingResponse(_events(add_on, site.closing), media_type="text/event-stream", headers=headers)
 
 
 @router.put("/{connection}/scene", status_code=204, responses=_ERRORS)
@@ -118,21 +120,21 @@ async def add_on_picture(
     version: Annotated[str, Query(max_length=60, description="Identifies the state of the scene in the picture")] = "",
 ) -> Response:
     """Reply to a request with a picture, a PNG file of at most 32 MiB."""
-    found = _find(station, client, connection)
-    _answer(found, number, Picture(await request.body(), version))
+    add_on = _find(station, client, connection)
+    _answer(add_on, number, Picture(await request.body(), version))
     return Response(status_code=204)
 
 
 @router.delete("/{connection}", status_code=204, responses=_ERRORS)
 async def disconnect_add_on(station: StationDep, client: StoppingOperator, connection: Connection) -> Response:
-    """Disconnect a Blender."""
+    """Disconnect a Blender instance."""
     _find(station, client, connection).end()
     station.preset_changes += 1
     return Response(status_code=204)
 
 
 def _find(station: Station, client: Client, connection: str) -> AddOnConnection:
-    """Return the current connection of a camera, if it has this id and belongs to the client."""
+    """Return a camera's current connection, if it has this id and belongs to the client."""
     current = station.add_on.current
     if current is None or current.id != connection or current.owner != client.key:
         raise UnknownNameError("connection", connection, ())
@@ -145,7 +147,7 @@ def _answer(connection: AddOnConnection, number: int, reply: Reply) -> None:
 
 
 def _one_line(text: str) -> str:
-    """Return the text of the add-on's error, which becomes part of an error message."""
+    """Return the text of the add-on's error on one line, for use in an error message."""
     return "".join(c if c.isprintable() else " " for c in text)[:MAX_MESSAGE_CHARS]
 
 

@@ -1,4 +1,4 @@
-"""The ASGI application of the HTTP API, to be served alone or together with the console."""
+"""The HTTP API's ASGI application, to be served alone or together with the console."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ _MODULES = (
 def api_application(site: Site, access: Access) -> FastAPI:
     """Return the API, to be mounted at ``/api`` behind an ``AccessMiddleware``.
 
-    The caller must enter the context of ``site``; the application has no ASGI lifespan of its own. Its schema is at
-    ``/api/v1/openapi.json``. The documentation pages of FastAPI are disabled, because they load scripts from other hosts.
+    The caller must enter the context of ``site``; the application has no separate ASGI lifespan. Its schema is at
+    ``/api/v1/openapi.json``. FastAPI's documentation pages are disabled, because they load scripts from other hosts.
     """
     app = FastAPI(
         title="SCOPE",
@@ -82,7 +82,7 @@ def api_application(site: Site, access: Access) -> FastAPI:
 def application(site: Site, access: Access, *routes: BaseRoute) -> ASGIApp:
     """Return the API behind its access checks, for a server without the console.
 
-    ``routes`` are further routes, such as that of MCP.
+    ``routes`` are additional routes, such as the MCP route.
     """
 
     async def root(_: Request) -> Response:
@@ -100,7 +100,7 @@ def _operation_id(route: APIRoute) -> str:
 
 
 def _document_tokens(app: FastAPI) -> None:
-    """Document in the schema that all operations except sign-in and the health check need a token."""
+    """Document in the schema that all operations but sign-in and the health check need a token."""
     build_schema = app.openapi
 
     def openapi() -> dict[str, Any]:

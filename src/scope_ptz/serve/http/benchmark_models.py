@@ -1,4 +1,4 @@
-"""Request and response bodies of the routes for evaluations."""
+"""Request and response bodies for the evaluation routes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.serve.http.models import Body, Identifier, whole_number
 from scope_ptz.serve.site.benchmark.evaluation_folder import State
 from scope_ptz.serve.site.benchmark.evaluations import EvaluationStatus, ReportState
 
-MAX_LIMIT = 10_000  # maximum number of tasks that a request may ask for
+MAX_LIMIT = 10_000  # maximum value of ``limit`` in a request
 Split = Literal["core", "lite", "paraphrase", "reaction", "unseen", "all"]
 
 
@@ -30,7 +30,7 @@ class BenchmarkModel(BaseModel):
     """The pairs and splits that can be evaluated.
 
     Attributes:
-        pairs: The pairs of the server, the default first.
+        pairs: The server's pairs, the default first.
         splits: The installed splits.
         missing: A message that names missing packages; empty if evaluations can run on the server.
         running: The id of the evaluation in progress; null if there is none.
@@ -46,8 +46,8 @@ class EvaluationStart(Body):
     """The evaluation to start.
 
     Attributes:
-        pair: A pair of the server; by default, the default pair.
-        split: A split of the dataset.
+        pair: One of the server's pairs; by default, the default pair.
+        split: A dataset split.
         limit: Maximum number of tasks, sampled evenly; by default, all.
         categories: The categories to evaluate; all if empty.
     """
@@ -59,10 +59,10 @@ class EvaluationStart(Body):
 
 
 class ProgressModel(BaseModel):
-    """The progress of an evaluation: its counts of runs, its scores so far with 95% intervals, and the running tasks.
+    """An evaluation's progress: run counts, scores so far with 95% intervals, and the running tasks.
 
-    ``broken`` counts the runs with an infrastructure failure. ``micro`` is the fraction of correct runs, and ``macro`` the mean of
-    the fractions of the categories. ``seconds_left`` is the estimated remaining time.
+    ``broken`` counts the runs with an infrastructure failure. ``micro`` is the fraction of correct runs, and ``macro`` is the mean
+    of the categories' fractions. ``seconds_left`` is the estimated remaining time.
     """
 
     runs: int
@@ -81,8 +81,9 @@ class ProgressModel(BaseModel):
 class EvaluationModel(BaseModel):
     """An evaluation.
 
-    ``actor`` is the name of the client that started it, and ``resumed`` the number of times that it was resumed. ``message`` is the
-    error if the evaluation failed, and ``report_message`` the error if writing the report failed; otherwise, they are empty.
+    ``actor`` is the name of the client that started the evaluation, and ``resumed`` is the number of times that it was resumed.
+    ``message`` is the error message if the evaluation failed, and ``report_message`` that if writing the report failed; otherwise,
+    they are empty.
     """
 
     id: str
@@ -156,8 +157,7 @@ class TrialModel(BaseModel):
 class TrialList(BaseModel):
     """A page of runs.
 
-    ``count`` is the number of runs that match the filters. ``error_modes`` counts the runs of the whole evaluation with each error
-    mode.
+    ``count`` is the number of runs that match the filters. ``error_modes`` counts the runs in the whole evaluation by error mode.
     """
 
     trials: list[TrialModel]
@@ -166,7 +166,7 @@ class TrialList(BaseModel):
 
 
 class CheckModel(BaseModel):
-    """The result of one check of an answer or a run. ``passed`` is null if the check is undecided."""
+    """The result of one check on an answer or a run. ``passed`` is null if the check is undecided."""
 
     name: str
     passed: bool | None
@@ -174,14 +174,14 @@ class CheckModel(BaseModel):
 
 
 class StepPicture(BaseModel):
-    """A picture of a step, and the number of detections in it."""
+    """A picture from a step, and the number of detections in it."""
 
     name: str
     marks: int
 
 
 class TrialStep(BaseModel):
-    """A tool call of a run. ``message`` is the message of its result, or the error if the call failed."""
+    """A tool call in a run. ``message`` is the result's message, or the error if the call failed."""
 
     tool: str
     arguments: dict[str, Any]
@@ -194,8 +194,8 @@ class TrialStep(BaseModel):
 class TrialDetails(BaseModel):
     """A run with its checks and steps.
 
-    ``demands`` lists what the run was required to do in addition to giving the expected answer. ``start_picture`` is the name of
-    the picture from before the first step. ``missing`` is the reason why the steps cannot be read; empty if they can.
+    ``demands`` lists what the run was required to do besides giving the expected answer. ``start_picture`` is the name of the
+    picture taken before the first step. ``missing`` states why the steps cannot be read; it is empty if they can.
     """
 
     trial: TrialModel

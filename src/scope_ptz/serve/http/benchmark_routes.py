@@ -1,4 +1,4 @@
-"""Routes for evaluations: start, follow, cancel and resume them, view individual runs, and read the report."""
+"""Routes that start, follow, cancel and resume evaluations, show individual runs, and serve the report."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from scope_ptz.serve.site.site import Site
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 )
-"""The content security policy of reports. Reports have no scripts and load only their own pictures."""
+"""The content security policy for reports. Reports have no scripts and load only their own pictures."""
 
 _MEDIA_TYPES = {"tasks": "text/html", "frames": "image/jpeg", "tables": "text/csv"}
 
@@ -66,19 +66,19 @@ async def start_evaluation(site: SiteDep, client: RunOperator, body: EvaluationS
     """Start an evaluation and reply immediately. It runs in a separate process. Only one evaluation runs at a time."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    chosen = next((each for each in await site.journal.in_thread(installed_splits) if each.name == body.split), None)
-    if chosen is None:
+    split = next((each for each in await site.journal.in_thread(installed_splits) if each.name == body.split), None)
+    if split is None:
         raise InputError(f"The split '{body.split}' is not installed. `GET /benchmark` lists the installed splits.")
     categories = tuple(dict.fromkeys(body.categories))
-    if absent := [name for name in categories if name not in chosen.by_category]:
-        raise InputError(f"The split '{body.split}' has no tasks of the category {absent[0].replace('_', ' ')}.")
+    if missing_categories := [name for name in categories if name not in split.by_category]:
+        raise InputError(f"The split '{body.split}' has no tasks in the category {missing_categories[0].replace('_', ' ')}.")
     request = EvaluationRequest(site.pairs.check(body.pair), body.split, body.limit, categories)
     return await _status(site, await site.journal.in_thread(partial(site.evaluations.start, request, client.name)))
 
 
 @router.get("/evaluations/{evaluation}", responses=_ERRORS)
 async def evaluation_state(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
-    """Return the state of an evaluation, its scores so far, and the estimated remaining time."""
+    """Return an evaluation's state, its scores so far, and the estimated remaining time."""
     return await _status(site, evaluation)
 
 
@@ -91,7 +91,7 @@ async def cancel_evaluation(site: SiteDep, client: StoppingOperator, evaluation:
 
 @router.post("/evaluations/{evaluation}/resume", status_code=202, responses=responses(404, 409, 507))
 async def resume_evaluation(site: SiteDep, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
-    """Resume an evaluation that has ended: execute its missing and broken runs."""
+    """Resume an evaluation that has ended: run its missing and broken runs."""
     await site.journal.in_thread(partial(site.evaluations.resume, evaluation))
     return await _status(site, evaluation)
 
@@ -117,7 +117,7 @@ async def list_trials(
     limit: Annotated[int, Query(ge=1, le=500)] = 100,
     offset: Annotated[int, Query(ge=0, le=1_000_000)] = 0,
 ) -> TrialList:
-    """List the finished runs of an evaluation, with their expected and actual answers."""
+    """List an evaluation's finished runs, with their expected and actual answers."""
     trials = await _trials(site, evaluation)
     modes = Counter(trial.error_mode.value for trial in trials if trial.error_mode is not None)
     matches = [
@@ -167,7 +167,7 @@ async def trial_picture(
     name: Annotated[str, Path(min_length=1, max_length=60)],
     marks: Annotated[bool, Query(description="Draw the detections on the picture")] = False,
 ) -> Response:
-    """Return a picture of a run, optionally with numbered boxes around the detections."""
+    """Return a picture from a run, optionally with numbered boxes around the detections."""
     trial = await _trial(site, evaluation, sample)
     folder = site.evaluations.folder(evaluation)
     read = partial(site.trajectories.picture, folder, trial, f"{part}/{name}", marks=marks)
@@ -176,7 +176,7 @@ async def trial_picture(
 
 @router.post("/evaluations/{evaluation}/report", status_code=202, responses=responses(404, 409, 507))
 async def make_report(site: SiteDep, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
-    """Start writing the report of an evaluation. When it is complete, the field `report` of the evaluation is `ready`."""
+    """Start writing an evaluation's report. When the report is complete, the evaluation's field `report` is `ready`."""
     if missing := missing_packages():
         raise ConfigError(missing)
     await site.journal.in_thread(partial(site.evaluations.make_report, evaluation))
@@ -189,11 +189,11 @@ async def make_report(site: SiteDep, client: RunOperator, evaluation: Evaluation
     responses={200: {"content": {"text/html": {}}, "description": "The report"}, **_ERRORS},
 )
 async def report_page(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> FileResponse:  # noqa: ARG001 - checks the token
-    """Return the first page of the report."""
+    """Return the report's first page."""
     folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
     page = await site.journal.in_thread(folder.report_page)
     if page is None:
-        raise TraceError("There is no report of this evaluation yet, or it is older than the last runs. Make it first.")
+        raise TraceError("This evaluation has no report yet, or runs have ended since it was written. Create it first.")
     return FileResponse(page, media_type="text/html", headers={"Content-Security-Policy": REPORT_POLICY})
 
 
@@ -212,11 +212,11 @@ async def report_file(
     part: Literal["tasks", "frames", "tables"],
     name: Annotated[str, Path(min_length=1, max_length=120)],
 ) -> FileResponse:
-    """Return a page, picture or table of the report."""
+    """Return a page, picture or table from the report."""
     folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
     path = await site.journal.in_thread(partial(folder.report_file, part, name))
     if path is None:
-        raise UnknownNameError("file of the report", name[:120], ())
+        raise UnknownNameError("report file", name[:120], ())
     return FileResponse(path, media_type=_MEDIA_TYPES[part], headers={"Content-Security-Policy": REPORT_POLICY})
 
 
@@ -232,5 +232,5 @@ async def _trials(site: Site, evaluation: str) -> list[Trial]:
 async def _trial(site: Site, evaluation: str, sample: str) -> Trial:
     trial = next((each for each in await _trials(site, evaluation) if each.sample == sample), None)
     if trial is None:
-        raise UnknownNameError("run of this evaluation", sample[:120], ())
+        raise UnknownNameError("run in this evaluation", sample[:120], ())
     return trial

@@ -1,4 +1,4 @@
-"""Request and response bodies of the routes for camera cards, scene time and virtual cameras."""
+"""Request and response bodies for the camera card, scene time and virtual camera routes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from scope_ptz.serve.site.virtual_cameras import VirtualCamera
 from scope_ptz.simulator.clock import MAX_SPEED, MAX_TIME_S, MIN_SPEED
 
 
-def _number(given: object) -> object:
+def _number(value: object) -> object:
     """Convert an integer to a float; JSON does not distinguish the two."""
-    return float(given) if isinstance(given, int) and not isinstance(given, bool) else given
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 class SceneTimeModel(BaseModel):
@@ -28,7 +28,7 @@ class SceneTimeModel(BaseModel):
 
     @classmethod
     def of(cls, now: SceneTime | None) -> SceneTimeModel | None:
-        """Create the model of a scene time; None for a camera that shows the real world."""
+        """Create the model for a scene time; None for a camera that shows the real world."""
         return None if now is None else cls(time_s=now.time_s, playing=now.playing, speed=now.speed)
 
 
@@ -41,7 +41,7 @@ class SceneTimeBody(Body):
 
 
 class VirtualCameraBody(Body):
-    """A virtual camera to turn on. ``viewpoint`` is a viewpoint of the scene; by default, the viewpoint of the home preset."""
+    """A virtual camera to turn on. ``viewpoint`` is one of the scene's viewpoints; by default, that of the home preset."""
 
     viewpoint: Annotated[str, Field(min_length=1, max_length=60)] | None = None
 
@@ -49,7 +49,7 @@ class VirtualCameraBody(Body):
 class VirtualCameraModel(BaseModel):
     """A virtual camera. While it is off, all fields but ``on`` are null.
 
-    Only the reply to the request that turns the camera on contains ``password``.
+    ``password`` is given only in the reply to the request that turns the camera on.
     """
 
     on: bool
@@ -62,7 +62,7 @@ class VirtualCameraModel(BaseModel):
 
     @classmethod
     def of(cls, camera: VirtualCamera | None, password: str | None = None) -> VirtualCameraModel:
-        """Create the model of a virtual camera; None means that it is off."""
+        """Create the model for a virtual camera; None means that it is off."""
         if camera is None:
             return cls(on=False)
         return cls(
@@ -72,7 +72,7 @@ class VirtualCameraModel(BaseModel):
 
 
 class SceneModel(BaseModel):
-    """The scene of a simulated camera: the names of its viewpoints, and how many presets and moving objects it has."""
+    """A simulated camera's scene: the names of its viewpoints, and its numbers of presets and moving objects."""
 
     name: str
     title: str
@@ -85,7 +85,7 @@ class HealthModel(BaseModel):
     """Whether a camera works.
 
     ``state`` is "connected" if the camera answers, "ready" if it will be opened on first use, and "failed" if it cannot be used.
-    ``problem`` is the reason for a failure; null otherwise.
+    ``problem`` states why the camera cannot be used; null otherwise.
     """
 
     state: HealthState
@@ -93,7 +93,7 @@ class HealthModel(BaseModel):
 
 
 class CameraCardModel(BaseModel):
-    """The card of a camera in the camera list.
+    """A camera's card in the camera list.
 
     ``configured`` is true for a camera in ``scope.yaml``. ``scene_time`` is null for a camera that is not simulated or has not been
     opened yet. ``has_picture`` is true if there is a thumbnail.

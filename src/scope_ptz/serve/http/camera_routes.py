@@ -1,4 +1,4 @@
-"""Routes that list the cameras and return the state of one."""
+"""Routes that list the cameras and return a camera's state."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ async def list_cameras(site: SiteDep, client: Viewer) -> list[CameraSummary]:  #
 
 @router.get("/{camera}", responses=responses(404, 409, 503))
 async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> CameraState:
-    """Return the state of a camera. The first request opens the camera."""
-    opened = await station.opened()
+    """Return a camera's state. The first request opens the camera."""
+    opened = await station.get_open_camera()
     camera = opened.camera
     info, pose = camera.info, await camera.pose()
     return CameraState(
@@ -73,7 +73,7 @@ async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> Ca
 
 
 def control_model(station: Station, client: Client) -> ControlModel:
-    """Return who controls a camera and who asks for control, in the form of a reply to ``client``."""
+    """Return a reply to ``client`` that states which client controls a camera, and which clients are asking for control."""
     control, holder = station.control, station.control.holder
     return ControlModel(
         holder=holder.name if holder else None,

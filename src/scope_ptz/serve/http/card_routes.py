@@ -1,4 +1,4 @@
-"""Routes for the cards and thumbnails of cameras, for pages that list cameras."""
+"""Routes for camera cards and thumbnails, for pages that list cameras."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ router = APIRouter(prefix="/cameras/{camera}", tags=["cameras"])
 
 @router.get("/card", responses=responses(404))
 async def camera_card(site: SiteDep, station: StationDep, client: Viewer) -> CameraCardModel:
-    """Return the kind and the abilities of a camera, and check whether it works. A failure is part of the reply.
+    """Return a camera's kind and abilities, and check whether it works. A failure is part of the reply.
 
     The check connects to a device, but does not open a simulated camera.
     """
@@ -59,7 +59,7 @@ async def camera_thumbnail(
     client: Viewer,  # noqa: ARG001 - checks the token
     width: Annotated[int, Query(ge=160, le=640, description="Maximum width in pixels")] = 480,
 ) -> Response:
-    """Return a small picture of the current view of a camera. For a scene that has not been used yet, return the home view."""
+    """Return a small picture of a camera's current view. For a scene that has not been used yet, return the home view."""
     if station.is_open:
         newest = station.live.newest
         frame = newest.frame if newest is not None else await (await station.camera()).frame()

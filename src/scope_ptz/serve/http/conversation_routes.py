@@ -1,4 +1,7 @@
-"""Routes for conversations. Only clients whose token has the same name as the one that started a conversation can see it."""
+"""Routes for conversations.
+
+A conversation is visible only to its owner: clients whose token has the same name as the token that started it.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,9 @@ from scope_ptz.store.conversations import (
     add_conversation,
     list_conversations,
     load_conversation,
-    remove_conversation,
     touch_conversation,
 )
+from scope_ptz.store.conversations import remove_conversation as remove_stored_conversation
 from scope_ptz.store.rows import ConversationRow
 
 router = APIRouter(prefix="/conversations", tags=["conversations"])
@@ -61,8 +64,8 @@ async def change_conversation(
 
 
 @router.delete("/{conversation}", status_code=204, responses=responses(404, 503))
-async def end_conversation(site: SiteDep, client: Operator, conversation: ConversationId) -> Response:
+async def remove_conversation(site: SiteDep, client: Operator, conversation: ConversationId) -> Response:
     """Remove a conversation. Its runs are kept."""
-    await site.journal.in_thread(partial(remove_conversation, site.journal.store.database, conversation, owner=client.name))
+    await site.journal.in_thread(partial(remove_stored_conversation, site.journal.store.database, conversation, owner=client.name))
     site.journal.forget(conversation)
     return Response(status_code=204)

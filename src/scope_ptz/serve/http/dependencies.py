@@ -1,4 +1,4 @@
-"""FastAPI dependencies of the request handlers: the site, the client that sends the request, and a camera by name."""
+"""FastAPI dependencies for the request handlers: the site, the client that sent the request, and a camera by name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def site_of(connection: HTTPConnection) -> Site:
 
 
 def access_of(connection: HTTPConnection) -> Access:
-    """Return the access rules of the server."""
+    """Return the server's access rules."""
     access: Access = connection.app.state.access
     return access
 
@@ -38,7 +38,7 @@ def _access(request: Request) -> Access:
 
 
 def client_of(connection: HTTPConnection) -> Client:
-    """Return the client that sends a request, as stored by the ``AccessMiddleware`` middleware.
+    """Return the client that sent a request, as stored by ``AccessMiddleware``.
 
     Raises:
         HTTPException: The request did not pass the middleware.
@@ -79,7 +79,7 @@ def station_of(socket: WebSocket, camera: str) -> Station:
 
 
 def presets_of(site: Site, station: Station) -> Presets:
-    """Return the presets of a camera."""
+    """Return a camera's presets."""
     return Presets(station, site.journal.root / "thumbnails")
 
 
@@ -87,7 +87,7 @@ SiteDep = Annotated[Site, Depends(_site)]
 AccessDep = Annotated[Access, Depends(_access)]
 StationDep = Annotated[Station, Depends(_station)]
 Viewer = Annotated[Client, Depends(_client_dependency("read", needs_operator=False))]
-"""A client of any role, for requests that only read."""
+"""A client with any role, for requests that only read."""
 Operator = Annotated[Client, Depends(_client_dependency("command", needs_operator=True))]
 """A client with the operator role, for requests that are commands."""
 RunOperator = Annotated[Client, Depends(_client_dependency("run", needs_operator=True))]

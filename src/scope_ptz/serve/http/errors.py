@@ -1,4 +1,4 @@
-"""Replies to requests that fail. All have the same form: a code for programs and a message for people."""
+"""Replies to failed requests. Each contains a code for programs and a message for people."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from scope_ptz.serve.http.models import ErrorReply
 from scope_ptz.serve.site.error_codes import status_of
 from scope_ptz.serve.site.errors import TooManyRequestsError
 
-# Codes of errors that the framework raises, by HTTP status.
+# Codes for errors that the framework raises, by HTTP status.
 _CODES = {400: "malformed", 401: "sign_in", 403: "not_allowed", 404: "unknown", 405: "method", 413: "too_large", 415: "media_type"}
 
 
 def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI entries for the error replies of an operation: the given statuses, and those common to all operations."""
+    """Return the OpenAPI entries for an operation's error replies: the given statuses, and those common to all operations."""
     return {status: {"model": ErrorReply} for status in (400, 401, 403, 422, 429, *statuses)}
 
 
 def add_error_handlers(app: FastAPI) -> None:
-    """Add handlers to an application that give all error replies the same form."""
+    """Add handlers to an application, so that all its error replies have the same form."""
     app.add_exception_handler(ScopeError, _scope_error)
-    app.add_exception_handler(RequestValidationError, _wrong_request)
+    app.add_exception_handler(RequestValidationError, _invalid_request)
     app.add_exception_handler(HTTPException, http_error)
 
 
@@ -44,7 +44,7 @@ async def _scope_error(_: Request, error: Exception) -> JSONResponse:
     return error_reply(status, code, str(error), headers)
 
 
-async def _wrong_request(_: Request, error: Exception) -> JSONResponse:
+async def _invalid_request(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)  # noqa: S101 - registered for this class only
     first = error.errors()[0]
     where = ".".join(str(part)[:60] for part in first["loc"])
@@ -61,7 +61,7 @@ async def http_error(request: Request, error: Exception) -> JSONResponse:
 
 
 def _methods(request: Request) -> list[str]:
-    """Return all HTTP methods that the path of a request accepts. The framework itself reports only those of one operation."""
+    """Return all HTTP methods that a request's path accepts. The framework itself reports only those of one operation."""
     methods: set[str] = set()
     for route in request.app.routes:
         match, _ = route.matches(request.scope)

@@ -1,4 +1,4 @@
-"""Routes for stored runs: list, export and keep them, get their pictures, and give feedback."""
+"""Routes that list, export and keep stored runs, return their pictures, and accept feedback."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MAX_EXPORT = 10_000
 """Maximum number of runs in one export."""
 
 MAX_DRAFTS = 100
-"""Maximum number of runs that are converted to drafts of tasks for one request."""
+"""Maximum number of runs to convert to task drafts in one request."""
 
 router = APIRouter(tags=["library"])
 RunId = Annotated[str, Path(min_length=1, max_length=120)]
@@ -59,10 +59,10 @@ async def list_runs(
     limit: Annotated[int, Query(ge=1, le=500)] = 50,
     after: Annotated[str | None, Query(max_length=60, description="The value of `next` in the previous page")] = None,
 ) -> RunList:
-    """List runs, newest first. Only the owner of a conversation can list its runs."""
+    """List runs, newest first. Only a conversation's owner can list its runs."""
     if conversation is not None:
         await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
-    chosen = run_filter(
+    filters = run_filter(
         text=text,
         kind=kind,
         camera=camera,
@@ -77,8 +77,8 @@ async def list_runs(
     )
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.in_thread(partial(store.runs, chosen, limit=limit, after=after))
-    count = await site.journal.in_thread(partial(store.count, chosen))
+    page = await site.journal.in_thread(partial(store.runs, filters, limit=limit, after=after))
+    count = await site.journal.in_thread(partial(store.count, filters))
     return RunList(runs=page.runs, next=page.next, count=count, count_is_limit=count >= MAX_COUNT)
 
 
@@ -107,8 +107,8 @@ async def export_runs(
     since: QueryTime | None = None,
     until: QueryTime | None = None,
 ) -> FileResponse:
-    """Download runs: as data, as chat messages for fine-tuning, as drafts of tasks, or as folders with all pictures."""
-    chosen = run_filter(
+    """Download runs: as data, as chat messages for fine-tuning, as task drafts, or as folders with all pictures."""
+    filters = run_filter(
         text=text,
         camera=camera,
         outcome=outcome,
@@ -121,7 +121,7 @@ async def export_runs(
     os.close(number)
     path = FilePath(name)
     try:
-        ids = (await site.journal.in_thread(partial(store.ids, chosen)))[:MAX_EXPORT]
+        ids = (await site.journal.in_thread(partial(store.ids, filters)))[:MAX_EXPORT]
         await site.journal.in_thread(partial(write_export, store, ids, path, form))
     except BaseException:
         await site.journal.in_thread(partial(path.unlink, missing_ok=True))
@@ -147,18 +147,18 @@ async def list_run_drafts(
 ) -> list[RunDraft]:
     """Convert the newest runs with positive feedback to drafts of benchmark tasks.
 
-    A run that cannot become a draft is listed with the reason.
+    Runs that cannot become drafts are listed with the reason.
     """
-    chosen = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
+    filters = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
     store = site.journal.store
     await site.journal.settle()
-    page = await site.journal.in_thread(partial(store.runs, chosen, limit=MAX_DRAFTS))
+    page = await site.journal.in_thread(partial(store.runs, filters, limit=MAX_DRAFTS))
     return await site.journal.in_thread(lambda: list(run_drafts(store, [run.id for run in page.runs])))
 
 
 @router.get("/runs/{run}/details", responses=_ERRORS)
 async def run_details(site: SiteDep, client: Viewer, run: RunId) -> RunDetails:  # noqa: ARG001 - checks the token
-    """Return the stored data of a run: its times, calls, pictures and feedback."""
+    """Return the stored data for a run: its times, calls, pictures and feedback."""
     store = site.journal.store
     await site.journal.settle()
     stored = await site.journal.in_thread(partial(store.run, run))
@@ -168,7 +168,7 @@ async def run_details(site: SiteDep, client: Viewer, run: RunId) -> RunDetails: 
 
 @router.get("/runs/{run}/pictures", responses=_ERRORS)
 async def list_pictures(site: SiteDep, client: Viewer, run: RunId) -> list[PictureModel]:  # noqa: ARG001 - checks the token
-    """List the pictures of a run with their marks."""
+    """List a run's pictures with their marks."""
     trace = await trace_of_run(site, run)
     pictures = []
     for name, position in picture_names(trace).items():
@@ -193,7 +193,7 @@ async def run_picture(
     name: Annotated[str, Path(min_length=1, max_length=60)],
     marks: Annotated[bool, Query(description="Draw the marks on the picture")] = False,
 ) -> Response:
-    """Return a picture of a run, either as it was taken or with numbered boxes drawn on it."""
+    """Return a picture from a run, either as it was taken or with numbered boxes drawn on it."""
     data = await stored_picture(site, run, f"{part}/{name}", marks=marks)
     kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
     return Response(data, media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
@@ -205,7 +205,7 @@ async def run_picture(
     responses={200: {"content": {"image/png": {}}, "description": "The filmstrip"}, **_ERRORS},
 )
 async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # noqa: ARG001 - checks the token
-    """Return the filmstrip of a run: one image that shows all its steps."""
+    """Return a run's filmstrip: one image that shows all its steps."""
     trace = await trace_of_run(site, run)
     if trace.ended is None:
         raise InputError("The run is still in progress. Its filmstrip is available when it has ended.")

@@ -23,7 +23,7 @@ from scope_ptz.serve.site.station import Station
 
 BOUNDARY = "scopeframe"
 ACK_TIMEOUT_S = 30.0
-"""Seconds without an acknowledgement after which the client of a WebSocket is disconnected."""
+"""Seconds without an acknowledgement after which a WebSocket client is disconnected."""
 
 router = APIRouter(prefix="/cameras/{camera}", tags=["live"])
 Width = Annotated[int, Query(ge=160, le=3840, description="Maximum width in pixels")]
@@ -40,10 +40,10 @@ async def frame(
     form: Annotated[Literal["jpeg", "png"], Query(alias="format")] = "jpeg",
     width: Width = 3840,
 ) -> Response:
-    """Take a picture. The header `Scope-Frame` contains its pose, field of view and time."""
-    taken = await (await station.camera()).frame()
-    data = await to_thread.run_sync(_png, taken) if form == "png" else await to_thread.run_sync(_jpeg, taken, width)
-    return Response(data, media_type=f"image/{form}", headers={"Scope-Frame": json.dumps(frame_facts(taken))})
+    """Take a picture. The header `Scope-Frame` contains the picture's pose, field of view and time."""
+    picture = await (await station.camera()).frame()
+    data = await to_thread.run_sync(_png, picture) if form == "png" else await to_thread.run_sync(_jpeg, picture, width)
+    return Response(data, media_type=f"image/{form}", headers={"Scope-Frame": json.dumps(frame_facts(picture))})
 
 
 @router.get(
@@ -59,7 +59,7 @@ async def motion_jpeg(
     frames: Annotated[int | None, Query(ge=1, le=100_000, description="Number of frames after which the stream ends")] = None,
 ) -> StreamingResponse:
     """Stream the live picture as Motion JPEG, for video players and pages without scripts."""
-    await station.opened()
+    await station.get_open_camera()
 
     async def parts() -> AsyncIterator[bytes]:
         sent = 0
@@ -86,20 +86,20 @@ async def live(socket: WebSocket, camera: str, width: int = 1280) -> None:
     client = client_of(socket)
     try:
         station = station_of(socket, camera)
-        await station.opened()
+        await station.get_open_camera()
     except ScopeError as error:
         await socket.close(1008, str(error)[:120])
         return
     await socket.accept()
     watcher = _Watcher(socket, station, min(max(width, 160), 3840))
-    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError), station.control.connected(client):
+    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError), station.control.live_connection(client):
         await watcher.run(site_of(socket).closing)
     with suppress(RuntimeError, WebSocketDisconnect):  # the client has already disconnected
         await socket.close(1001)
 
 
 class _Watcher:
-    """One client of the live picture. It gets the newest frame after it has acknowledged the previous one."""
+    """A client of the live picture, which gets the newest frame after it has acknowledged the previous one."""
 
     def __init__(self, socket: WebSocket, station: Station, width: int) -> None:
         self._socket, self._station, self._width = socket, station, width
@@ -125,7 +125,7 @@ class _Watcher:
                 await self._send_state()
                 if picture is None:
                     continue
-                # Of the frames that arrive before the acknowledgement, only the newest one is sent, as soon as the client is ready.
+                # Of the frames that arrive before the acknowledgement, only the newest is sent.
                 if not self._acknowledged.is_set():
                     await asyncio.wait_for(self._acknowledged.wait(), ACK_TIMEOUT_S)
                     if picture is not self._station.live.newest:
@@ -144,7 +144,7 @@ class _Watcher:
             self._acknowledged.set()
 
     async def _send_state(self) -> None:
-        """Send the camera's state, such as its run and who controls it, if it has changed since it was last sent."""
+        """Send the camera's state, such as its run and the client in control, if the state has changed since it was last sent."""
         station = self._station
         holder = station.control.holder
         state = {
@@ -166,15 +166,15 @@ class _Watcher:
         return len(head).to_bytes(4, "big") + head + await picture.jpeg(self._width)
 
 
-def frame_facts(taken: Frame) -> dict[str, Any]:
-    """Return the pose, field of view, time, size and viewpoint of a frame."""
-    pose, origin = taken.pose, taken.origin
+def frame_facts(frame: Frame) -> dict[str, Any]:
+    """Return a frame's pose, field of view, time, size and viewpoint."""
+    pose, origin = frame.pose, frame.origin
     return {
         "pose": {"pan_deg": float(pose.pan_deg), "tilt_deg": float(pose.tilt_deg), "zoom": float(pose.zoom)},
-        "hfov_deg": float(taken.hfov_deg),
-        "time_s": float(taken.time_s),
-        "width": taken.width,
-        "height": taken.height,
+        "hfov_deg": float(frame.hfov_deg),
+        "time_s": float(frame.time_s),
+        "width": frame.width,
+        "height": frame.height,
         "viewpoint": origin.viewpoint if origin is not None else None,
     }
 
@@ -182,7 +182,7 @@ def frame_facts(taken: Frame) -> dict[str, Any]:
 def _scene_time_state(station: Station) -> dict[str, Any] | None:
     """Return whether scene time is playing, and its speed; None for a camera that shows the real world.
 
-    The time itself is part of each frame.
+    The scene time itself is part of each frame.
     """
     now = scene_time(station.open_camera.camera) if station.open_camera is not None else None
     return None if now is None else {"playing": now.playing, "speed": now.speed}
@@ -195,12 +195,12 @@ async def _until_closing(closing: asyncio.Event, pictures: AsyncIterator[LiveFra
         yield picture
 
 
-def _jpeg(taken: Frame, width: int) -> bytes:
-    return encode_jpeg(taken.image, min(width, taken.width), 92)
+def _jpeg(frame: Frame, width: int) -> bytes:
+    return encode_jpeg(frame.image, min(width, frame.width), 92)
 
 
-def _png(taken: Frame) -> bytes:
-    encoded, data = cv2.imencode(".png", cv2.cvtColor(taken.image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 1])
+def _png(frame: Frame) -> bytes:
+    encoded, data = cv2.imencode(".png", cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 1])
     if not encoded:
         raise CameraError("The picture cannot be encoded.")
     return bytes(data)

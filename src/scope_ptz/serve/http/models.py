@@ -1,4 +1,4 @@
-"""Request and response bodies of the API."""
+"""Request and response bodies for the API."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ def whole_number(value: object) -> object:
 
 
 QueryTime = Annotated[datetime, BeforeValidator(_check_query_time)]
-"""A date and time in the query of a request."""
+"""A date and time in a request's query."""
 
 
 class Body(BaseModel):
-    """Base class of request bodies. Wrong types and unknown fields are errors."""
+    """Base class for request bodies. Wrong types and unknown fields are errors."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
 class Problem(BaseModel):
-    """The reason why a request failed. ``code`` is for programs, ``message`` for people."""
+    """Why a request failed. ``code`` is for programs, and ``message`` is for people."""
 
     code: str
     message: str
@@ -71,7 +71,7 @@ class PoseModel(BaseModel):
 
     @classmethod
     def of(cls, pose: Pose) -> PoseModel:
-        """Create the model of a pose."""
+        """Create the model for a pose."""
         return cls(pan_deg=float(pose.pan_deg), tilt_deg=float(pose.tilt_deg), zoom=float(pose.zoom))
 
     def pose(self) -> Pose:
@@ -82,8 +82,8 @@ class PoseModel(BaseModel):
 class ArrivalModel(BaseModel):
     """The result of a move.
 
-    ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by a limit of the device.
-    ``limited_by`` describes any other limit that stopped the camera; it is empty if there was none.
+    ``pose`` is the pose at which the camera arrived. ``clamped`` names the axes that were stopped by one of the device's limits.
+    ``limited_by`` describes any other limit that stopped the camera; empty if there was none.
     """
 
     pose: PoseModel
@@ -92,7 +92,7 @@ class ArrivalModel(BaseModel):
 
     @classmethod
     def of(cls, arrival: Arrival) -> ArrivalModel:
-        """Create the model of an arrival."""
+        """Create the model for an arrival."""
         return cls(pose=PoseModel.of(arrival.pose), clamped=list(arrival.clamped), limited_by=arrival.limited_by)
 
 
@@ -105,7 +105,7 @@ class Move(Body):
 
 
 class Centre(Body):
-    """The point of a picture to centre, as fractions of its width and height from the top left.
+    """The point in a picture to centre, as fractions of the picture's width and height from the top left.
 
     ``pose`` is the pose of the picture that was clicked; by default, the current pose.
     """
@@ -155,7 +155,7 @@ class PresetModel(BaseModel):
 
     @classmethod
     def of(cls, known: KnownPreset) -> PresetModel:
-        """Create the model of a preset."""
+        """Create the model for a preset."""
         preset, place = known.preset, known.place
         return cls(
             name=preset.name,
@@ -179,7 +179,7 @@ class PresetName(Body):
 
 
 class ControlRequestModel(BaseModel):
-    """A request for control. ``client`` is the key to pass in the answer, ``name`` the name of the client that asks."""
+    """A request for control. ``client`` is the key to pass in the answer, and ``name`` is the name of the client that is asking."""
 
     client: str
     name: str
@@ -187,10 +187,10 @@ class ControlRequestModel(BaseModel):
 
 
 class ControlModel(BaseModel):
-    """Which client controls a camera, and which clients ask for control.
+    """Which client controls a camera, and which clients are asking for control.
 
-    ``holder`` is the name of the client that has had control since ``since``; both are null if nobody has it. ``mine`` is true if
-    the client that sent this request has control.
+    ``holder`` is the name of the client that has had control since ``since``; both are null if nobody has control. ``mine`` is true
+    if the client that sent this request has control.
     """
 
     holder: str | None
@@ -200,14 +200,14 @@ class ControlModel(BaseModel):
 
 
 class ControlAnswer(Body):
-    """The answer of the client in control to a client that asks for control. ``grant`` hands control over."""
+    """The controlling client's answer to a client that is asking for control. ``grant`` hands control over."""
 
     client: Annotated[str, Field(min_length=1, max_length=200)]
     grant: bool
 
 
 class LimitsModel(BaseModel):
-    """The limits of a camera's poses. With ``pan_endless``, the camera can turn through full circles."""
+    """The limits on a camera's pose. With ``pan_endless``, the camera can turn through full circles."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -219,7 +219,7 @@ class LimitsModel(BaseModel):
 
 
 class SpeedModel(BaseModel):
-    """The top speed of a camera, in the units of ``Drive``. An axis with 0 cannot be driven."""
+    """A camera's top speed, in the same units as ``Drive``. An axis with the top speed 0 cannot be driven."""
 
     pan_dps: float
     tilt_dps: float
@@ -227,10 +227,10 @@ class SpeedModel(BaseModel):
 
 
 class CameraSummary(BaseModel):
-    """A camera of the site.
+    """One of the site's cameras.
 
     ``open`` is true if the camera has been opened since the server started. ``run`` is the id of the run in progress, and
-    ``holder`` the name of the client that has control; null if there is none.
+    ``holder`` is the name of the client that has control; each is null if there is none.
     """
 
     name: str
@@ -240,7 +240,7 @@ class CameraSummary(BaseModel):
 
 
 class RegionModel(BaseModel):
-    """A keep-out region, at which the camera is never aimed: a minimum and a maximum for pan and for tilt."""
+    """A keep-out region, at which the camera is never aimed, with a minimum and a maximum for pan and for tilt."""
 
     name: str
     pan_deg: tuple[float, float]
@@ -248,7 +248,7 @@ class RegionModel(BaseModel):
 
 
 class CameraState(BaseModel):
-    """The state of a camera.
+    """A camera's state.
 
     ``run`` is the id of the run in progress; null if there is none. ``edits_presets`` is true if presets can be saved and removed.
     ``fields_of_view`` lists magnifications with their horizontal field of view in degrees. ``assumed`` lists the values that the
@@ -283,9 +283,9 @@ class RunStart(Body):
     Attributes:
         camera: The name of the camera.
         instruction: The instruction in plain language.
-        conversation: The id of the conversation that it continues; by default, none.
+        conversation: The id of the conversation that the run continues; by default, none.
         pair: The pair of models; by default, the conversation's pair, or else the site's default.
-        dry_run: Whether moves are only reported and not carried out. Pictures are taken in any case.
+        dry_run: Whether to report moves without carrying them out. Pictures are taken in any case.
     """
 
     camera: Identifier
@@ -296,10 +296,10 @@ class RunStart(Body):
 
 
 class RunState(BaseModel):
-    """The state of a run.
+    """A run's state.
 
-    ``actor`` is the name of the client that started it. ``events`` is the number of records so far. ``preview`` lists the commands
-    that a dry run did not send to the camera.
+    ``actor`` is the name of the client that started the run. ``events`` is the number of records so far. ``preview`` lists the
+    commands that a dry run did not send to the camera.
     """
 
     id: str
@@ -316,7 +316,7 @@ class RunState(BaseModel):
 
 
 class RunDetails(BaseModel):
-    """The stored data of a run: its summary, calls, pictures and feedback."""
+    """The stored data for a run: its summary, calls, pictures and feedback."""
 
     run: RunRow
     steps: list[StepRow]
@@ -327,7 +327,7 @@ class RunDetails(BaseModel):
 class RunList(BaseModel):
     """A page of runs, newest first.
 
-    ``next`` is the cursor of the next page; null on the last page. ``count`` is the number of runs that match the filters; if
+    ``next`` is the cursor for the next page; null on the last page. ``count`` is the number of runs that match the filters; if
     ``count_is_limit`` is true, there may be more.
     """
 
@@ -345,10 +345,10 @@ class Mark(BaseModel):
 
 
 class PictureModel(BaseModel):
-    """A picture of a run.
+    """A picture from a run.
 
-    ``position`` (counted from 0), ``tool`` and ``message`` describe the call to which it belongs. For the picture from the start of
-    the run, ``position`` and ``tool`` are null. ``marks`` are the detections in the picture.
+    ``position`` (counted from 0), ``tool`` and ``message`` describe the call to which the picture belongs. For the picture from the
+    start of the run, ``position`` and ``tool`` are null. ``marks`` are the detections in the picture.
     """
 
     name: str
@@ -361,8 +361,9 @@ class PictureModel(BaseModel):
 class ToolReply(BaseModel):
     """The outcome of a tool call.
 
-    Either ``result`` or ``error`` is set. ``fault`` names the component that failed, if one did, and ``code`` is the code of the
-    error, for example ``kept_out``. ``run`` is the id under which the call is stored, and ``pose`` is the camera's pose after it.
+    Either ``result`` or ``error`` is set. ``fault`` names the component that failed, if one did, and ``code`` is the error
+    code, for example ``kept_out``. ``run`` is the id under which the call is stored, and ``pose`` is the camera's pose after the
+    call.
     """
 
     run: str
@@ -374,7 +375,7 @@ class ToolReply(BaseModel):
 
 
 class FeedbackBody(Body):
-    """Feedback on a run or, if ``position`` (counted from 0) is given, on one of its calls.
+    """Feedback on a run or, if ``position`` (counted from 0) is set, on one of its calls.
 
     A rating is 1 for good, -1 for bad, or 0 for a comment without a rating.
     """
@@ -414,7 +415,7 @@ class SignIn(Body):
 class ClientInfo(BaseModel):
     """The client that sent the request.
 
-    ``client`` is its key, as in ``ControlRequestModel``. ``signs_in`` is true if the server requires sign-in with a token.
+    ``client`` is the client's key, as in ``ControlRequestModel``. ``signs_in`` is true if the server requires sign-in with a token.
     """
 
     name: str
@@ -439,7 +440,7 @@ class PairHealth(BaseModel):
 
 
 class ServerInfo(BaseModel):
-    """The name and version of the server, and the names of its cameras and of its pairs of models."""
+    """The server's name and version, and the names of its cameras and pairs of models."""
 
     name: str
     version: str

@@ -1,4 +1,4 @@
-"""Routes for manual moves, presets, and control of a camera."""
+"""Routes for manual moves, presets and camera control."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from scope_ptz.serve.http.models import (
 )
 from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.station import Station
-from scope_ptz.tools.aiming import aim, aim_at_zoom, outline_in, view
+from scope_ptz.tools.aiming import aim, aim_at_zoom, projection_outline, view
 
 MIN_BOX = 0.005
 """Minimum side of the box in a ``frame-box`` request, as a fraction of the frame's width or height."""
@@ -52,25 +52,25 @@ async def move(station: StationDep, client: Operator, body: Move) -> ArrivalMode
 
 @router.post("/centre", responses=_ERRORS)
 async def centre(station: StationDep, client: Operator, body: Centre) -> ArrivalModel:
-    """Turn the camera so that a point of a picture is in the centre, at the same magnification."""
+    """Turn the camera so that a point in a picture is in the centre, at the same magnification."""
     async with station.command(client) as camera:
         if body.pose is None:
             return ArrivalModel.of(await camera.centre_on(body.x, body.y))
         pose = body.pose.pose()
         point = Box(x_min=body.x, y_min=body.y, x_max=body.x, y_max=body.y)
-        target = outline_in(view(camera.info, pose), point, 1)
+        target = projection_outline(view(camera.info, pose), point, 1)
         return ArrivalModel.of(await camera.move(aim_at_zoom(camera.info, target, (await camera.pose()).zoom).pose))
 
 
 @router.post("/frame-box", responses=_ERRORS)
 async def frame_box(station: StationDep, client: Operator, body: ZoomToBox) -> ArrivalModel:
-    """Turn and zoom the camera so that a box of a picture fills the view."""
+    """Turn and zoom the camera so that a box in a picture fills the view."""
     if body.x_max - body.x_min < MIN_BOX or body.y_max - body.y_min < MIN_BOX:
         raise InputError(f"Each side of the box must be at least {MIN_BOX} of the frame, and its minima must be below its maxima.")
     async with station.command(client) as camera:
         pose = body.pose.pose() if body.pose is not None else await camera.pose()
         box = Box(x_min=body.x_min, y_min=body.y_min, x_max=body.x_max, y_max=body.y_max)
-        target = outline_in(view(camera.info, pose), box)
+        target = projection_outline(view(camera.info, pose), box)
         return ArrivalModel.of(await camera.move(aim(camera.info, pose, target, fill=1.0).pose))
 
 
@@ -103,22 +103,22 @@ async def undo(station: StationDep, client: Operator) -> ArrivalModel:
 
 @router.get("/presets", responses=_ERRORS)
 async def list_presets(site: SiteDep, station: StationDep, client: Viewer) -> list[PresetModel]:  # noqa: ARG001 - checks the token
-    """List the presets, with their poses if these are known."""
+    """List the presets, with their poses where known."""
     return [PresetModel.of(each) for each in await presets_of(site, station).all()]
 
 
 @router.put("/presets/{name}", responses=_ERRORS)
 async def save_preset(site: SiteDep, station: StationDep, client: Operator, name: Name, body: PresetText) -> PresetModel:
-    """Save the current view as a preset. A preset of the same name is replaced."""
+    """Save the current view as a preset. An existing preset with the same name is replaced."""
     saved = await presets_of(site, station).save(client, name, body.description)
-    return await _known(site, station, saved.name)
+    return await _preset_model(site, station, saved.name)
 
 
 @router.patch("/presets/{name}", responses=_ERRORS)
 async def rename_preset(site: SiteDep, station: StationDep, client: Operator, name: Name, body: PresetName) -> PresetModel:
     """Rename a preset. The camera goes to the preset and back."""
     saved = await presets_of(site, station).rename(client, name, body.name)
-    return await _known(site, station, saved.name)
+    return await _preset_model(site, station, saved.name)
 
 
 @router.delete("/presets/{name}", status_code=204, responses=_ERRORS)
@@ -146,19 +146,19 @@ async def preset_thumbnail(site: SiteDep, station: StationDep, client: Viewer, n
     )
 
 
-async def _known(site: Site, station: Station, name: str) -> PresetModel:
+async def _preset_model(site: Site, station: Station, name: str) -> PresetModel:
     return PresetModel.of(next(each for each in await presets_of(site, station).all() if each.preset.name == name))
 
 
 @router.get("/control", responses=_ERRORS)
 async def control(station: StationDep, client: Viewer) -> ControlModel:
-    """Return which client controls the camera, and which clients ask for control."""
+    """Return which client controls the camera, and which clients are asking for control."""
     return control_model(station, client)
 
 
 @router.post("/control", responses=_ERRORS)
 async def ask_for_control(station: StationDep, client: Operator) -> ControlModel:
-    """Take control if nobody has it; otherwise, ask the client that has it.
+    """Take control if nobody has it; otherwise, ask the controlling client for it.
 
     In the reply, `mine` is true if the client that sent this request has control.
     """
@@ -168,14 +168,14 @@ async def ask_for_control(station: StationDep, client: Operator) -> ControlModel
 
 @router.post("/control/answer", responses=_ERRORS)
 async def answer_request(station: StationDep, client: Operator, body: ControlAnswer) -> ControlModel:
-    """Hand control over to a client that asks for it, or refuse. Only the client that has control can answer."""
+    """Hand control over to a client that is asking for it, or refuse. Only the controlling client can answer."""
     await station.control.answer(client, body.client, await station.camera(), grant=body.grant)
     return control_model(station, client)
 
 
 @router.delete("/control", responses=_ERRORS)
 async def release_control(station: StationDep, client: Operator) -> ControlModel:
-    """Give control up, or withdraw a request for it."""
+    """Give up control, or withdraw a request for it."""
     await station.control.release(client)
     return control_model(station, client)
 

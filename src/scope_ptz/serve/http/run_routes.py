@@ -37,7 +37,7 @@ async def ask(site: SiteDep, client: RunOperator, body: RunStart) -> RunState:
 
 @router.get("/runs/{run}", responses=_ERRORS)
 async def run_state(site: SiteDep, client: Viewer, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
-    """Return the state of a run, in progress or ended."""
+    """Return the state of a run, whether it is in progress or has ended."""
     handle = site.runner.find(run)
     return state_of(handle) if handle is not None else await stored_state(site, run)
 
@@ -54,10 +54,10 @@ async def run_events(
     last_event_id: Annotated[str | None, Header(max_length=20)] = None,
     after: Annotated[int, Query(ge=-1, le=1_000_000, description="Number of the last event that the client has received")] = -1,
 ) -> StreamingResponse:
-    """Stream the records of a run as server-sent events until it ends, from the first one or after event number `after`.
+    """Stream a run's records as server-sent events until the run ends, from the first record or after event number `after`.
 
-    The name of an event is `start`, `decision`, `call` or `end`. Its data is the record in the format of the trace, and its id is
-    its number. A disconnected client resumes with `Last-Event-ID`, even after a restart of the server.
+    An event's name is `start`, `decision`, `call` or `end`. Its data is the record in the trace format, and its id is its number. A
+    disconnected client can resume with `Last-Event-ID`, even after the server has been restarted.
     """
     if last_event_id is not None and last_event_id.isascii() and last_event_id.isdecimal():
         after = int(last_event_id)
@@ -69,7 +69,7 @@ async def run_events(
 
 @router.post("/runs/{run}/cancel", status_code=202, responses=_ERRORS)
 async def cancel_run(site: SiteDep, client: StoppingOperator, run: RunId) -> RunState:  # noqa: ARG001 - checks the token
-    """Cancel a run. It ends with the outcome "cancelled". A run that has already ended does not change."""
+    """Cancel a run, which then ends with the outcome "cancelled". A run that has already ended does not change."""
     handle = site.runner.find(run)
     if handle is None:
         return await stored_state(site, run)

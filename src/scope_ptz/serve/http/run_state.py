@@ -1,4 +1,4 @@
-"""Read the state and the records of runs in progress and of stored runs."""
+"""Read the state and the records of runs, whether in progress or stored."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from scope_ptz.store.request_file import read_request
 from scope_ptz.store.rows import UNFINISHED, RunFilter
 
 HEARTBEAT_S = 15.0
-"""Seconds without an event after which a stream of events sends a comment, to keep the connection alive."""
+"""Seconds without an event after which an event stream sends a comment to keep the connection alive."""
 
 
 def state_of(handle: RunHandle) -> RunState:
@@ -67,11 +67,11 @@ async def stored_state(site: Site, run_id: str) -> RunState:
 
 
 async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> AsyncIterator[str]:
-    """Yield the records of a run in progress as server-sent events, with comments during pauses, until the run ends.
+    """Yield the records of a run in progress as server-sent events until the run ends, with comments during pauses.
 
     Args:
         handle: The run.
-        after: Number of the record after which to begin; -1 for the first one.
+        after: Number of the record after which to begin; -1 to begin with the first record.
         closing: Set when the server shuts down, which ends the events.
     """
     async with aclosing(handle.events(after)) as events:
@@ -97,7 +97,7 @@ async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> 
 
 
 async def stored_events(trace: Trace, after: int) -> AsyncIterator[str]:
-    """Yield the records of a stored run whose number is above ``after`` as server-sent events."""
+    """Yield a stored run's records as server-sent events, beginning after record number ``after``."""
     for number, record in enumerate(records_of(trace)):
         if number > after:
             yield sse(number, record)
@@ -110,16 +110,16 @@ def sse(number: int, record: BaseModel) -> str:
 
 
 def run_filter(*, since: datetime | None, until: datetime | None, rating: str | None, **fields: Any) -> RunFilter:
-    """Create the filter of stored runs that a request specifies.
+    """Create the filter for stored runs that a request specifies.
 
     Args:
         since: Select runs that started at this time or later; None for no limit.
         until: Select runs that started before this time; None for no limit.
-        rating: ``good`` or ``bad`` to select rated runs; None for all.
-        **fields: Further fields of ``RunFilter``.
+        rating: ``good`` or ``bad`` to select rated runs; None for all runs.
+        **fields: Other fields of ``RunFilter``.
 
     Raises:
-        InputError: A time or a text is outside the supported range.
+        InputError: A time is outside the supported range, or the text is too long.
     """
     ratings = {"good": 1, "bad": -1, None: None}
     try:
@@ -128,4 +128,4 @@ def run_filter(*, since: datetime | None, until: datetime | None, rating: str | 
                 time.timestamp()
         return RunFilter(since=since, until=until, rating=ratings[rating], **fields)  # type: ignore[arg-type]
     except (ValidationError, OverflowError, OSError, ValueError) as error:
-        raise InputError("A time or a text of the filter is outside the supported range.") from error
+        raise InputError("A time in the filter is outside the supported range, or its text is too long.") from error

@@ -24,13 +24,13 @@ async def health() -> dict[str, str]:
 
 @router.get("/server", responses=responses())
 async def server(site: SiteDep, client: Viewer) -> ServerInfo:  # noqa: ARG001 - checks the token
-    """Return the version of the server and the names of its cameras and pairs."""
+    """Return the server's version and the names of its cameras and pairs."""
     return ServerInfo(name="scope-ptz", version=__version__, cameras=list(site.stations), pairs=list(site.pairs.names))
 
 
 @router.get("/me", responses=responses())
 async def me(client: Viewer, access: AccessDep) -> ClientInfo:
-    """Return the name, role and key of the client."""
+    """Return the client's name, role and key."""
     return ClientInfo(name=client.name, role=client.role, client=client.key, signs_in=access.needs_token)
 
 

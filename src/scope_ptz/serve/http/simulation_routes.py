@@ -15,14 +15,14 @@ _ERRORS = responses(404, 409, 503)
 
 @router.get("/time", responses=_ERRORS)
 async def camera_time(station: StationDep, client: Viewer) -> SceneTimeModel:  # noqa: ARG001 - checks the token
-    """Return the scene time of a simulated camera. For other cameras, the request fails with the code `not_simulated`."""
+    """Return a simulated camera's scene time. For other cameras, the request fails with the code `not_simulated`."""
     now = await read_scene_time(station)
     return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)
 
 
 @router.patch("/time", responses=_ERRORS)
 async def change_camera_time(station: StationDep, client: Operator, body: SceneTimeBody) -> SceneTimeModel:
-    """Play or pause scene time, seek, or change the speed. The change applies to all clients of the camera.
+    """Play or pause scene time, seek, or change the speed. The change applies to all of the camera's clients.
 
     Like other commands, the request needs control and is refused during a run. If the camera is not simulated, the request fails
     with the code `not_simulated`.
@@ -33,7 +33,7 @@ async def change_camera_time(station: StationDep, client: Operator, body: SceneT
 
 @router.get("/virtual", responses=_ERRORS)
 async def virtual_camera(site: SiteDep, station: StationDep, client: Viewer) -> VirtualCameraModel:  # noqa: ARG001 - checks the token
-    """Return whether the virtual camera of a scene is on, and its addresses on the server's machine."""
+    """Return whether a scene's virtual camera is on, and its addresses on the server's machine."""
     return VirtualCameraModel.of(site.virtual_cameras.find(station.name))
 
 
@@ -44,9 +44,9 @@ async def turn_virtual_camera_on(
     client: Operator,  # noqa: ARG001 - checks the token
     body: VirtualCameraBody,
 ) -> VirtualCameraModel:
-    """Serve the scene of a camera as a network camera with VAPIX, ONVIF and RTSP, for programs on the server's machine.
+    """Serve a camera's scene as a network camera with VAPIX, ONVIF and RTSP, for programs on the server's machine.
 
-    The system chooses the ports. The reply contains the account and its password. The password cannot be retrieved again.
+    The operating system chooses the ports. The reply contains the account name and the password, which cannot be retrieved again.
     """
     camera, password = await site.virtual_cameras.turn_on(station, body.viewpoint)
     return VirtualCameraModel.of(camera, password)
@@ -54,6 +54,6 @@ async def turn_virtual_camera_on(
 
 @router.delete("/virtual", status_code=204, responses=_ERRORS)
 async def turn_virtual_camera_off(site: SiteDep, station: StationDep, client: Operator) -> Response:  # noqa: ARG001 - checks the token
-    """Turn the virtual camera of a scene off. Its clients are disconnected. If it is off, the request has no effect."""
+    """Turn a scene's virtual camera off and disconnect its clients. If it is already off, the request has no effect."""
     await site.virtual_cameras.turn_off(station.name)
     return Response(status_code=204)

@@ -1,4 +1,4 @@
-"""Routes for calling the nine tools of a camera directly, with one operation for each tool."""
+"""Routes that call a camera's nine tools directly, one operation for each tool."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ async def list_tools(client: Viewer) -> list[dict[str, Any]]:  # noqa: ARG001 - 
     return schemas()
 
 
-def _add(tool: Tool) -> None:
+def _add_route(tool: Tool) -> None:
     arguments = tool.arguments
     body = {"required": bool(arguments.model_json_schema().get("required")), "content": {"application/json": {"schema": {}}}}
     body["content"] = {"application/json": {"schema": _schema(tool)}}
@@ -37,8 +37,8 @@ def _add(tool: Tool) -> None:
         client: Operator,
         pair: Annotated[str | None, Field(min_length=1, max_length=120)] = None,
     ) -> ToolReply:
-        given = await _arguments(request, tool)
-        handle = await start_tool_call(site, client, station, tool.name, given, pair)
+        parsed = await _arguments(request, tool)
+        handle = await start_tool_call(site, client, station, tool.name, parsed, pair)
         await handle.done.wait()
         called = finished_call(handle)
         outcome, error = called.outcome, handle.call_error
@@ -69,7 +69,7 @@ def _schema(tool: Tool) -> dict[str, Any]:
 
 
 async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
-    """Return the arguments of a call. Conflicts between arguments pass this check, because the tool itself reports them.
+    """Return a call's validated arguments. Conflicts between arguments are not checked, because the tool itself reports them.
 
     Raises:
         RequestValidationError: The body is not a JSON object, or an argument is unknown or has the wrong type.
@@ -78,10 +78,10 @@ async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
 
     content = await request.body()
     try:
-        given = json.loads(content) if content.strip() else {}
-        if not isinstance(given, dict):
+        parsed = json.loads(content) if content.strip() else {}
+        if not isinstance(parsed, dict):
             raise RequestValidationError([{"loc": ("body",), "msg": "Expected a JSON object of arguments", "type": "dict_type"}])
-        tool.arguments.model_validate(given)
+        tool.arguments.model_validate(parsed)
     except (ValueError, RecursionError) as error:
         if not isinstance(error, ValidationError):
             raise RequestValidationError(
@@ -90,8 +90,8 @@ async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
         problems = [each for each in error.errors(include_url=False, include_input=False) if each["loc"]]
         if problems:
             raise RequestValidationError([{**each, "loc": ("body", *each["loc"])} for each in problems]) from error
-    return given
+    return parsed
 
 
 for _tool in TOOLS.values():
-    _add(_tool)
+    _add_route(_tool)

@@ -8,7 +8,7 @@ SCHEME = "scope"
 
 
 def camera_uri(camera: str, part: str = "") -> str:
-    """Return the URI of a camera, or of a part of it such as ``presets``."""
+    """Return the URI of a camera, or of one of its parts such as ``presets``."""
     return f"{SCHEME}://cameras/{quote(camera, safe='')}{f'/{part}' if part else ''}"
 
 
@@ -23,5 +23,5 @@ def run_uri(run: str) -> str:
 
 
 def picture_uri(run: str, name: str) -> str:
-    """Return the URI of a picture of a run, given its name in the run folder, such as ``frames/001-view.jpg``."""
+    """Return the URI of a picture from a run, given its name in the run folder, such as ``frames/001-view.jpg``."""
     return f"{run_uri(run)}/{quote(name)}"

@@ -25,7 +25,7 @@ from scope_ptz.serve.site.site import Site
 from scope_ptz.version import __version__
 
 MAX_SESSIONS = 200
-"""Maximum number of sessions of clients that speak the older version of the protocol. The current version has no sessions."""
+"""Maximum number of sessions for clients that use the older protocol version. The current version has no sessions."""
 
 
 @asynccontextmanager
@@ -54,9 +54,9 @@ def mcp_application(access: Access, mcp: Route) -> ASGIApp:
 
 
 def mcp_client(client: Client) -> Client:
-    """Return a client with a key of its own for MCP.
+    """Return a copy of a client with a separate key for MCP.
 
-    The key differs from that of other programs with the same token, so that only one of them controls a camera. A client that
+    The key differs from those of other programs with the same token, so that only one of them controls a camera. A client that
     identifies itself with the header ``Scope-Client`` keeps its key.
     """
     return replace(client, key=f"{client.key}:mcp") if client.key == client.name else client
@@ -71,7 +71,7 @@ class McpEndpoint:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         client = mcp_client(scope["state"]["client"])
         scope["state"]["mcp_client"] = client
-        # A session of the older protocol can only be used by the client that created it.
+        # A session in the older protocol can be used only by the client that created it.
         scope["user"] = AuthenticatedUser(AccessToken(token="", client_id=client.key, scopes=[]))
         if scope["method"] != "GET":
             await self._manager.handle_request(scope, receive, send)
@@ -79,16 +79,16 @@ class McpEndpoint:
         await self._stream(scope, receive, send)
 
     async def _stream(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve the stream of a session of the older protocol, which otherwise lasts until the client closes it."""
+        """Serve a session's stream in the older protocol, which would otherwise last until the client closes it."""
         begun = ended = False
 
-        async def watched(message: Message) -> None:
+        async def observed_send(message: Message) -> None:
             nonlocal begun, ended
             begun |= message["type"] == "http.response.start"
             ended |= message["type"] == "http.response.body" and not message.get("more_body", False)
             await send(message)
 
-        stream = asyncio.ensure_future(self._manager.handle_request(scope, receive, watched))
+        stream = asyncio.ensure_future(self._manager.handle_request(scope, receive, observed_send))
         closing = asyncio.ensure_future(self._closing.wait())
         try:
             await asyncio.wait({stream, closing}, return_when=asyncio.FIRST_COMPLETED)
@@ -103,7 +103,7 @@ class McpEndpoint:
 
 
 def client_of(context: Context) -> Client:
-    """Return the client that sends a request."""
+    """Return the client that sent a request."""
     request = context.request
     assert isinstance(request, Request)  # noqa: S101 - the transport attaches the request to each message
     client: Client = request.scope["state"]["mcp_client"]

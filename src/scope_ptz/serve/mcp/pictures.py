@@ -1,4 +1,4 @@
-"""Encode pictures for clients that refuse large results."""
+"""Encode pictures for clients that reject large results."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from scope_ptz.errors import TraceError
 from scope_ptz.serve.site.live_picture import encode_jpeg
 
 MAX_RESULT_BYTES = 1024 * 1024
-"""Maximum size of a result as JSON. Some clients refuse larger ones."""
+"""Maximum size of a result as JSON, in bytes. Some clients reject larger results."""
 
 MAX_PICTURE_BYTES = 480 * 1024
-"""Maximum size of a picture in a tool result. In base64, it takes 640 KiB, which leaves 384 KiB for text and structured data."""
+"""Maximum size of a picture in a tool result, in bytes. As base64, it takes 640 KiB, which leaves 384 KiB for other content."""
 
 MAX_RESOURCE_BYTES = 760 * 1024
-"""Maximum size of a picture in a resource, which contains nothing else."""
+"""Maximum size of a picture in a resource, in bytes. The resource contains nothing else."""
 
 PICTURE_WIDTH = 1280  # maximum width of a picture in a tool result, in pixels
 _QUALITIES = (85, 70, 55)  # JPEG qualities, tried in this order before the picture is made smaller
-_SHRINK = 0.8  # factor of the width between two attempts
+_SHRINK = 0.8  # factor by which the width is reduced between attempts
 
 UNTRUSTED_META = {"scope-ptz/untrusted": True}
-"""Metadata of every picture, because text in a picture is not an instruction."""
+"""Metadata for every picture, because text in a picture is not an instruction."""
 
 
 def fitting_jpeg(image: NDArray[Any], max_bytes: int, width: int) -> bytes:
-    """Encode an RGB picture as a JPEG of limited size.
+    """Encode an RGB picture as a size-limited JPEG.
 
     Args:
         image: The picture, of shape ``(H, W, 3)``.
@@ -60,7 +60,7 @@ def decode_picture(data: bytes) -> NDArray[Any]:
 
 
 async def stored_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> bytes:
-    """Convert a stored JPEG or PNG to a JPEG of limited size. A JPEG that is small enough stays as it is.
+    """Convert a stored JPEG or PNG to a size-limited JPEG. A JPEG that is small enough is returned unchanged.
 
     Raises:
         TraceError: The picture is damaged.
@@ -76,5 +76,5 @@ async def stored_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> byte
 
 
 def image_content(jpeg: bytes) -> ImageContent:
-    """Return a JPEG as content of a result."""
+    """Return a JPEG as result content."""
     return ImageContent(type="image", data=b64encode(jpeg).decode(), mime_type="image/jpeg", _meta=UNTRUSTED_META)

@@ -1,4 +1,4 @@
-"""The instructions of the server, and the prompt that states its conventions."""
+"""The server's instructions, and the prompt that states its conventions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ INSTRUCTIONS = f"{CONVENTIONS}\nThe prompt {PROMPT_NAME} contains these conventi
 
 
 def prompts() -> list[Prompt]:
-    """Return the prompts of the server."""
+    """Return the server's prompts."""
     camera = PromptArgument(name="camera", description="Name of the camera to operate (default: all).", required=False)
     task = PromptArgument(name="task", description="What to do.", required=False)
     description = "The conventions of the cameras: degrees, signs, zoom, the full view, and untrusted text in pictures."
@@ -40,8 +40,8 @@ def prompt(name: str, arguments: dict[str, str], cameras: Sequence[str]) -> GetP
     """Return a prompt with its arguments filled in.
 
     Args:
-        name: The name of the prompt.
-        arguments: Its arguments.
+        name: The prompt's name.
+        arguments: The prompt's arguments.
         cameras: The names of the cameras.
 
     Raises:

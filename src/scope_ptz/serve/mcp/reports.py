@@ -1,4 +1,4 @@
-"""The structured results of runs."""
+"""Structured results that report on runs."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ PLANNER_ENDINGS = ("answered", "clarification", "refused")
 """Outcomes of runs that the planner itself ended."""
 
 
-MAX_STEPS = 64  # a report of a longer run contains only the last steps
-MAX_ARGUMENT_CHARS, MAX_REPORT_CHARS = 500, 1_000  # longer texts of a step are truncated
+MAX_STEPS = 64  # the report on a longer run contains only the last steps
+MAX_ARGUMENT_CHARS, MAX_REPORT_CHARS = 500, 1_000  # longer texts in a step are truncated
 
 
 class StepReport(BaseModel):
@@ -53,11 +53,11 @@ class RunReport(BaseModel):
 
 
 async def run_report(site: Site, run: str) -> RunReport:
-    """Return the state of a run, in progress or stored.
+    """Return a report on a run, whether it is in progress or stored.
 
     Raises:
         UnknownNameError: There is no such run.
-        TraceError: Its trace is damaged.
+        TraceError: The run's trace is damaged.
     """
     handle = site.runner.find(run)
     if handle is not None:
@@ -110,5 +110,5 @@ def _picture_names(calls: Sequence[Called]) -> list[str]:
 
 
 def perceives(tool: str) -> bool:
-    """Return whether texts in the result of a tool may come from a picture. For an unknown tool, they may."""
+    """Return whether texts in a tool's result may come from a picture. For an unknown tool, the result is True."""
     return tool not in TOOLS or TOOLS[tool].perceives

@@ -1,4 +1,4 @@
-"""Resources: cameras, presets, scenes, runs, and the pictures and panoramas of runs."""
+"""Resources: cameras, presets, scenes, runs, and pictures and panoramas from runs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.rows import RunFilter
 
 LISTED_RUNS = 20
-"""Number of runs in the list of resources. It contains the newest ones."""
+"""Number of runs in the resource list, which contains the newest ones."""
 
 MAX_PICTURE_WIDTH = 8192  # in pixels, for panoramas
 
@@ -93,7 +93,7 @@ async def resources(site: Site) -> list[Resource]:
 
 
 def scenes_of(site: Site) -> dict[str, list[str]]:
-    """Return the stored scenes that cameras of the site show, with the names of these cameras."""
+    """Return the stored scenes that the site's cameras show, each with the names of those cameras."""
     found: dict[str, list[str]] = {}
     for station in site.stations.values():
         try:
@@ -110,7 +110,7 @@ async def read_resource(site: Site, client: Client, uri: str) -> ReadResourceRes
 
     Args:
         site: The site.
-        client: The client that reads.
+        client: The client that sent the request.
         uri: The URI, which is untrusted. Its parts are looked up as names and never become parts of a path.
 
     Raises:
@@ -150,7 +150,7 @@ async def read_resource(site: Site, client: Client, uri: str) -> ReadResourceRes
 
 
 def completions(site: Site, argument: str, value: str) -> list[str]:
-    """Return the names that complete an argument of a prompt or of a URI template."""
+    """Return the names that complete an argument in a prompt or a URI template."""
     known: Sequence[str] = {"camera": list(site.stations), "scene": list(scenes_of(site))}.get(argument, [])
     return [name for name in known if name.startswith(value)][:100]
 

@@ -17,18 +17,18 @@ from scope_ptz.serve.site.run_handle import Record, RunHandle
 from scope_ptz.serve.site.station import Station
 
 HEARTBEAT_S = 2.0
-"""Seconds between progress notifications while nothing else is reported. Many clients give up on a call that is silent."""
+"""Seconds between progress notifications while nothing else is reported. Many clients abort calls that report no progress."""
 
 
 async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> RunHandle:
-    """Start a run, wait until it has ended, and return it.
+    """Start a run, wait until it has ended, and return its handle.
 
     If the call is cancelled or the server shuts down, the run is cancelled, which stops the camera.
 
     Args:
         call: The call, whose client receives the progress.
         station: The camera.
-        start: Starts the run. The first run of a camera opens the camera, which can take a while.
+        start: Starts the run. A camera's first run opens the camera, which can take a while.
     """
     sender, handle = _Sender(call), None
     heartbeat = asyncio.ensure_future(_report_time(sender, station))
@@ -49,7 +49,7 @@ async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> R
 
 
 class _Sender:
-    """Numbers the notifications of a call, because their progress must increase."""
+    """Numbers a call's notifications, because their progress must increase."""
 
     def __init__(self, call: Call) -> None:
         self._call, self._number, self._started_s = call, 0, monotonic()
@@ -64,7 +64,7 @@ class _Sender:
 
 
 async def _report_records(sender: _Sender, handle: RunHandle) -> None:
-    """Report the records of a run until it has ended."""
+    """Report a run's records until the run has ended."""
     async with aclosing(handle.events()) as events:
         async for event in events:
             await sender.send(record_text(event.record))
@@ -87,7 +87,7 @@ async def _cancel_when_closing(closing: asyncio.Event, handle: RunHandle) -> Non
 
 
 def record_text(record: Record) -> str:
-    """Describe a record of a run without text that may come from a picture."""
+    """Describe a run's record, without text that may come from a picture."""
     match record:
         case Started():
             return "The run has started."

@@ -1,4 +1,4 @@
-"""The MCP server of a site, for any transport."""
+"""A site's MCP server, for any transport."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ logger = logging.getLogger(__name__)
 
 
 def mcp_server(site: Site, limits: RateLimits, client_of: Callable[[Context], Client]) -> Server[Any]:
-    """Return the MCP server of a site. The caller must enter the site's context.
+    """Return a site's MCP server. The caller must enter the site's context.
 
     Args:
         site: The cameras, models and runs.
-        limits: The limits on the number of requests, which may be shared with the HTTP API.
-        client_of: Returns the client that sends a request.
+        limits: The rate limits, which may be shared with the HTTP API.
+        client_of: Returns the client that sent a request.
     """
     handlers = _Handlers(site, limits, client_of)
     return Server(
@@ -72,7 +72,7 @@ def mcp_server(site: Site, limits: RateLimits, client_of: Callable[[Context], Cl
 
 
 class _Handlers:
-    """The handlers of requests. Each checks the role of the client and counts the request."""
+    """Handles requests. Each handler checks the client's role and counts the request."""
 
     def __init__(self, site: Site, limits: RateLimits, client_of: Callable[[Context], Client]) -> None:
         self._site, self._limits, self._client_of = site, limits, client_of
@@ -93,10 +93,10 @@ class _Handlers:
         )
 
     async def call_tool(self, context: Context, params: CallToolRequestParams) -> CallToolResult:
-        """Call a tool. An error of the call is a result, so that the agent can read it and correct the call."""
+        """Call a tool. An error is returned as a result, so that the agent can read it and correct the call."""
         tool = self._tools.get(params.name)
         if tool is None:
-            name, known = _encodable(params.name[:60]), ", ".join(self._tools)
+            name, known = _replace_unencodable(params.name[:60]), ", ".join(self._tools)
             raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{name}'. The tools are {known}.")
         client = self._client_of(context)
         if tool.needs_operator and not client.is_operator:
@@ -121,7 +121,7 @@ class _Handlers:
         return ListResourcesResult(resources=await resources.resources(self._site))
 
     async def list_templates(self, context: Context, _: PaginatedRequestParams | None) -> ListResourceTemplatesResult:
-        """List the templates of resources."""
+        """List the resource templates."""
         self._reader(context)
         return ListResourceTemplatesResult(resource_templates=resources.templates())
 
@@ -153,7 +153,7 @@ class _Handlers:
         return CompleteResult(completion=Completion(values=values))
 
     def _reader(self, context: Context) -> Client:
-        """Return the client of a request that only reads, and count the request."""
+        """Count a request that only reads, and return the client that sent it."""
         client = self._client_of(context)
         try:
             self._limits.count(client.key, "read", client.name)
@@ -163,8 +163,8 @@ class _Handlers:
 
 
 def _protocol_error(error: ScopeError) -> MCPError:
-    return MCPError(code=INVALID_PARAMS, message=_encodable(str(error)), data={"error": status_of(error)[1]})
+    return MCPError(code=INVALID_PARAMS, message=_replace_unencodable(str(error)), data={"error": status_of(error)[1]})
 
 
-def _encodable(text: str) -> str:
+def _replace_unencodable(text: str) -> str:
     return text.encode("utf-8", "replace").decode()

@@ -25,7 +25,7 @@ async def serve_stdio(site: Site, *, role: Role = "operator") -> None:
 
     Args:
         site: The cameras, models and runs. This function enters the site's context.
-        role: The role of the client.
+        role: The client's role.
     """
     client = Client(LOCAL, f"{LOCAL}:mcp", role)
 
@@ -41,8 +41,8 @@ async def serve_stdio(site: Site, *, role: Role = "operator") -> None:
 class _Lines:
     """The lines of standard input, read in a daemon thread.
 
-    The SDK's own reader blocks the end of the program until the client closes standard input, so that Ctrl-C would not work.
-    Nothing else in the program can read standard input meanwhile.
+    With the SDK's reader, the program could not exit until the client closed standard input, so Ctrl-C would not work.
+    No other part of the program can read standard input in the meantime.
 
     Args:
         portal: The event loop that receives the lines.

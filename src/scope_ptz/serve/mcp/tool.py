@@ -1,4 +1,4 @@
-"""The definition of an MCP tool, and the context of a call."""
+"""The definition of an MCP tool, and the context for a call."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.site import Site
 
 MAX_LISTED = 50
-"""Maximum number of names that a schema enumerates. With more, an unknown name is answered with a list."""
+"""Maximum number of names that a schema enumerates. If there are more, the error for an unknown name lists the names."""
 
 Progress = Callable[[float, str], Awaitable[None]]
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """The context of a call.
+    """The context for a call.
 
     Attributes:
         site: The cameras, runs and conversations.
-        client: The client that calls.
+        client: The client that makes the call.
         progress: Reports progress to the client: an increasing number and a message without text from pictures.
     """
 
@@ -39,7 +39,7 @@ class Call:
 
 
 class ToolArguments(BaseModel):
-    """Base class of the arguments of tools other than the nine. Wrong types and unknown fields are errors."""
+    """Base class for the arguments of tools other than the nine camera tools. Wrong types and unknown fields are errors."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -52,8 +52,8 @@ class McpTool:
         name: The name in calls.
         title: The name for people.
         description: The description for the agent.
-        input_schema: The JSON schema of the arguments.
-        output_schema: The JSON schema of the structured result.
+        input_schema: JSON schema for the arguments.
+        output_schema: JSON schema for the structured result.
         annotations: Hints about effects.
         needs_operator: Whether the tool needs the operator role.
         kind: The rate limit that applies; None for no limit, so that stopping is always possible.
@@ -71,7 +71,7 @@ class McpTool:
     run: Callable[[Call, dict[str, Any]], Awaitable[CallToolResult]]
 
     def listing(self) -> ListedTool:
-        """Return the tool as ``tools/list`` describes it."""
+        """Return the tool's entry for ``tools/list``."""
         return ListedTool(
             name=self.name,
             title=self.title,
@@ -86,7 +86,7 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 
 def parse_arguments(model: type[_Model], tool: str, arguments: dict[str, Any]) -> _Model:
-    """Validate the arguments of a call.
+    """Validate a call's arguments.
 
     Raises:
         ToolCallError: An argument is missing, unknown or has the wrong type. The message states how to correct the call.
@@ -103,8 +103,8 @@ def parse_arguments(model: type[_Model], tool: str, arguments: dict[str, Any]) -
 
 
 def input_schema(model: type[BaseModel], cameras: Sequence[str]) -> dict[str, Any]:
-    """Return the JSON schema of arguments, in which ``camera`` enumerates the names of the cameras."""
-    schema = without_titles(model.model_json_schema())
+    """Return the JSON schema for arguments, in which ``camera`` enumerates the camera names."""
+    schema = remove_titles(model.model_json_schema())
     schema.pop("description", None)
     if "camera" in schema.get("properties", {}):
         schema["properties"]["camera"] = camera_property(cameras)
@@ -112,39 +112,37 @@ def input_schema(model: type[BaseModel], cameras: Sequence[str]) -> dict[str, An
 
 
 def output_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON schema of a structured result."""
-    schema: dict[str, Any] = without_titles(model.model_json_schema(mode="serialization"))
+    """Return the JSON schema for a structured result."""
+    schema: dict[str, Any] = remove_titles(model.model_json_schema(mode="serialization"))
     return schema
 
 
 def camera_property(cameras: Sequence[str]) -> dict[str, Any]:
-    """Return the JSON schema of the argument ``camera``."""
+    """Return the JSON schema for the argument ``camera``."""
     known: dict[str, Any] = {"enum": list(cameras)} if len(cameras) <= MAX_LISTED else {}
     return {"type": "string", "description": "Name of the camera, as list_cameras reports it.", **known}
 
 
-def without_titles(schema: Any) -> Any:
-    """Return a JSON schema without the titles that pydantic derives from names. A property that is called "title" stays."""
+def remove_titles(schema: Any) -> Any:
+    """Remove the titles that pydantic derives from names from a JSON schema. A property named "title" is kept."""
     if isinstance(schema, list):
-        return [without_titles(each) for each in schema]
+        return [remove_titles(each) for each in schema]
     if not isinstance(schema, dict):
         return schema
     return {
-        key: {name: without_titles(each) for name, each in value.items()}
-        if key in ("properties", "$defs")
-        else without_titles(value)
+        key: {name: remove_titles(each) for name, each in value.items()} if key in ("properties", "$defs") else remove_titles(value)
         for key, value in schema.items()
         if not (key == "title" and isinstance(value, str))
     }
 
 
 def reply(text: str, data: BaseModel | dict[str, Any], *more: ContentBlock, failed: bool = False) -> CallToolResult:
-    """Return the result of a call.
+    """Return a call's result.
 
     Args:
         text: The result for agents that read only text.
         data: The structured result.
-        *more: Pictures and links, the least important last. They are left out if the result would be too large.
+        *more: Pictures and links, the least important last. They are omitted if the result would be too large.
         failed: Whether the call failed.
     """
     structured = data.model_dump(mode="json") if isinstance(data, BaseModel) else data
@@ -156,12 +154,12 @@ def reply(text: str, data: BaseModel | dict[str, Any], *more: ContentBlock, fail
 
 
 def wire_bytes(result: BaseModel) -> int:
-    """Return the size of a result as a JSON message, in the largest encoding: one that escapes characters outside ASCII."""
-    envelope = 512  # the id of the message, its version, and metadata that the SDK adds
+    """Return the size of a result as a JSON message, in bytes, in the largest encoding: one that escapes non-ASCII characters."""
+    envelope = 512  # the message's id and version, and metadata that the SDK adds
     return envelope + len(json.dumps(result.model_dump(mode="json", by_alias=True, exclude_none=True)))
 
 
 def failure(message: str, code: str) -> CallToolResult:
-    """Return the result of a call that failed before it did anything. ``code`` is the code that the HTTP API reports."""
+    """Return the result for a call that failed before it had any effect. ``code`` is the code that the HTTP API reports."""
     text = message.encode("utf-8", "replace").decode()
     return CallToolResult(content=[TextContent(type="text", text=text)], is_error=True, _meta={"scope-ptz/error": code})

@@ -1,8 +1,8 @@
-"""Mark text that comes from what a camera saw, so that an agent can tell it from the server's own text.
+"""Mark text that comes from camera pictures, so that an agent can distinguish it from the server's own text.
 
 A sign in front of a camera can say anything, for example "ignore your instructions". The text reaches the agent through answers,
 captions and labels. In structured results, each such text is an object with the single field ``untrusted_picture_text``. In plain
-text, it stands between two markers with a random number, which the picture cannot contain.
+text, it is enclosed in markers with a random number, which the picture cannot contain.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MAX_TEXT_CHARS = 4_000  # longer texts are truncated
 MAX_ITEMS = 200  # longer lists, such as the path of a tracked object, are truncated
 
 PICTURE_TEXT_FIELDS = frozenset({"message", "answer", "chosen", "label"})
-"""Fields of the results of perception tools whose text may come from a picture."""
+"""Fields in perception tools' results whose text may come from a picture."""
 
 
 class PictureText(BaseModel):
@@ -30,28 +30,28 @@ class PictureText(BaseModel):
 
     @classmethod
     def of(cls, text: str) -> PictureText:
-        """Mark a text, truncated to ``MAX_TEXT_CHARS``."""
+        """Mark text, truncated to ``MAX_TEXT_CHARS``."""
         return cls(untrusted_picture_text=truncate(text))
 
 
 def truncate(text: str) -> str:
-    """Return a text with at most ``MAX_TEXT_CHARS`` characters, all of which can be encoded."""
+    """Truncate text to ``MAX_TEXT_CHARS`` characters, and remove unencodable characters."""
     text = text.encode("utf-8", "replace").decode()
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} ..."
 
 
-def between_markers(text: str) -> str:
-    """Return a text between markers that the text itself cannot contain, with a notice."""
+def enclose_in_markers(text: str) -> str:
+    """Enclose text in markers that it cannot contain, and add a notice."""
     name = f"picture-text-{secrets.token_hex(8)}"
     return f"{NOTICE}\n<{name}>\n{truncate(text)}\n</{name}>"
 
 
 def mark_texts(result: Any, *, perceived: bool) -> Any:
-    """Return the data of a tool result in which texts from pictures are marked, and long lists are truncated.
+    """Mark the texts from pictures in a tool result's data, and truncate long lists.
 
     Args:
-        result: The data of the result.
-        perceived: Whether the tool calls perception. If not, no text comes from a picture.
+        result: The result's data.
+        perceived: Whether the tool calls perception. If it does not, no text comes from a picture.
     """
     if isinstance(result, dict):
         return {
@@ -66,7 +66,7 @@ def mark_texts(result: Any, *, perceived: bool) -> Any:
 
 
 def mark_schema(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON schema of a perception tool's results after ``mark_texts``, given the schema before it."""
+    """Convert the JSON schema for a perception tool's results to the schema for the results after ``mark_texts``."""
     definitions = schema.setdefault("$defs", {})
     for definition in [schema, *definitions.values()]:
         for name, prop in definition.get("properties", {}).items():

@@ -1,1 +1,1 @@
-"""Authentication and authorisation of the server's clients."""
+"""Authentication and authorisation for the server's clients."""

@@ -1,4 +1,4 @@
-"""Admit only authorised requests to the API, the page, the WebSockets and the media."""
+"""Admit only authorised requests to the API, the page, WebSockets and media."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ MAX_BODY_BYTES = 256 * 1024
 """Maximum size of a request body, in bytes."""
 
 MAX_PICTURE_BYTES = 32 * 1024 * 1024
-"""Maximum size of a picture that the add-on in a Blender sends, in bytes. A PNG of 3840 x 2160 pixels rarely exceeds it."""
+"""Maximum size of a picture that the Blender add-on sends, in bytes. A PNG with 3840 x 2160 pixels is rarely larger."""
 
 _PICTURE_PATH = re.compile(r"/api/v1/cameras/[^/]+/add-on/[^/]+/pictures/[0-9]+")
 
 OPEN_PATHS = frozenset({"/api/v1/session", "/api/v1/health", "/sign-in"})
-"""Paths that need no token: those of sign-in and the health check."""
+"""Paths that need no token: sign-in and the health check."""
 
 MCP_PATH = "/mcp"
 """The path of the MCP server."""
@@ -42,23 +42,23 @@ PROGRAM_PATHS = ("/api", MCP_PATH)
 SIGN_IN_PATH = "/sign-in"  # where browsers without a session are redirected
 
 AUTHORISATION_CHECK_INTERVAL_S = 2.0
-"""Seconds between two checks that the client of a request in progress is still authorised."""
+"""Seconds between checks that the client whose request is in progress is still authorised."""
 
 API_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
-"""The content security policy of the API. It allows nothing, because replies of the API are not pages."""
+"""The API's content security policy. It allows nothing, because the API's replies are not pages."""
 
 _CLIENT = re.compile(r"[A-Za-z0-9_-]{1,64}")  # valid values of the header ``Scope-Client``, which distinguishes browser tabs
 
 
 @dataclass(slots=True)
 class Access:
-    """The access rules of a server.
+    """A server's access rules.
 
     Attributes:
         host: The address that the server listens on.
-        tokens: The token file. With None, tokens are not needed, and every program on this machine is an operator.
-        hosts: Additional host names of the server, such as the name of a reverse proxy.
-        limits: Limits on the number of requests.
+        tokens: The token file. If it is None, no token is needed, and every program on this machine is an operator.
+        hosts: Additional host names for the server, such as the name of a reverse proxy.
+        limits: Rate limits for requests.
         sessions: The sessions of signed-in browsers.
 
     Raises:
@@ -93,10 +93,10 @@ class Access:
         return Origins({*LOOPBACK_NAMES, *listening, *self.hosts})
 
     def client(self, headers: dict[str, str]) -> Client | None:
-        """Return the client that sends a request; None if it has neither a valid token nor a valid session.
+        """Return the client that sent a request; None if the request has neither a valid token nor a valid session.
 
         Args:
-            headers: The headers of the request, by lower-case name.
+            headers: The request's headers, by lower-case name.
         """
         tab = headers.get("scope-client", "")
         tab = f":{tab}" if _CLIENT.fullmatch(tab) else ""
@@ -112,14 +112,14 @@ class Access:
 
 
 class AccessMiddleware:
-    """ASGI middleware that admits only authorised clients and sets the security headers of replies.
+    """ASGI middleware that admits only authorised clients and sets security headers on replies.
 
     It stores the client in ``scope["state"]["client"]``; None for the paths that need no token.
 
     Args:
         app: The wrapped application.
         access: The access rules.
-        page_policy: The content security policy of everything outside ``PROGRAM_PATHS``.
+        page_policy: The content security policy for everything outside ``PROGRAM_PATHS``.
     """
 
     def __init__(self, app: ASGIApp, access: Access, *, page_policy: str = API_POLICY) -> None:
@@ -137,7 +137,7 @@ class AccessMiddleware:
             await reply.refuse(403, "refused", problem)
             return
         if websocket and (tab := parse_qs(scope.get("query_string", b"").decode("latin-1")).get("client")):
-            headers.setdefault("scope-client", tab[0])  # a page cannot set headers of a WebSocket
+            headers.setdefault("scope-client", tab[0])  # a page cannot set WebSocket headers
         client = self._access.client(headers)
         if client is None and scope["path"] not in OPEN_PATHS:
             if not websocket and _wants_page(scope, headers):
@@ -153,14 +153,14 @@ class AccessMiddleware:
             return
         scope.setdefault("state", {})["client"] = client
         if client is None or not self._access.needs_token:
-            await self._app(scope, _limited(receive, max_bytes), reply.send)
+            await self._app(scope, _limit_body(receive, max_bytes), reply.send)
         else:
-            await self._serve_while_authorised(client, headers, scope, _limited(receive, max_bytes), reply)
+            await self._serve_while_authorised(client, headers, scope, _limit_body(receive, max_bytes), reply)
 
     async def _serve_while_authorised(
         self, client: Client, headers: dict[str, str], scope: Scope, receive: Receive, reply: _Reply
     ) -> None:
-        """Serve a request, and end it if its token is removed or its session ends in the meantime.
+        """Serve a request, and end it if the client's token is removed or its session ends in the meantime.
 
         Without this check, a client could continue to watch a stream indefinitely.
         """
@@ -206,9 +206,8 @@ class _Reply:
 
     async def refuse(self, status: int, code: str, message: str) -> None:
         if self._scope["type"] == "websocket":
-            await self._send(
-                {"type": "websocket.close", "code": 1008, "reason": message[:120]}
-            )  # if the WebSocket has not been accepted yet, the client gets the HTTP status 403 instead
+            # If the WebSocket has not been accepted yet, the client gets the HTTP status 403 instead.
+            await self._send({"type": "websocket.close", "code": 1008, "reason": message[:120]})
             return
         body = json.dumps({"error": {"code": code, "message": message}}).encode()
         extra = [(b"www-authenticate", b"Bearer")] if status == 401 else []
@@ -242,10 +241,10 @@ def cookie_of(headers: dict[str, str]) -> str:
 
 
 def _headers(scope: Scope) -> dict[str, str]:
-    """Return the headers of a request by lower-case name.
+    """Return a request's headers by lower-case name.
 
-    The values of a repeated header are joined, which results in a valid value only for cookies. An invalid content length is
-    replaced with one above the limit, so that the request is refused.
+    The values of a repeated header are joined, which gives a valid value only for cookies. An invalid content length is replaced
+    with one above the limit, so that the request is refused.
     """
     result: dict[str, str] = {}
     for name, value in scope["headers"]:
@@ -258,10 +257,10 @@ def _headers(scope: Scope) -> dict[str, str]:
 
 
 def _secret(authorization: str) -> str | None:
-    """Return the token in a header ``Authorization``; None if there is none.
+    """Return the token in an ``Authorization`` header; None if there is none.
 
-    A bearer token is usual. With Basic authentication, the password is the token and the user name is ignored. Video players and
-    home automation support only this.
+    Most clients send a bearer token. Video players and home automation systems support only Basic authentication, in which the
+    password is the token and the user name is ignored.
     """
     scheme, _, value = authorization.partition(" ")
     if scheme.lower() == "basic":
@@ -279,18 +278,18 @@ def _wants_page(scope: Scope, headers: dict[str, str]) -> bool:
 
 
 def max_body_bytes(path: str) -> int:
-    """Return the maximum size of the body of a request, in bytes."""
+    """Return the maximum size of a request body, in bytes."""
     return MAX_PICTURE_BYTES if _PICTURE_PATH.fullmatch(path) else MAX_BODY_BYTES
 
 
-def _limited(receive: Receive, max_bytes: int) -> Receive:
-    """Wrap ``receive`` so that it reports a disconnect once the body exceeds the limit, whatever length the headers state."""
+def _limit_body(receive: Receive, max_bytes: int) -> Receive:
+    """Wrap ``receive`` so that it reports a disconnect once the body exceeds the limit. The length in the headers is ignored."""
     received_bytes = 0
 
-    async def limited() -> Any:
+    async def limited_receive() -> Any:
         nonlocal received_bytes
         message = await receive()
         received_bytes += len(message.get("body", b"")) if message["type"] == "http.request" else 0
         return {"type": "http.disconnect"} if received_bytes > max_bytes else message
 
-    return limited
+    return limited_receive

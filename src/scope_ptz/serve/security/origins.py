@@ -1,4 +1,4 @@
-"""Check that a request names this server as its host, and that no other site made a browser send it."""
+"""Check that a request names this server as its host, and that it was not sent by a page from another site."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ def is_loopback(host: str) -> bool:
 
 
 class Origins:
-    """Checks that requests do not come from pages of other sites.
+    """Checks that requests do not come from pages on other sites.
 
     Such a page must not be able to use the session of the browser that shows it, or a server on loopback that needs no token. Its
-    requests have the other site in their ``Origin`` header. If the name of the other site resolves to this server (DNS rebinding),
-    the origin matches the host, but the ``Host`` header contains a name that is not one of the server's.
+    requests have the other site in their ``Origin`` header. If the other site's name resolves to this server (DNS rebinding), the
+    origin matches the host, but the ``Host`` header contains a name that is not one of the server's.
 
     Args:
-        hosts: The host names and addresses of the server, without ports.
+        hosts: The server's host names and addresses, without ports.
     """
 
     def __init__(self, hosts: Iterable[str]) -> None:
         self._hosts = frozenset(host.lower() for host in hosts)
 
     def problem(self, headers: Mapping[str, str], *, method: str, websocket: bool = False) -> str:
-        """Return the reason for refusing a request; empty if the request is allowed.
+        """Return why a request is refused; empty if it is allowed.
 
         Args:
-            headers: The headers of the request, by lower-case name.
+            headers: The request's headers, by lower-case name.
             method: The HTTP method.
             websocket: Whether the request opens a WebSocket.
         """
@@ -51,7 +51,7 @@ class Origins:
 
 
 def _is_link(headers: Mapping[str, str], method: str, websocket: bool) -> bool:
-    """Return whether a browser sends the request to open a page, for example from a link on another site. This is harmless."""
+    """Return whether a browser sent the request to open a page, for example from a link on another site, which is harmless."""
     fetch = headers.get("sec-fetch-mode"), headers.get("sec-fetch-dest")
     return method == "GET" and not websocket and fetch == ("navigate", "document")
 

@@ -13,10 +13,10 @@ from scope_ptz.serve.site.errors import TooManyRequestsError
 Kind = Literal["read", "command", "run", "sign_in"]
 
 MAX_CLIENTS = 10_000
-"""Maximum number of counters. The counter of the least recently active client is dropped first."""
+"""Maximum number of counters. Beyond it, the counter of the least recently active client is dropped."""
 
 NAME_FACTOR = 10
-"""The shared limit of all clients with the same name, as a multiple of the limit of one client."""
+"""The limit that all clients with the same name share, as a multiple of one client's limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +36,13 @@ DEFAULT_RATES: Mapping[Kind, Rate] = {
 
 
 class RateLimits:
-    """Limits the requests of each client, separately for each kind of request.
+    """Limits each client's requests, separately for each kind of request.
 
-    Requests to stop a camera or a run are never counted. All clients with the same name, such as the browser tabs of a user, also
-    have a shared limit. Otherwise, a program could evade the limit by posing as many clients.
+    Requests to stop a camera or a run are never counted. All clients with the same name, such as a user's browser tabs, also share
+    a limit. Otherwise, a program could evade the limit by pretending to be many clients.
 
     Args:
-        rates: The limit of each kind; None for no limits.
+        rates: The limit for each kind of request; None for no limits.
     """
 
     def __init__(self, rates: Mapping[Kind, Rate] | None = DEFAULT_RATES) -> None:
@@ -53,12 +53,12 @@ class RateLimits:
         """Count a request from a client, and refuse it if the client exceeds a limit.
 
         Args:
-            client: The key of the client, or its address if it has not signed in.
-            kind: The kind of the request.
+            client: The client's key, or its address if it has not signed in.
+            kind: The kind of request.
             name: The name that the client may share with others; None for no shared limit.
 
         Raises:
-            TooManyRequestsError: The client sent too many requests. The error contains the seconds until the client may retry.
+            TooManyRequestsError: The client sent too many requests. The error states after how many seconds the client may retry.
         """
         rate = self._rates.get(kind)
         if rate is None:

@@ -18,12 +18,12 @@ MAX_SESSIONS = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """The session of a signed-in browser.
+    """A signed-in browser's session.
 
     Attributes:
         token: The token that the browser signed in with.
-        key: A public identifier of the session, which the cookie cannot be derived from.
-        ends_s: The time at which the session ends, as measured by ``time.monotonic``.
+        key: A public identifier of the session. The cookie cannot be derived from it.
+        ends_s: When the session ends, as a ``time.monotonic`` value.
     """
 
     token: Token
@@ -32,14 +32,14 @@ class Session:
 
 
 class Sessions:
-    """The sessions of one server. They are kept only in memory, so a restart signs all browsers out."""
+    """A server's sessions. They are kept only in memory, so a restart signs all browsers out."""
 
     def __init__(self, *, lifetime_s: float = LIFETIME_S) -> None:
         self._lifetime_s = lifetime_s
         self._sessions: OrderedDict[str, Session] = OrderedDict()
 
     def begin(self, token: Token) -> str:
-        """Begin a session and return the value of its cookie."""
+        """Begin a session and return its cookie value."""
         secret = secrets.token_urlsafe(32)
         digest = _digest(secret)
         self._sessions[digest] = Session(token, digest[:16], monotonic() + self._lifetime_s)

@@ -13,7 +13,7 @@ from scope_ptz.serve.security.access import SIGN_IN_PATH, Access
 from scope_ptz.serve.security.sessions import COOKIE, LIFETIME_S
 from scope_ptz.serve.site.errors import TooManyRequestsError
 
-# The content security policy of the page.
+# The page's content security policy.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'"
 
 _PAGE = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
@@ -39,7 +39,7 @@ p {{ margin: 0 0 1rem; color: var(--bad); }}
 
 
 def sign_in_route(access: Access) -> Route:
-    """Return the route of the sign-in page. ``AccessMiddleware`` admits requests to this route without a token."""
+    """Return the sign-in page's route. ``AccessMiddleware`` admits requests to this route without a token."""
 
     async def sign_in(request: Request) -> Response:
         if request.method != "POST":
@@ -60,7 +60,7 @@ def sign_in_route(access: Access) -> Route:
 
 
 def set_cookie(response: Response, secret: str, *, secure: bool) -> None:
-    """Set the session cookie in a reply. Scripts cannot read it, and pages of other sites cannot make a browser send it."""
+    """Set the session cookie in a reply. Scripts cannot read it, and pages on other sites cannot make a browser send it."""
     response.set_cookie(COOKIE, secret, max_age=int(LIFETIME_S), path="/", httponly=True, samesite="strict", secure=secure)
 
 

@@ -1,4 +1,4 @@
-"""Named tokens with roles. The token file stores only hashes, so a copy of it gives no access."""
+"""Named tokens with roles. The token file stores only hashes, so a copy of it does not give access."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from scope_ptz.errors import ConfigError, OutputError, UnknownNameError
 from scope_ptz.serve.site.clients import Role
 
 PREFIX = "scope_"
-"""The prefix of every token, so that scanners for leaked secrets can recognise tokens."""
+"""The prefix of every token, by which scanners for leaked secrets can recognise tokens."""
 
 MAX_TOKEN_CHARS = 200
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,59}")
 
 
 class Token(BaseModel):
-    """The stored data of a token.
+    """The stored data for a token.
 
     Attributes:
-        name: The name of the person or program that uses it.
-        role: The role that it grants. A viewer can only watch; an operator can also send commands.
-        sha256: The hash of its secret. The secret has 256 random bits, so a hash without a salt is safe.
-        created: The time at which it was created.
+        name: The name of the person or program that uses the token.
+        role: The role that the token grants. A viewer can only watch; an operator can also send commands.
+        sha256: The hash of the token's secret. The secret has 256 random bits, so a hash without a salt is safe.
+        created: When the token was created.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -48,24 +48,24 @@ class _Content(BaseModel):
 
 
 class TokenFile:
-    """The file that stores the tokens of a server. Changes to it take effect without a restart.
+    """The file that stores a server's tokens. Changes to it take effect without a restart.
 
     Args:
-        path: The path of the file. If it does not exist, there are no tokens.
+        path: The file's path. If the file does not exist, there are no tokens.
 
     Raises:
-        ConfigError: The file cannot be read, or its content is invalid.
+        ConfigError: The file cannot be read, or its contents are invalid.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.tokens: tuple[Token, ...] = ()
-        self._seen: tuple[int, int] | None = None
+        self._file_state: tuple[int, int] | None = None
         self._read()
 
     def find(self, secret: str) -> Token | None:
-        """Return the token with the secret that a client sent; None if there is none. If the file has changed, read it again."""
-        self._read_again()
+        """Return the token with the secret that a client sent; None if there is none. If the file has changed, it is read again."""
+        self._reload_if_changed()
         digest, match = _digest(secret[:MAX_TOKEN_CHARS]), None
         for token in self.tokens:  # no early exit: the duration must not depend on which token matches
             if hmac.compare_digest(token.sha256, digest):
@@ -74,7 +74,7 @@ class TokenFile:
 
     def is_valid(self, token: Token) -> bool:
         """Return whether a token that ``find`` returned earlier is still in the file, unchanged."""
-        self._read_again()
+        self._reload_if_changed()
         return token in self.tokens
 
     def add(self, name: str, role: Role) -> str:
@@ -97,10 +97,10 @@ class TokenFile:
         return secret
 
     def remove(self, name: str) -> None:
-        """Remove a token. A running server rejects it from the next request on.
+        """Remove a token. A running server rejects it in all later requests.
 
         Raises:
-            UnknownNameError: There is no token of this name.
+            UnknownNameError: There is no token with this name.
             OutputError: The file cannot be written.
         """
         remaining = tuple(token for token in self.tokens if token.name != name)
@@ -108,13 +108,13 @@ class TokenFile:
             raise UnknownNameError("token", name[:60], [token.name for token in self.tokens])
         self._write(remaining)
 
-    def _read_again(self) -> None:
+    def _reload_if_changed(self) -> None:
         try:
             state = self.path.stat()
         except OSError:
             self.tokens = ()  # without a file, no token is valid
             return
-        if (state.st_mtime_ns, state.st_size) != self._seen:
+        if (state.st_mtime_ns, state.st_size) != self._file_state:
             self._read()
 
     def _read(self) -> None:
@@ -122,17 +122,17 @@ class TokenFile:
             state = self.path.stat()
             content = _Content.model_validate_json(self.path.read_bytes())
         except FileNotFoundError:
-            self.tokens, self._seen = (), None
+            self.tokens, self._file_state = (), None
             return
         except OSError as error:
             raise ConfigError(f"The token file {self.path} cannot be read: {error.strerror}.") from error
         except ValidationError as error:
-            # The message must not contain the content of the file.
+            # The message must not contain the file's contents.
             where = ".".join(str(part) for part in error.errors(include_input=False)[0]["loc"]) or "the top level"
             raise ConfigError(
                 f"The token file {self.path} is invalid at {where}. Delete it and create the tokens again with `scope token add`."
             ) from None
-        self.tokens, self._seen = tuple(content.tokens), (state.st_mtime_ns, state.st_size)
+        self.tokens, self._file_state = tuple(content.tokens), (state.st_mtime_ns, state.st_size)
 
     def _write(self, tokens: tuple[Token, ...]) -> None:
         unfinished = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")

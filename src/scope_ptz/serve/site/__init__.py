@@ -1,1 +1,1 @@
-"""The services of a server, independent of HTTP: cameras and their control, models, runs, conversations and evaluations."""
+"""A server's services, independent of HTTP: cameras and their control, models, runs, conversations and evaluations."""

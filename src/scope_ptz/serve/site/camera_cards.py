@@ -1,4 +1,4 @@
-"""The cards of the camera list. A card states the kind and the abilities of a camera, and whether it works."""
+"""The cards in the camera list. A card states a camera's kind and abilities, and whether the camera works."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "gr
 HealthState = Literal["connected", "ready", "failed"]
 
 CHECK_TIMEOUT_S = 20.0
-"""Time limit of a check in seconds. A camera that does not answer within it has failed."""
+"""Time limit for a check in seconds. A camera that does not answer within it has failed."""
 
 CHECK_REUSE_S = 2.0
-"""Seconds for which the result of a check is reused, so that several pages can share one check."""
+"""Seconds for which a check's result is reused, so that several pages can share one check."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +34,12 @@ class SceneFacts:
     """Facts about a stored scene.
 
     Attributes:
-        name: The name of the scene.
-        title: Its title.
-        viewpoints: The names of its viewpoints.
-        presets: Number of its presets.
-        moving: Number of its moving objects.
-        has_truth: Whether it has ground truth, which captured scenes do not have.
+        name: The scene's name.
+        title: The scene's title.
+        viewpoints: Names of the viewpoints.
+        presets: Number of presets.
+        moving: Number of moving objects.
+        has_truth: Whether the scene has ground truth. Captured scenes have none.
     """
 
     name: str
@@ -52,16 +52,16 @@ class SceneFacts:
 
 @dataclass(frozen=True, slots=True)
 class CameraCard:
-    """The card of a camera in a list.
+    """A camera's card in the camera list.
 
     Attributes:
-        title: The name of the device or the title of the scene; empty if it is not known yet.
-        kind: The kind of the camera.
+        title: The device name or the scene title; empty if it is not known yet.
+        kind: The kind of camera.
         scene: The stored scene that a simulated camera shows; None for other cameras.
-        abilities: The abilities that are known. Those of a device are not known until it has been opened.
+        abilities: The known abilities. A device's abilities are not known until the device has been opened.
         health: "connected" if the camera answers, "ready" if it will be opened on first use, "failed" if it cannot be used.
-        problem: The reason why the camera cannot be used; None if it can.
-        configured: Whether the camera is one of those in ``scope.yaml``.
+        problem: Why the camera cannot be used; None if it can.
+        configured: Whether the camera is defined in ``scope.yaml``.
         has_picture: Whether a thumbnail is available.
     """
 
@@ -76,7 +76,7 @@ class CameraCard:
 
 
 class CameraCards:
-    """Creates the cards of cameras. It connects to devices, but does not open simulated cameras or start Blender."""
+    """Creates camera cards. It connects to devices, but does not open simulated cameras or start Blender."""
 
     def __init__(self) -> None:
         self._scenes: dict[str, SceneFacts] = {}
@@ -118,7 +118,7 @@ class CameraCards:
         return self._scenes[name]
 
     async def _check(self, station: Station) -> ScopeError | None:
-        """Return the error of a camera; None if the camera works. Concurrent requests share one check."""
+        """Check a camera, and return its error; None if the camera works. Concurrent requests share one check."""
         task, since_s = self._checks.get(station.name, (None, 0.0))
         if task is None or (task.done() and monotonic() - since_s > CHECK_REUSE_S):
             task = asyncio.create_task(_find_problem(station))
@@ -152,9 +152,9 @@ def _scene_abilities(scene: SceneFacts, *, has_camera_rules: bool) -> tuple[Abil
 
 
 def _device_abilities(camera: Camera) -> tuple[Ability, ...]:
-    can = camera.info.capabilities
+    capabilities = camera.info.capabilities
     known: list[tuple[Ability, bool]] = [
-        ("move", True), ("drive", can.drives), ("presets", can.edits_presets), ("focus", bool(can.focus)),
-        ("iris", bool(can.iris)), ("scene_time", scene_time(camera) is not None),
+        ("move", True), ("drive", capabilities.drives), ("presets", capabilities.edits_presets),
+        ("focus", bool(capabilities.focus)), ("iris", bool(capabilities.iris)), ("scene_time", scene_time(camera) is not None),
     ]  # fmt: skip
     return tuple(name for name, has in known if has)

@@ -1,4 +1,4 @@
-"""Control of a camera. One client at a time has control, until it hands control over or control expires."""
+"""Camera control. One client at a time has control of a camera, until it hands control over or control expires."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MAX_REQUESTS = 20
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A client's request for control: the key and the name of the client, and the time of the request."""
+    """A client's request for control: the client's key and name, and the time of the request."""
 
     key: str
     name: str
@@ -52,25 +52,25 @@ class CameraControl:
         self._holder: Client | None = None
         self._since = datetime.now(UTC)
         self._used_s = 0.0
-        self._left = False
+        self._released = False
         self._connections: Counter[str] = Counter()
         self._absent_since_s: float | None = None
         self._requests: dict[str, Request] = {}
         self._lock = AsyncExitStack()
         self.changes = 0
-        """Number of changes so far. Watchers compare it to notice changes."""
+        """Number of changes so far, which watchers compare to notice changes."""
 
     @property
     def holder(self) -> Client | None:
         """The client that has control; None if nobody has it."""
         now_s = monotonic()
         absent = self._absent_since_s is not None and now_s - self._absent_since_s > self._absent_s
-        expired = not self._busy() and (self._left or absent or now_s - self._used_s > self._lease_s)
+        expired = not self._busy() and (self._released or absent or now_s - self._used_s > self._lease_s)
         return None if expired else self._holder
 
     @property
     def since(self) -> datetime:
-        """The time at which the holder got control."""
+        """When the holder got control."""
         return self._since
 
     @property
@@ -79,8 +79,8 @@ class CameraControl:
         return tuple(self._requests.values())
 
     @contextmanager
-    def connected(self, client: Client) -> Iterator[None]:
-        """Return a context in which a client has a live connection. Control expires soon after its holder's last one has ended."""
+    def live_connection(self, client: Client) -> Iterator[None]:
+        """Return a context in which a client has a live connection. Control expires soon after the holder's last one ends."""
         self._connections[client.key] += 1
         if self._holder is not None and self._holder.key == client.key:
             self._absent_since_s = None
@@ -94,7 +94,7 @@ class CameraControl:
                     self._absent_since_s = monotonic()
 
     async def require(self, client: Client, camera: Camera) -> None:
-        """Make sure that a client has control, which it takes if nobody has it.
+        """Make sure that a client has control. If nobody has control, the client takes it.
 
         Raises:
             NotInControlError: Another client has control.
@@ -105,10 +105,10 @@ class CameraControl:
             raise NotInControlError(self._camera, holder.name)
         if holder is None:
             await self._hand_to(client, camera)
-        self._used_s, self._left, self._absent_since_s = monotonic(), False, None
+        self._used_s, self._released, self._absent_since_s = monotonic(), False, None
 
     async def ask(self, client: Client, camera: Camera) -> bool:
-        """Take control if nobody has it; otherwise, ask the holder for it. Return whether the client has control.
+        """Take control if nobody has it; otherwise, ask the holder for it. Return whether the client now has control.
 
         Raises:
             ControlHeldError: Another user of this camera object, outside the server, has control.
@@ -127,10 +127,10 @@ class CameraControl:
 
         Args:
             holder: The client that answers.
-            key: The key of the client that asks.
+            key: The key of the client that is asking.
             camera: The camera.
-            grant: Whether control is handed over.
-            to: The client that asks; by default, an operator with the name and the key of the request.
+            grant: Whether to hand control over.
+            to: The client that is asking; by default, an operator with the name and the key in the request.
 
         Raises:
             NotInControlError: ``holder`` does not have control.
@@ -153,26 +153,26 @@ class CameraControl:
         if self._requests.pop(client.key, None) is not None:
             self.changes += 1
         if self._holder is not None and self._holder.key == client.key:
-            self._left = True
-            await self.run_ended()
+            self._released = True
+            await self.clear_if_released()
 
-    async def run_ended(self) -> None:
-        """Clear control if its holder gave it up and no run is in progress."""
-        if self._left and not self._busy():
+    async def clear_if_released(self) -> None:
+        """Clear control if the holder gave it up and no run is in progress."""
+        if self._released and not self._busy():
             await self.clear()
 
     async def clear(self) -> None:
         """Take control away from its holder, if any."""
-        self._holder, self._left = None, False
+        self._holder, self._released = None, False
         self.changes += 1
         await self._lock.aclose()
 
     async def _hand_to(self, client: Client, camera: Camera) -> None:
         await self._lock.aclose()
         self._holder = None
-        # Other programs that use the same device learn from the camera's own lock who has control.
+        # The camera's own lock shows which client has control to other programs that use the same device.
         await self._lock.enter_async_context(camera.control(client.name))
-        self._holder, self._since, self._used_s, self._left = client, datetime.now(UTC), monotonic(), False
+        self._holder, self._since, self._used_s, self._released = client, datetime.now(UTC), monotonic(), False
         self._absent_since_s = None
         self._requests.pop(client.key, None)
         self.changes += 1

@@ -1,4 +1,4 @@
-"""Determine the kind of a camera from its spec, without opening the camera."""
+"""Determine a camera's kind from its spec, without opening the camera."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _KINDS = {"sim": "simulated", BLENDER_WINDOW: "blender"}
 
 
 def kind_of(spec: str) -> CameraKind:
-    """Return the kind of a camera.
+    """Return a camera's kind.
 
     Raises:
         InputError: The spec is invalid, or the camera is no longer in ``scope.yaml``.
@@ -31,7 +31,7 @@ def has_scene_time(spec: str) -> bool:
 
 
 def is_blender_window(spec: str) -> bool:
-    """Return whether a camera is the open scene of a Blender window, which an add-on connects."""
+    """Return whether a camera is a Blender window's open scene, which an add-on connects to the server."""
     return parse_camera(spec).scheme == BLENDER_WINDOW
 
 

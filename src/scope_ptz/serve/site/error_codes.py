@@ -1,4 +1,4 @@
-"""The codes and HTTP statuses with which all interfaces of the server report errors."""
+"""The codes and HTTP statuses with which all of the server's interfaces report errors."""
 
 from __future__ import annotations
 

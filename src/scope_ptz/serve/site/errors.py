@@ -10,7 +10,7 @@ class NotInControlError(ScopeError):
     """Another client controls the camera.
 
     Attributes:
-        holder: The name of the client that controls it.
+        holder: The name of the controlling client.
     """
 
     def __init__(self, camera: str, holder: str) -> None:
@@ -43,7 +43,7 @@ class RefusedByCameraError(ScopeError):
 
 
 class TooManyRequestsError(ScopeError):
-    """A client sends more requests than are allowed. ``retry_s`` is the number of seconds until it may retry."""
+    """A client has sent more requests than allowed. ``retry_s`` is the number of seconds until it may retry."""
 
     def __init__(self, retry_s: float) -> None:
         self.retry_s = retry_s
@@ -51,7 +51,7 @@ class TooManyRequestsError(ScopeError):
 
 
 class EvaluationRunningError(ScopeError):
-    """An evaluation is in progress, so the command is not possible. ``evaluation`` is its id."""
+    """The command is not possible, because an evaluation is in progress. ``evaluation`` is its id."""
 
     def __init__(self, evaluation: str) -> None:
         self.evaluation = evaluation

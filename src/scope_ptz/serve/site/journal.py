@@ -1,4 +1,4 @@
-"""The stored runs of a server: their folders, their index, and the earlier turns of conversations."""
+"""A server's stored runs: their folders, their index, and the earlier turns of conversations."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MAX_TURNS = 20
 """Maximum number of conversation turns that the planner receives."""
 
 SETTLE_S = 2.0
-"""Maximum time in seconds for which a request for a list of runs waits until runs that have just ended are indexed."""
+"""Maximum time, in seconds, for which a request that lists runs waits until recently ended runs are indexed."""
 
 _T = TypeVar("_T")
 
@@ -31,7 +31,7 @@ logger = logging.getLogger(__name__)
 
 
 class Journal:
-    """The runs folder of a server, and its index. A failure of the index never stops a run.
+    """A server's runs folder, with its index. An index failure never stops a run.
 
     Args:
         root: The runs folder.
@@ -41,7 +41,7 @@ class Journal:
         self.root = root
         self.store = RunStore(root)
         self._turns: dict[str, tuple[PastTurn, ...]] = {}
-        self._waiting: asyncio.Queue[str] = asyncio.Queue()
+        self._queue: asyncio.Queue[str] = asyncio.Queue()
 
     async def in_thread(self, work: Callable[[], _T]) -> _T:
         """Call a blocking function, such as one that reads the store, in a worker thread, and return its result."""
@@ -49,26 +49,26 @@ class Journal:
 
     def index_soon(self, run_id: str) -> None:
         """Queue a run for indexing."""
-        self._waiting.put_nowait(run_id)
+        self._queue.put_nowait(run_id)
 
     async def run(self) -> None:
-        """Index all runs, including those of a server that was killed; then index queued runs until cancelled."""
-        await self._try(self.store.index)
+        """Index all runs, including those left by a killed server; then index queued runs until cancelled."""
+        await self._run_or_log(self.store.index)
         while True:
-            run_id = await self._waiting.get()
+            run_id = await self._queue.get()
             # If indexing the run fails, index all runs.
-            if not await self._try(partial(self.store.index_run, run_id)):
+            if not await self._run_or_log(partial(self.store.index_run, run_id)):
                 await asyncio.sleep(1.0)
-                await self._try(self.store.index)
-            self._waiting.task_done()
+                await self._run_or_log(self.store.index)
+            self._queue.task_done()
 
     async def settle(self, limit_s: float = SETTLE_S) -> None:
-        """Wait at most ``limit_s`` seconds until all queued runs are indexed, so that lists contain runs that just ended."""
+        """Wait at most ``limit_s`` seconds until all queued runs are indexed, so that lists contain recently ended runs."""
         with anyio.move_on_after(limit_s):
-            await self._waiting.join()
+            await self._queue.join()
 
     async def turns(self, conversation: str) -> tuple[PastTurn, ...]:
-        """Return the earlier turns of a conversation, oldest first. After a restart, they are read from the run folders."""
+        """Return a conversation's earlier turns, oldest first. After a restart, they are read from the run folders."""
         if conversation not in self._turns:
             self._turns[conversation] = await self.in_thread(lambda: self._stored_turns(conversation))
         return self._turns[conversation]
@@ -76,10 +76,10 @@ class Journal:
     async def add_turn(self, conversation: str, turn: PastTurn) -> None:
         """Add a turn to a conversation."""
         self._turns[conversation] = (*await self.turns(conversation), turn)[-MAX_TURNS:]
-        await self._try(partial(touch_conversation, self.store.database, conversation))
+        await self._run_or_log(partial(touch_conversation, self.store.database, conversation))
 
     def forget(self, conversation: str) -> None:
-        """Remove the cached turns of a conversation."""
+        """Remove a conversation's cached turns."""
         self._turns.pop(conversation, None)
 
     def close(self) -> None:
@@ -104,7 +104,7 @@ class Journal:
                 turns.append(turn)
         return tuple(turns)
 
-    async def _try(self, work: Callable[[], object]) -> bool:
+    async def _run_or_log(self, work: Callable[[], object]) -> bool:
         try:
             await to_thread.run_sync(work)
         except (ScopeError, OSError) as error:

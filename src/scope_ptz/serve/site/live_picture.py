@@ -1,4 +1,4 @@
-"""The live picture of a camera. Frames are taken while at least one client watches, and each client gets the newest frame."""
+"""A camera's live picture. Frames are taken while at least one client is watching, and each client gets the newest frame."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from scope_ptz.errors import CameraError
 
 RATE_HZ = 25.0
 JPEG_QUALITY = 80
-MAX_AGE_S = 5.0  # maximum age of a frame; limits the error if a clock is set forward between exposure and arrival
-RETRY_S = 1.0  # pause before the next attempt after a camera failure
-CHECK_S = 0.25  # seconds between two checks whether the camera's frames are interrupted
+MAX_AGE_S = 5.0  # maximum age of a frame, which limits the error if a clock is set forward between exposure and arrival
+RETRY_S = 1.0  # seconds between a camera failure and the next attempt
+CHECK_S = 0.25  # seconds between checks for interrupted frames
 
 logger = logging.getLogger(__name__)
 
@@ -32,7 +32,7 @@ class LiveFrame:
     Attributes:
         number: Number of the frame, counted since the server started.
         frame: The frame.
-        taken: The time of exposure, in seconds since 1970.
+        taken: The exposure time, in seconds since 1970.
 
     Args:
         number: Number of the frame.
@@ -66,13 +66,13 @@ def encode_jpeg(image: NDArray[Any], width: int, quality: int = JPEG_QUALITY) ->
 
 
 class LivePicture:
-    """Takes frames of a camera while at least one client watches, and passes each client the newest one.
+    """Takes frames from a camera while at least one client is watching, and passes each client the newest one.
 
     A slow client skips frames and does not delay others. After a camera failure, clients wait until the camera works again.
 
     Args:
         name: The camera's name.
-        camera: A function that opens the camera if necessary, and returns it.
+        camera: Opens the camera if necessary, and returns it.
         rate_hz: Frames per second.
     """
 
@@ -87,32 +87,32 @@ class LivePicture:
 
     @property
     def newest(self) -> LiveFrame | None:
-        """The newest frame; None while nobody watches."""
+        """The newest frame; None while nobody is watching."""
         return self._newest
 
     async def run(self) -> None:
-        """Take frames while at least one client watches, until cancelled."""
+        """Take frames while at least one client is watching, until cancelled."""
         number = 0
         while True:
             await self._watched.wait()
             try:
                 camera = await self._camera()
-                async with self._reporting_interruptions(camera), aclosing(camera.frames(rate_hz=self._rate_hz)) as frames:
+                async with self._report_interruptions(camera), aclosing(camera.frames(rate_hz=self._rate_hz)) as frames:
                     async for frame in frames:
                         number += 1
                         self.problem = ""
-                        if not self.watchers:  # and do not keep the frame: the next watcher must not get an old one
+                        if not self.watchers:  # the frame is discarded, because the next watcher must not get an old one
                             break
                         self._publish(LiveFrame(number, frame, camera.clock.now_s() - frame.time_s))
-            except Exception as error:  # the live picture must continue after any failure of a driver
+            except Exception as error:  # the live picture must continue after any driver failure
                 self.problem = str(error)
                 logger.warning("The live picture of %s failed; retrying: %s", self._name, error)
                 self._wake()
                 await anyio.sleep(RETRY_S)
 
     @asynccontextmanager
-    async def _reporting_interruptions(self, camera: Camera) -> AsyncIterator[None]:
-        """Return a context in which clients are told why frames do not arrive, although the camera's stream continues."""
+    async def _report_interruptions(self, camera: Camera) -> AsyncIterator[None]:
+        """Return a context that tells clients why frames are missing while the camera's stream continues."""
 
         async def report() -> None:
             while True:
@@ -131,7 +131,7 @@ class LivePicture:
 
     @asynccontextmanager
     async def watch(self) -> AsyncIterator[AsyncIterator[LiveFrame | None]]:
-        """Return a context with an endless iterator over new frames. The iterator yields None after a camera failure."""
+        """Return a context that provides an endless iterator over new frames. After a camera failure, the iterator yields None."""
         self.watchers += 1
         self._watched.set()
         frames = self._frames()

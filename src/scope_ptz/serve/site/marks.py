@@ -1,4 +1,4 @@
-"""Draw the detections of a run on its pictures."""
+"""Draw a run's detections on its pictures."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from scope_ptz.perception.base import Box
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
 MAX_NUMBERS = 40
-"""Maximum number of marks that are numbered. With more marks, none is numbered, because the numbers would cover the picture."""
+"""Maximum number of marks to number. If there are more, none is numbered, because the numbers would cover the picture."""
 
 
 def call_for_picture(trace: Trace, name: str) -> Called | None:
-    """Return the first call of a run whose result refers to the picture ``name``; None if there is none."""
+    """Return the first call in a run whose result refers to the picture ``name``; None if there is none."""
     for call in trace.calls:
         result = call.outcome.result or {}
         if name in (result.get("frames") or ()):
@@ -29,9 +29,9 @@ def call_for_picture(trace: Trace, name: str) -> Called | None:
 
 
 def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
-    """Return the detections of a call in the picture ``name``, numbered from 1 in drawing order.
+    """Return a call's detections in the picture ``name``, numbered from 1 in drawing order.
 
-    Boxes are fractions of the frame's width and height. They belong to the last picture of a call; its other pictures have none.
+    Boxes are fractions of the frame's width and height. They belong to the call's last picture; its other pictures have none.
     """
     result = (call.outcome.result or {}) if call is not None else {}
     frames = list(result.get("frames") or ())
@@ -46,7 +46,7 @@ def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
 
 
 def draw_marks(picture: bytes, marks: list[dict[str, Any]]) -> bytes:
-    """Return an encoded picture with its marks drawn on it, as a JPEG.
+    """Draw marks on an encoded picture, and return it as a JPEG.
 
     Raises:
         TraceError: The picture is damaged.
@@ -61,16 +61,16 @@ def draw_marks(picture: bytes, marks: list[dict[str, Any]]) -> bytes:
         left, top = round(box["x_min"] * width), round(box["y_min"] * height)
         cv2.rectangle(image, (left, top), (round(box["x_max"] * width), round(box["y_max"] * height)), accent, line, cv2.LINE_AA)
         if len(marks) <= MAX_NUMBERS:
-            _number(image, str(mark["number"]), left, top, line)
+            _draw_number(image, str(mark["number"]), left, top, line)
     encoded, data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])
     if not encoded:
         raise TraceError("The picture of the run cannot be encoded.")
     return bytes(data)
 
 
-def _number(image: NDArray[Any], text: str, left: int, top: int, line: int) -> None:
+def _draw_number(image: NDArray[Any], text: str, left: int, top: int, line: int) -> None:
     scale = 0.25 + line * 0.12
-    (wide, high), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
-    top = max(top, high + 6)
-    cv2.rectangle(image, (left, top - high - 6), (left + wide + 6, top), ACCENT[::-1], cv2.FILLED)
+    (text_width, text_height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+    top = max(top, text_height + 6)
+    cv2.rectangle(image, (left, top - text_height - 6), (left + text_width + 6, top), ACCENT[::-1], cv2.FILLED)
     cv2.putText(image, text, (left + 3, top - 4), cv2.FONT_HERSHEY_SIMPLEX, scale, INK[::-1], 1, cv2.LINE_AA)

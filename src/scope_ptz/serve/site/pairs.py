@@ -26,9 +26,9 @@ HealthState = Literal["built_in", "ready", "unreachable", "not_configured"]
 
 @dataclass(frozen=True, slots=True)
 class Models:
-    """The planner and the perception backend of a pair, ready for use with one camera.
+    """A pair's planner and perception backend, ready for use with one camera.
 
-    ``note`` is a sentence that runs record about the built-in perception; it is empty for a vision model.
+    ``note`` is a sentence about the built-in perception that runs record; it is empty for a vision model.
     """
 
     planner: Planner
@@ -60,7 +60,7 @@ class Pairs:
         self.names = tuple(dict.fromkeys(names)) or (DEFAULT_PAIR,)
 
     def check(self, name: str | None) -> str:
-        """Check that a pair exists, and return its name; for None, return the name of the default pair.
+        """Check that a pair exists, and return its name. For None, return the default pair's name.
 
         Raises:
             UnknownNameError: There is no such pair.
@@ -72,9 +72,9 @@ class Pairs:
         return name
 
     async def open(self, name: str, opened: OpenCamera, seed: int = 0) -> Models:
-        """Create the planner and the perception backend of a pair for a camera.
+        """Create a pair's planner and perception backend for a camera.
 
-        The built-in pair has no perception on a camera without ground truth: tools that need perception fail there.
+        On a camera without ground truth, the built-in pair has no perception, so tools that need perception fail.
 
         Raises:
             InputError: The pair is not configured correctly.
@@ -86,11 +86,11 @@ class Pairs:
         else:
             note = perception_note(pair.perception)
             perception = await to_thread.run_sync(make_perception, pair.perception, opened.scenes, seed)
-        # In a thread, because the first call imports the planner, which would delay live pictures and stop commands.
+        # This runs in a thread, because the first call imports the planner, which would delay live pictures and stop commands.
         return Models(await to_thread.run_sync(make_planner, pair.planner), perception, note)
 
     async def health(self, name: str) -> tuple[Health, Health]:
-        """Return whether the planner and the perception backend of a pair can be used.
+        """Return whether a pair's planner and perception backend can be used.
 
         Raises:
             UnknownNameError: There is no such pair.
@@ -100,8 +100,9 @@ class Pairs:
             pair = await resolve_models(_options(name))
         except ScopeError:
             return Health(planner, "not_configured"), Health(perception or planner, "not_configured")
-        seen = pair.perception.spec.endpoint if pair.perception.spec else None
-        return Health(planner, await _state(pair.planner.endpoint)), Health(perception or planner, await _state(seen))
+        perception_endpoint = pair.perception.spec.endpoint if pair.perception.spec else None
+        planner_health = Health(planner, await _state(pair.planner.endpoint))
+        return planner_health, Health(perception or planner, await _state(perception_endpoint))
 
 
 def _options(name: str) -> ModelOptions:

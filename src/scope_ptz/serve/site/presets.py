@@ -1,4 +1,4 @@
-"""The presets of a camera. Thumbnails and renaming are added here, because cameras support neither."""
+"""A camera's presets, with thumbnails and renaming, which cameras themselves do not support."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ THUMBNAIL_WIDTH = 320  # in pixels
 
 @dataclass(frozen=True, slots=True)
 class KnownPreset:
-    """A preset, where it points (if the camera reports that or has visited it), and whether it has a thumbnail."""
+    """A preset, its position (if the camera reports it or has visited it), and whether it has a thumbnail."""
 
     preset: PresetInfo
     place: Place | None
@@ -38,23 +38,23 @@ class KnownPreset:
 
 
 class Presets:
-    """The presets of one camera.
+    """One camera's presets.
 
-    A thumbnail is taken when a preset is saved or visited, and stored in a folder. Missing thumbnails of a scene's presets are
+    A thumbnail is taken when a preset is saved or visited, and is stored in a folder. Missing thumbnails for a scene's presets are
     rendered.
 
     Args:
         station: The camera.
-        folder: The folder with the thumbnails of all cameras.
+        folder: The folder for the thumbnails of all cameras.
     """
 
     def __init__(self, station: Station, folder: Path) -> None:
         self._station, self._folder = station, folder / station.name
 
     async def all(self) -> list[KnownPreset]:
-        """Return the presets in the camera's order, with their places and whether they have thumbnails."""
+        """Return the presets in the camera's order, with their positions and whether they have thumbnails."""
         camera = await self._station.camera()
-        scene = (await self._station.opened()).scene
+        scene = (await self._station.get_open_camera()).scene
         rendered = set() if scene is None or has_rules(self._station.spec) else {preset.name for preset in scene.file.presets}
         return [
             KnownPreset(
@@ -79,7 +79,7 @@ class Presets:
         return arrival
 
     async def save(self, client: Client, name: str, description: str = "") -> PresetInfo:
-        """Save the current view as a preset. A preset of the same name is replaced.
+        """Save the current view as a preset. An existing preset with the same name is replaced.
 
         Raises:
             RefusedByCameraError: The camera cannot save this preset.
@@ -93,7 +93,7 @@ class Presets:
         return saved
 
     async def rename(self, client: Client, name: str, new_name: str) -> PresetInfo:
-        """Rename a preset. The camera goes to the preset and back, because only the device knows its position.
+        """Rename a preset. The camera goes to the preset and back, because only the device knows the preset's position.
 
         Raises:
             UnknownNameError: There is no such preset.
@@ -150,10 +150,10 @@ class Presets:
         path = self._path(name)
         if path.is_file():
             return await to_thread.run_sync(path.read_bytes)
-        scene = (await self._station.opened()).scene
+        scene = (await self._station.get_open_camera()).scene
         if scene is None or name not in {preset.name for preset in scene.file.presets} or has_rules(self._station.spec):
-            raise UnknownNameError("picture of the preset", name[:60], ())
-        return await self._rendered(scene, name)
+            raise UnknownNameError("preset picture", name[:60], ())
+        return await self._render(scene, name)
 
     async def home_picture(self) -> bytes:
         """Return a small JPEG of a scene's home view, without opening the camera.
@@ -163,14 +163,14 @@ class Presets:
         """
         name = scene_of(self._station.spec)
         if name is None or has_rules(self._station.spec):
-            raise UnknownNameError("picture of the camera", self._station.name, ())
+            raise UnknownNameError("camera picture", self._station.name, ())
         scene = await to_thread.run_sync(partial(open_scene, name, cache_pictures=True))
         path = self._path(scene.file.home_preset)
         if path.is_file():
             return await to_thread.run_sync(path.read_bytes)
-        return await self._rendered(scene, scene.file.home_preset)
+        return await self._render(scene, scene.file.home_preset)
 
-    async def _rendered(self, scene: Scene, name: str) -> bytes:
+    async def _render(self, scene: Scene, name: str) -> bytes:
         renderer = SimulatedCamera(scene, width=2 * THUMBNAIL_WIDTH, height=2 * THUMBNAIL_WIDTH * 9 // 16)
         await renderer.go_to_preset(name)
         return await self._store(name, await renderer.frame())
@@ -205,7 +205,7 @@ class Presets:
 
 
 def _place_in_scene(camera: Camera, name: str) -> Place | None:
-    """Return where a preset of a simulated camera points, in the coordinates of ``camera``; None for other cameras."""
+    """Return a preset's position in the coordinates of ``camera`` if the camera is simulated; None for other cameras."""
     presets = getattr(innermost(camera), "scene_presets", None)
     if presets is None:
         return None
@@ -221,7 +221,7 @@ def _place_in_scene(camera: Camera, name: str) -> Place | None:
 def _translate_refusals() -> Iterator[None]:
     """Raise ``RefusedByCameraError`` if the camera refuses to edit a preset, such as its home position.
 
-    A refusal is a plain ``CameraError``; camera failures raise subclasses, which propagate unchanged.
+    For a refusal, cameras raise ``CameraError`` itself. For failures, they raise subclasses, which propagate unchanged.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""A run in progress, which any number of clients can follow."""
+"""Runs in progress, which any number of clients can follow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Record = Started | Decided | Called | Ended
 
 @dataclass(frozen=True, slots=True)
 class RunEvent:
-    """A record of a run with its number, counted from 0. The records of a stored run have the same numbers."""
+    """A run's record with its number, counted from 0. A stored run's records have the same numbers."""
 
     number: int
     record: Record
@@ -25,15 +25,15 @@ class RunHandle:
     """A run in progress.
 
     Attributes:
-        id: The name of its folder.
+        id: Name of the run folder.
         instruction: The instruction.
-        request: The client that started the run, and its camera and conversation.
+        request: The client that started the run, the camera, and the conversation.
         preview: The commands that a dry run would send, one sentence each.
         records: The records so far.
         scope: The cancel scope in which the run is executed.
         failure: The error that kept the run from starting or finishing; None if there is none.
-        call_error: The error of the last tool call that failed; None if none failed.
-        done: Set when the run has ended and no more records will come.
+        call_error: The error from the last tool call that failed; None if none failed.
+        done: Set when the run has ended and there will be no more records.
     """
 
     def __init__(self, run_id: str, instruction: str, request: RunRequest) -> None:
@@ -52,22 +52,22 @@ class RunHandle:
         self._wake()
 
     def finish(self, failure: Exception | None = None) -> None:
-        """Record that the run has ended, and notify all followers that no more records will come."""
+        """Record that the run has ended, and notify all followers that there will be no more records."""
         self.failure = failure
         self.done.set()
         self._wake()
 
     def cancel(self) -> None:
-        """Cancel the run. It ends with the outcome "cancelled"."""
+        """Cancel the run, which then ends with the outcome "cancelled"."""
         self.scope.cancel()
 
     @property
     def ended(self) -> Ended | None:
-        """The record of the end of the run; None while it is in progress."""
+        """The record of the run's end; None while the run is in progress."""
         last = self.records[-1] if self.records else None
         return last if isinstance(last, Ended) else None
 
-    async def started(self) -> None:
+    async def wait_until_started(self) -> None:
         """Wait for the first record.
 
         Raises:
@@ -79,7 +79,7 @@ class RunHandle:
             raise self.failure
 
     async def events(self, after: int = -1) -> AsyncGenerator[RunEvent]:
-        """Yield the records whose number is above ``after`` as they arrive, until the run ends."""
+        """Yield the records after record number ``after`` as they arrive, until the run ends."""
         number = after + 1
         while True:
             changed, done = self._changed, self.done.is_set()

@@ -1,4 +1,4 @@
-"""Start and execute runs on a camera of the site, whether or not clients follow them."""
+"""Start and execute runs on the site's cameras, whether or not clients follow them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from scope_ptz.tools.registry import TOOLS
 from scope_ptz.tools.results import Result
 
 MAX_FINISHED = 50
-"""Maximum number of ended runs that are kept in memory. Older ones are read from their folders."""
+"""Maximum number of ended runs to keep in memory. Older ones are read from their folders."""
 
 logger = logging.getLogger(__name__)
 
@@ -41,12 +41,12 @@ class RunSpec:
     """The specification of a run.
 
     Attributes:
-        instruction: The instruction, or the text of a tool call.
+        instruction: The instruction, or a tool call as text.
         pair: The name of the pair of models.
-        conversation: The id of its conversation, if any.
+        conversation: The id of the conversation, if any.
         kind: Whether the run is an instruction, a dry run, or a direct tool call.
-        planner: A planner that replaces the pair's planner; None to use the pair's.
-        snapshots: Whether pictures of the camera's view are stored in addition to the frames that perception reads.
+        planner: A planner to use instead of the pair's planner; None to use the pair's planner.
+        snapshots: Whether to store pictures of the camera's view in addition to the frames that perception reads.
     """
 
     instruction: str
@@ -58,7 +58,7 @@ class RunSpec:
 
     @classmethod
     def tool_call(cls, name: str, arguments: dict[str, Any], pair: str) -> RunSpec:
-        """Return the specification of a run that calls one tool."""
+        """Return the specification for a run that calls one tool."""
         text = call_text(name, arguments)[:MAX_INSTRUCTION_CHARS]
         return cls(text, pair, kind="tool", planner=SingleCallPlanner(name, arguments), snapshots=False)
 
@@ -67,8 +67,8 @@ class Runner:
     """Executes runs and keeps their state, so that a run continues if its client disconnects, and the client can reconnect.
 
     Args:
-        journal: The store of the runs.
-        budgets: The limits of a run.
+        journal: Stores the runs.
+        budgets: The limits for a run.
     """
 
     def __init__(self, journal: Journal, budgets: Budgets) -> None:
@@ -77,11 +77,11 @@ class Runner:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def find(self, run_id: str) -> RunHandle | None:
-        """Return a run that is in progress or ended recently; None for others."""
+        """Return a run that is in progress or ended recently; None for other runs."""
         return self._handles.get(run_id)
 
     async def start(self, station: Station, spec: RunSpec, client: Client) -> RunHandle:
-        """Start a run, and return it after its first record.
+        """Start a run, and return its handle after its first record.
 
         Raises:
             NotInControlError: Another client controls the camera.
@@ -99,7 +99,7 @@ class Runner:
         self._tasks.add(work)
         work.add_done_callback(self._tasks.discard)
         try:
-            await handle.started()
+            await handle.wait_until_started()
         except asyncio.CancelledError:
             handle.cancel()  # the client does not know the id yet, so nobody else could cancel the run
             raise
@@ -136,7 +136,7 @@ class Runner:
                 failure = StoppedError(station.name)
             station.running = None
             station.touch()
-            await station.control.run_ended()
+            await station.control.clear_if_released()
             handle.finish(failure)
 
     async def _run(self, station: Station, camera: Camera, spec: RunSpec, folder: RunFolder, handle: RunHandle) -> None:
@@ -145,7 +145,7 @@ class Runner:
             camera = DryRunCamera(camera, handle.preview.append)
         else:
             await station.remember()
-            (await station.opened()).record_instruction(f"{handle.request.actor}: {spec.instruction}")
+            (await station.get_open_camera()).record_instruction(f"{handle.request.actor}: {spec.instruction}")
         conversation: tuple[PastTurn, ...] = ()
         if spec.conversation is not None:
             conversation = await self._journal.turns(spec.conversation)
@@ -160,7 +160,7 @@ class Runner:
             budgets=self._budgets,
             labels=labels,
             snapshots=spec.snapshots,
-            run_tool=_recording_errors(handle),
+            run_tool=_record_errors(handle),
         )
         with TraceWriter(folder.trace) as trace:
 
@@ -175,8 +175,8 @@ class Runner:
             await self._journal.add_turn(spec.conversation, result.past_turn())
 
 
-def _recording_errors(handle: RunHandle) -> RunTool:
-    """Return a function that runs tool calls, and records the error of a call in a run's handle."""
+def _record_errors(handle: RunHandle) -> RunTool:
+    """Return a function that runs tool calls and records a call's error in a run's handle."""
 
     async def run(context: ToolContext, name: str, arguments: Any) -> Result:
         try:

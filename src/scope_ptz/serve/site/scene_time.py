@@ -1,4 +1,4 @@
-"""Scene time of simulated cameras: play, pause, seek and speed."""
+"""Scene time for simulated cameras: play, pause, seek and speed."""
 
 from __future__ import annotations
 
@@ -31,35 +31,35 @@ class SceneTimeChange:
 
 
 def scene_time(camera: Camera) -> SceneTime | None:
-    """Return the scene time of a camera; None for a camera that shows the real world."""
+    """Return a camera's scene time; None for a camera that shows the real world."""
     clock = _clock(camera)
     return None if clock is None else SceneTime(clock.now_s(), clock.playing, clock.speed)
 
 
 async def read_scene_time(station: Station) -> SceneTime:
-    """Return the scene time of a camera, which is opened if necessary.
+    """Return a camera's scene time. The camera is opened if necessary.
 
     Raises:
         NotSimulatedError: The camera shows the real world.
     """
-    clock = await _checked_clock(station)
+    clock = await _require_clock(station)
     return SceneTime(clock.now_s(), clock.playing, clock.speed)
 
 
 async def change_scene_time(station: Station, client: Client, change: SceneTimeChange) -> SceneTime:
-    """Change scene time for all clients of a camera. The camera's motors are not affected.
+    """Change scene time for all of a camera's clients. The camera's motors are not affected.
 
     Raises:
         NotSimulatedError: The camera shows the real world.
         NotInControlError: Another client controls the camera.
-        BusyError: A run is in progress, and it relies on the scene time.
+        BusyError: A run is in progress and relies on the scene time.
         InputError: The time or the speed is out of range. In this case, nothing is changed.
     """
     if change.time_s is not None:
         check_time(change.time_s)
     if change.speed is not None:
         check_speed(change.speed)
-    clock = await _checked_clock(station)
+    clock = await _require_clock(station)
     await station.require_control(client)
     if change.playing is False:
         clock.pause()  # before seeking, so that the clock stops at exactly the requested time
@@ -72,7 +72,7 @@ async def change_scene_time(station: Station, client: Client, change: SceneTimeC
     return SceneTime(clock.now_s(), clock.playing, clock.speed)
 
 
-async def _checked_clock(station: Station) -> SceneClock:
+async def _require_clock(station: Station) -> SceneClock:
     # Check the spec first, so that the server does not connect to a device only to refuse the request.
     clock = _clock(await station.camera()) if has_scene_time(station.spec) else None
     if clock is None:

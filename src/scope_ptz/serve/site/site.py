@@ -1,4 +1,4 @@
-"""The site: the cameras, pairs, runs and conversations that a server offers."""
+"""The site: the cameras, pairs, runs and conversations that a server provides."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from scope_ptz.simulator.pack import list_scenes
 
 @dataclass(frozen=True, slots=True)
 class SiteOptions:
-    """The options of a site.
+    """The options for a site.
 
     Attributes:
         runs_dir: The runs folder.
         cameras: The names of the cameras in ``scope.yaml`` and of the scenes to serve; empty for all.
         pairs: The names of the pairs to offer, the default first; empty for the built-in pair.
-        budgets: The limits of a run.
-        idle: Where cameras return to when nobody uses them; None to leave them where they are.
-        idle_by_camera: Replacements of ``idle`` for individual cameras, by name.
+        budgets: The limits for a run.
+        idle: The preset to which unused cameras return; None to leave them where they are.
+        idle_by_camera: Overrides of ``idle`` for individual cameras, by name.
         lease_s: Seconds without a command after which control of a camera expires.
     """
 
@@ -54,14 +54,14 @@ class SiteOptions:
 
 
 class Site:
-    """The cameras, pairs, runs and evaluations of a server. It is an async context manager, to be entered while the server runs.
+    """A server's cameras, pairs, runs and evaluations. Use it as an async context manager for as long as the server runs.
 
     Args:
-        cameras: The spec of each camera, by the name that requests use.
+        cameras: Camera specs, by the name that requests use.
         options: The options.
 
     Raises:
-        StoreError: The store of runs cannot be opened.
+        StoreError: The run store cannot be opened.
     """
 
     def __init__(self, cameras: dict[str, str], options: SiteOptions) -> None:
@@ -118,7 +118,7 @@ class Site:
 
 
 def site_cameras(names: Sequence[str], settings: ScopeSettings) -> dict[str, str]:
-    """Return the specs of the site's cameras by name: the cameras of ``scope.yaml`` first, then the scenes.
+    """Return the specs of the site's cameras by name: first the cameras in ``scope.yaml``, then the scenes.
 
     Args:
         names: The names to serve; empty for all.
@@ -130,19 +130,19 @@ def site_cameras(names: Sequence[str], settings: ScopeSettings) -> dict[str, str
     """
     named = {name: name for name in named_cameras()}
     known = named | {name: f"sim:{name}" for name in list_scenes(scene_search(settings)) if name not in named}
-    if BLENDER_WINDOW in names:  # it works only with an add-on, so it is not among all cameras
+    if BLENDER_WINDOW in names:  # it works only with an add-on, so an empty list of names does not include it
         known.setdefault(BLENDER_WINDOW, f"{BLENDER_WINDOW}:")
     for name in names:
         if name not in known:
             raise UnknownNameError("camera or scene", name, known)
-    chosen = {name: known[name] for name in names} if names else known
-    if not chosen:
+    selected = {name: known[name] for name in names} if names else known
+    if not selected:
         raise ConfigError("There are no cameras to serve. Add cameras to scope.yaml, or install scenes.")
-    return chosen
+    return selected
 
 
 def idle_returns() -> dict[str, IdleReturn]:
-    """Return the idle behaviour of each camera for which ``scope.yaml`` defines one, by name.
+    """Return the idle behaviour that ``scope.yaml`` defines, by camera name.
 
     Raises:
         ConfigError: ``scope.yaml`` is invalid.

@@ -1,4 +1,4 @@
-"""Start instructions and tool calls, in the same way for every interface of the server."""
+"""Start instructions and tool calls, in the same way for all of the server's interfaces."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ async def start_instruction(
     pair: str | None = None,
     dry_run: bool = False,
 ) -> RunHandle:
-    """Start an instruction, and return its run after its first record.
+    """Start an instruction, and return the run's handle after its first record.
 
     Args:
         site: The site.
         client: The client that gives the instruction.
         camera: The name of the camera.
         instruction: The instruction in plain language.
-        conversation: The id of the conversation that it continues; None for none.
+        conversation: The id of the conversation that the instruction continues; None for none.
         pair: The pair of models; None for the conversation's pair, or else the site's default.
-        dry_run: Whether moves are only reported and not carried out.
+        dry_run: Whether to report moves without carrying them out.
 
     Raises:
         UnknownNameError: The camera, the conversation or the pair does not exist.
@@ -43,16 +43,16 @@ async def start_instruction(
         BusyError: A run is in progress on the camera.
         ScopeError: The run failed before its first step.
     """
-    station, chosen = site.station(camera), pair
+    station, selected_pair = site.station(camera), pair
     if conversation is not None:
         stored = await site.journal.in_thread(
             partial(load_conversation, site.journal.store.database, conversation, owner=client.name)
         )
         if stored.camera != station.name:
             raise InputError(f"This conversation is about {stored.camera}, not about {station.name}. Start another conversation.")
-        chosen = chosen or stored.pair
+        selected_pair = selected_pair or stored.pair
     # If a conversation's pair is no longer configured, the default pair is used instead.
-    name = site.pairs.check(chosen if chosen in site.pairs.names or pair is not None else None)
+    name = site.pairs.check(selected_pair if selected_pair in site.pairs.names or pair is not None else None)
     spec = RunSpec(instruction, name, conversation, "dry_run" if dry_run else "instruction")
     return await site.runner.start(station, spec, client)
 
@@ -60,14 +60,14 @@ async def start_instruction(
 async def start_tool_call(
     site: Site, client: Client, station: Station, tool: str, arguments: dict[str, Any], pair: str | None = None
 ) -> RunHandle:
-    """Start a call of one tool, and return its run after its first record.
+    """Start a tool call, and return the run's handle after its first record.
 
     Args:
         site: The site.
         client: The client that calls the tool.
         station: The camera.
-        tool: The name of the tool.
-        arguments: The arguments of the call.
+        tool: The tool's name.
+        arguments: The call's arguments.
         pair: The pair of models; None for the site's default.
 
     Raises:
@@ -80,7 +80,7 @@ async def start_tool_call(
 
 
 def finished_call(handle: RunHandle) -> Called:
-    """Return the record of the call of an ended run that ``start_tool_call`` started.
+    """Return the record of the call in an ended run that ``start_tool_call`` started.
 
     Raises:
         ScopeError: The run failed, or it was cancelled before the call ended.

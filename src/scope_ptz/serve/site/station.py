@@ -1,4 +1,4 @@
-"""One camera of the site. It is opened on first use and shared by all clients."""
+"""One of the site's cameras. It is opened on first use and shared by all clients."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from scope_ptz.serve.site.run_handle import RunHandle
 from scope_ptz.simulator.prefetch import Prefetches
 
 MAX_UNDO = 50
-"""Maximum number of earlier positions to which ``undo`` can return, one after the other."""
+"""Maximum number of earlier positions to which ``undo`` can return, one after another."""
 
 PREFETCH_TIMEOUT_S = 20.0
-"""Maximum time in seconds for which ``close`` waits for a picture that is still being read in the background."""
+"""Maximum time, in seconds, for which ``close`` waits for a picture that is still being read in the background."""
 
 DRIVE_GROUP_S = 2.0
-"""``undo`` treats drive commands that follow each other within this many seconds as one."""
+"""``undo`` treats consecutive drive commands as one if they are at most this many seconds apart."""
 
 logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class IdleReturn:
-    """The preset to which a camera returns when nobody has used it for ``after_s`` seconds. An empty name means home."""
+    """The preset to which a camera returns after it has been unused for ``after_s`` seconds. An empty name means home."""
 
     after_s: float
     preset: str = ""
@@ -50,21 +50,21 @@ class IdleReturn:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A position of a camera: its pose, and its viewpoint if it is simulated."""
+    """A camera's position: its pose, and its viewpoint if it is simulated."""
 
     pose: Pose
     viewpoint: str | None
 
 
 class Station:
-    """One camera of the site, with its control, models and undo history.
+    """One of the site's cameras, with its control, models and undo history.
 
     Args:
         name: The name that requests use.
         spec: The camera's spec. It must not come from a request, because a spec can name any device.
         pairs: The pairs of models.
-        actor: The name under which the server appears in the camera's audit log, and to other programs that use the device.
-        idle: Where the camera returns to when nobody uses it; None to leave it where it is.
+        actor: The server's name in the camera's audit log, and for other programs that use the device.
+        idle: The preset to which the camera returns when it is unused; None to leave it where it is.
         lease_s: Seconds without a command after which control expires.
     """
 
@@ -79,21 +79,21 @@ class Station:
         self._models: dict[str, Models] = {}
         self._places: deque[Place] = deque(maxlen=MAX_UNDO)
         self.problem: ScopeError | None = None
-        """The error of the last attempt to open the camera; None if the attempt succeeded."""
+        """The error from the last attempt to open the camera; None if that attempt succeeded."""
         self.visited: dict[str, Place] = {}
-        """Where each preset that was visited points, by preset name. Not all cameras report the poses of their presets."""
+        """The position of each visited preset, by preset name. Not all cameras report their presets' poses."""
         self._driven_s = -DRIVE_GROUP_S
         self._commanded_s = monotonic()
         self._returned = True
         self.running: RunHandle | None = None
         self.add_on = AddOnSlot()
-        """The connection of the add-on in a Blender. Only a camera of the kind ``blender-window`` uses it."""
+        """The connection to the Blender add-on. Only a camera of the kind ``blender-window`` uses it."""
         self.control = CameraControl(name, lambda: self.running is not None, lease_s=lease_s)
         self.live = LivePicture(name, self.camera)
         self.preset_changes = 0
-        """Number of preset changes so far. Watchers compare it to notice changes."""
+        """Number of preset changes so far, which watchers compare to notice changes."""
 
-    async def opened(self) -> OpenCamera:
+    async def get_open_camera(self) -> OpenCamera:
         """Return the open camera. The first call opens it.
 
         Raises:
@@ -112,8 +112,8 @@ class Station:
             return self._opened
 
     async def camera(self) -> Camera:
-        """Return the open camera. Raises the same errors as ``opened``."""
-        return (await self.opened()).camera
+        """Return the open camera. Raises the same errors as ``get_open_camera``."""
+        return (await self.get_open_camera()).camera
 
     @property
     def is_open(self) -> bool:
@@ -126,13 +126,13 @@ class Station:
         return self._opened
 
     async def models(self, pair: str) -> Models:
-        """Return the planner and the perception backend of a pair for this camera. The first call for a pair creates them."""
+        """Return a pair's planner and perception backend for this camera. The first call for a pair creates them."""
         if pair not in self._models:
-            self._models[pair] = await self._pairs.open(pair, await self.opened())
+            self._models[pair] = await self._pairs.open(pair, await self.get_open_camera())
         return self._models[pair]
 
     async def require_control(self, client: Client) -> Camera:
-        """Return the camera for a command of a client, which gets control if nobody has it.
+        """Return the camera for a client's command. If nobody has control, the client gets it.
 
         Raises:
             NotInControlError: Another client controls the camera.
@@ -147,7 +147,7 @@ class Station:
 
     @asynccontextmanager
     async def command(self, client: Client) -> AsyncIterator[Camera]:
-        """Return a context in which a client moves the camera. A later ``undo`` returns to the position before it.
+        """Return a context in which a client moves the camera. A later ``undo`` returns to the position before the context.
 
         Raises:
             NotInControlError: Another client controls the camera.
@@ -219,7 +219,7 @@ class Station:
         return bool(self._places)
 
     async def watch_idle(self) -> None:
-        """Until cancelled, return the camera to its idle preset each time nobody has used it for long enough."""
+        """Return the camera to its idle preset whenever it has been unused for long enough, until cancelled."""
         idle = self._idle
         while idle is not None:
             await anyio.sleep(min(1.0, idle.after_s / 2))
@@ -239,7 +239,7 @@ class Station:
 
     async def close(self) -> None:
         """Stop and close the camera, and close the connections to models."""
-        self.add_on.end()  # first, so that nothing waits for a Blender that has not read its requests
+        self.add_on.end()  # first, so that nothing waits for a Blender instance that does not read its requests
         opened, self._opened = self._opened, None
         for models in self._models.values():
             await models.close()
@@ -254,11 +254,11 @@ class Station:
             await to_thread.run_sync(self._prefetches.wait, PREFETCH_TIMEOUT_S)
 
     async def viewpoint(self) -> str | None:
-        """Return the viewpoint of a simulated camera; None for others."""
+        """Return a simulated camera's viewpoint; None for other cameras."""
         return getattr(innermost(await self.camera()), "viewpoint", None)
 
     async def place(self) -> Place:
-        """Return the current position of the camera."""
+        """Return the camera's current position."""
         return Place(await (await self.camera()).pose(), await self.viewpoint())
 
     def _preset_at(self, viewpoint: str) -> str:

@@ -12,11 +12,11 @@ from scope_ptz.serve.site.site import Site
 
 
 async def trace_of_run(site: Site, run_id: str) -> Trace:
-    """Return the trace of a run.
+    """Return a run's trace.
 
     Raises:
         UnknownNameError: There is no such run.
-        TraceError: Its trace is damaged.
+        TraceError: The run's trace is damaged.
     """
     folder = site.journal.store.folder(run_id)
     if not await site.journal.in_thread((folder / "trace.jsonl").is_file):
@@ -25,7 +25,7 @@ async def trace_of_run(site: Site, run_id: str) -> Trace:
 
 
 def records_of(trace: Trace) -> list[Record]:
-    """Return the records of a trace in the order in which they were written: the calls of a step follow its decision."""
+    """Return a trace's records in the order in which they were written: a step's calls follow its decision."""
     records: list[Record] = [trace.started]
     for decision in trace.decisions:
         records.append(decision)
@@ -34,16 +34,16 @@ def records_of(trace: Trace) -> list[Record]:
 
 
 async def stored_picture(site: Site, run_id: str, name: str, *, marks: bool = False) -> bytes:
-    """Return an encoded picture of a run, as it was stored or, with ``marks``, as a JPEG with numbered boxes.
+    """Return an encoded picture from a run, as it was stored or, with ``marks``, as a JPEG with numbered boxes.
 
     Args:
         site: The site.
-        run_id: The id of the run.
-        name: The name of the picture in the run folder, such as ``frames/001-view.jpg``.
+        run_id: The run's id.
+        name: The picture's name in the run folder, such as ``frames/001-view.jpg``.
         marks: Whether to draw the detections on the picture.
 
     Raises:
-        UnknownNameError: There is no such run, or its trace names no such picture.
+        UnknownNameError: There is no such run, or its trace does not name such a picture.
         TraceError: The trace is damaged, or the file is missing.
     """
     trace = await trace_of_run(site, run_id)
@@ -54,7 +54,7 @@ async def stored_picture(site: Site, run_id: str, name: str, *, marks: bool = Fa
         try:
             data = picture_path(trace.folder, name).read_bytes()
         except OSError as error:
-            raise TraceError(f"The file of the picture {name} of this run is missing.") from error
+            raise TraceError(f"The picture file {name} is missing from this run.") from error
         return draw_marks(data, marks_of(call_for_picture(trace, name), name)) if marks else data
 
     return await site.journal.in_thread(read)

@@ -1,4 +1,4 @@
-"""Tool calls that a client makes directly, without a model as planner. Each is recorded as a run with one step."""
+"""Tool calls that a client makes directly, without a planner model. Each is recorded as a run with one step."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class SingleCallPlanner(Planner):
     """A planner that makes one tool call and answers with its result.
 
     Args:
-        name: The name of the tool.
-        arguments: The arguments of the tool.
+        name: The tool's name.
+        arguments: The tool's arguments.
     """
 
     name = DIRECT_CALL_PLANNER

@@ -19,23 +19,23 @@ from scope_ptz.virtual_camera.accounts import Account
 from scope_ptz.virtual_camera.device import VirtualDevice
 
 HOST = "127.0.0.1"
-"""The address that virtual cameras listen on. Only this machine can reach them, whatever address the server itself listens on."""
+"""The address that virtual cameras listen on. Only this machine can reach them, regardless of the server's own address."""
 
 ACCOUNT = "root"
-"""The account name of virtual cameras. A new password is generated each time a camera is turned on."""
+"""The account name on virtual cameras. A new password is generated each time a camera is turned on."""
 
 MAX_ON = 4
-"""Maximum number of virtual cameras that are on at a time. Each one keeps the pictures of a scene in memory."""
+"""Maximum number of virtual cameras that can be on at a time. Each one keeps a scene's pictures in memory."""
 
 START_TIMEOUT_S = 60.0
-"""Maximum time in seconds that a virtual camera may take to start."""
+"""Maximum time, in seconds, that a virtual camera may take to start."""
 
 logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class VirtualCamera:
-    """A virtual camera that is on: its viewpoint in the scene, its addresses, and its account name."""
+    """A virtual camera that is on, with its viewpoint in the scene, its addresses and its account name."""
 
     viewpoint: str
     vapix_url: str
@@ -60,32 +60,32 @@ class _Running:
 
 
 class VirtualCameras:
-    """The virtual cameras of a server, at most one for each camera of the site."""
+    """A server's virtual cameras, at most one for each of the site's cameras."""
 
     def __init__(self) -> None:
         self._running: dict[str, _Running] = {}
         self._changing = asyncio.Lock()
 
     def find(self, name: str) -> VirtualCamera | None:
-        """Return the virtual camera of a site's camera, by the camera's name; None if it is off."""
+        """Return the virtual camera for the site's camera with this name; None if the virtual camera is off."""
         running = self._running.get(name)
         return None if running is None else running.camera
 
     async def turn_on(self, station: Station, viewpoint: str | None = None) -> tuple[VirtualCamera, str]:
-        """Serve the scene of a camera as a network camera, on ports that the system chooses.
+        """Serve a camera's scene as a network camera, on ports that the operating system chooses.
 
         Args:
             station: The camera whose scene is shown. Its own pose and scene time are not affected.
-            viewpoint: A viewpoint of the scene; None for the viewpoint of the home preset.
+            viewpoint: One of the scene's viewpoints; None for that of the home preset.
 
         Returns:
-            The virtual camera and the password of its account, which is not stored.
+            The virtual camera and its account's password, which is not stored.
 
         Raises:
             NotSimulatedError: The camera shows no stored scene.
             RefusedByCameraError: The camera has rules, which a virtual camera would not follow.
-            InputError: It is already on, too many are on, the viewpoint does not exist, or a package is missing.
-            CameraError: It did not start in time.
+            InputError: The virtual camera is already on, too many are on, the viewpoint does not exist, or a package is missing.
+            CameraError: The virtual camera did not start in time.
         """
         scene = scene_of(station.spec)
         if scene is None:
@@ -122,7 +122,7 @@ class VirtualCameras:
                 raise
 
     async def turn_off(self, name: str) -> None:
-        """Stop the virtual camera of a site's camera, which disconnects its clients. If it is off, the call has no effect."""
+        """Turn off the virtual camera for the site's camera with this name, if it is on. Its clients are disconnected."""
         async with self._changing:
             running = self._running.get(name)
             if running is not None and running.task is not None:

@@ -1,1 +1,1 @@
-"""Maps from the pixels of a view to the stored pictures."""
+"""Maps from a view's pixels to the stored pictures."""

@@ -22,14 +22,14 @@ TILE_GAIN = 1.1
 """Views with more than this many times the panorama's pixel density use tiles."""
 
 OVERSAMPLING = 1.2
-"""Minimum density of the source relative to the view. Bilinear look-up keeps the sharpness of a rendered view when the source is
-1.2 to 1.7 times as dense as the view; a sparser source blurs and a denser one shimmers."""
+"""Minimum density of the source relative to the view. With bilinear look-up, a source that is 1.2 to 1.7 times as dense as the view
+gives the sharpness of a rendered view; a less dense source blurs, and a denser one shimmers."""
 
 Map = NDArray[np.float32]
 
 
 def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, part: Place | None = None) -> Map:
-    """Return the (H, W, 2) position (x, y) of each pixel of a view on the sheet of an atlas, and fill the slots that the map needs.
+    """Return each view pixel's position (x, y) on an atlas's sheet, as (H, W, 2), and fill the slots that the map needs.
 
     Args:
         tiles: Geometry of the viewpoint's tiles.
@@ -48,17 +48,17 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
     if rest is None:
         positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
     else:
-        # The whole part is computed, even if tiles cover some of it, because copying the rest would take longer and more memory.
+        # The whole part is computed, even if tiles cover some of it, because copying the rest would take more time and memory.
         slot = atlas.ensure(0, suitable_scale(atlas, panorama_density(atlas), projection.pixels_per_radian))
         positions = panorama_map(band, slot, Grid(projection, step).inner(part), part)
     slots = [
         atlas.ensure(1 + index, suitable_scale(atlas, tiles.views[index].focal_px, projection.pixels_per_radian))
-        for index in (tile.showing.tile for tile in visible)
+        for index in (tile.in_view.tile for tile in visible)
     ]
     # Start with the least sharp tile, over which the sharper ones are drawn. Only one map is in memory at a time.
     visible, slots = visible[::-1], slots[::-1]
     for tile, slot, where in zip(visible, slots, tile_maps(tiles, projection, step, visible, slots), strict=True):
-        target = _within(positions, part, tile.place)
+        target = _crop(positions, part, tile.place)
         if tile.whole:
             target[...] = where
         else:
@@ -67,16 +67,16 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
 
 
 def panorama_density(atlas: Atlas) -> float:
-    """Return the pixels per radian of the panorama at full size."""
+    """Return the panorama's pixels per radian at full size."""
     return atlas.slots[0][0].width / (2 * math.pi)
 
 
 def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
-    """Return the index of the scale at which to sample a picture for a view of density ``needed``.
+    """Return the index of the scale at which to sample a picture for a view with the density ``needed``.
 
-    ``density`` is the density of the picture at full size. Both are in pixels per radian.
+    ``density`` is the picture's density at full size. Both are in pixels per radian.
 
-    The result is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if none is.
+    This is the coarsest scale that is at least ``OVERSAMPLING`` times as dense as the view, or the first scale if there is none.
     """
     if len(atlas.scales) == 1:
         return 0
@@ -85,15 +85,15 @@ def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
 
 
 def _mask(tile: VisibleTile, slot: Slot, where: Map) -> NDArray[np.uint8]:
-    """Return a mask of the pixels that a tile covers in the rows and columns in which it may be visible."""
-    inside = tile.showing.mask()
+    """Return a mask of the pixels that a tile covers, within the rows and columns in which it may be visible."""
+    inside = tile.in_view.mask()
     if inside is not None:
-        return _within(inside, tile.showing.place, tile.place)
+        return _crop(inside, tile.in_view.place, tile.place)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
     return np.asarray(cv2.inRange(where, low, high), dtype=np.uint8)
 
 
-def _within(whole: NDArray[np.generic], place: Place, part: Place) -> NDArray:  # type: ignore[type-arg]
+def _crop(whole: NDArray[np.generic], place: Place, part: Place) -> NDArray:  # type: ignore[type-arg]
     """Return the part of an array that shows the rows and columns ``part`` of a picture.
 
     The array itself shows the rows and columns ``place`` of the picture.

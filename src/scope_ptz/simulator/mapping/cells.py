@@ -13,37 +13,37 @@ from scope_ptz.simulator.mapping.tiles import Place, TileInView
 CELL_PX = 32  # side of a cell in pixels
 
 MARGIN_PX = 1.5
-"""A cell counts as inside or outside a tile only with this margin in pixels: OpenCV rounds outlines when it fills them."""
+"""A cell counts as inside or outside a tile only by this margin in pixels, because OpenCV rounds outlines when it fills them."""
 
 Bools = NDArray[np.bool_]
 
 
 class VisibleTile(NamedTuple):
-    """A tile in a view, and the rows and columns in which it may be visible.
+    """A tile that may be partly visible in a view, and the rows and columns of the part that may be visible.
 
     ``whole`` is true if the tile covers every pixel of these rows and columns.
     """
 
-    showing: TileInView
+    in_view: TileInView
     place: Place
     whole: bool
 
 
-def visible_tiles(showings: Sequence[TileInView], part: Place) -> tuple[list[VisibleTile], Place | None]:
+def visible_tiles(tiles_in_view: Sequence[TileInView], part: Place) -> tuple[list[VisibleTile], Place | None]:
     """Return the tiles that may be visible in a part of a view, and where the panorama may be visible.
 
     Args:
-        showings: Tiles that may be visible, sharpest first. Each tile hides those after it.
+        tiles_in_view: Tiles that may be visible, sharpest first. Each tile hides those after it.
         part: The rows and columns of the view that are needed.
 
     Returns:
         The visible tiles in the same order, and the smallest rectangle around all cells that no tile covers; None if there are no
         such cells.
     """
-    near = [showing for showing in showings if overlap(showing.place, part) is not None]
+    near = [tile_in_view for tile_in_view in tiles_in_view if overlap(tile_in_view.place, part) is not None]
     if not near:
         return [], part
-    touched, full = _touched_and_full(near, part)
+    touched, full = _cell_masks(near, part)
     covered = np.asarray(np.logical_or.accumulate(full, axis=0))
     needed: Bools = np.concatenate([touched, ~covered[-1:]])  # the last element is the panorama
     needed[1:-1] &= ~covered[:-1]
@@ -70,10 +70,10 @@ def overlap(one: Place, two: Place) -> Place | None:
     return (slice(top, bottom), slice(left, right)) if top < bottom and left < right else None
 
 
-def _touched_and_full(showings: Sequence[TileInView], part: Place) -> tuple[Bools, Bools]:
-    """Return two (tiles, rows, columns) masks of the cells in a part: cells that a tile may touch, and cells that it covers."""
-    # The distance of a pixel (x, y) from an edge is a * x + b * y + c, so its extremes over a cell are those of a * x and b * y.
-    edges = np.array([showing.edges for showing in showings], np.float32)[..., None]
+def _cell_masks(tiles_in_view: Sequence[TileInView], part: Place) -> tuple[Bools, Bools]:
+    """Return two (tiles, rows, columns) masks of the cells in a part: the cells that a tile may touch, and those that it covers."""
+    # The distance from an edge to a pixel (x, y) is a * x + b * y + c, so its extremes over a cell are those of a * x and b * y.
+    edges = np.array([tile_in_view.edges for tile_in_view in tiles_in_view], np.float32)[..., None]
     extremes = []
     for axis, span in ((1, part[0]), (0, part[1])):
         first = np.arange(span.start, span.stop, CELL_PX, dtype=np.float32)
@@ -84,14 +84,14 @@ def _touched_and_full(showings: Sequence[TileInView], part: Place) -> tuple[Bool
     offset = edges[:, :, 2]
     touched = ((high_y + offset)[..., None] + high_x[:, :, None]).min(axis=1) >= -MARGIN_PX
     full = ((low_y + offset)[..., None] + low_x[:, :, None]).min(axis=1) >= MARGIN_PX
-    for k, showing in enumerate(showings):
-        if showing.polygon is None:
+    for k, tile_in_view in enumerate(tiles_in_view):
+        if tile_in_view.polygon is None:
             full[k] = False
     return touched, full
 
 
 def _pixels(part: Place, cell_rows: tuple[int, int], cell_columns: tuple[int, int]) -> Place:
-    """Return the pixel rows and columns of a rectangle of cells in a part."""
+    """Return the pixel rows and columns that a rectangle of cells covers in a part."""
     rows, columns = (
         slice(span.start + int(first) * CELL_PX, min(span.stop, span.start + int(end) * CELL_PX))
         for span, (first, end) in zip(part, (cell_rows, cell_columns), strict=True)

@@ -15,7 +15,7 @@ from scope_ptz.geometry import Equirectangular, Projection, pan_tilt_deg
 from scope_ptz.simulator.mapping.tiles import Place
 
 MAX_MAP_ERROR_PX = 0.04
-"""Maximum permitted error of an interpolated map, in pixels of the view."""
+"""Maximum permitted error of an interpolated map, in view pixels."""
 
 MAX_STEP_PX = 32  # maximum distance between grid nodes
 
@@ -58,7 +58,7 @@ class Grid:
         return self.projection.directions(points)
 
     def inner(self, part: Place) -> Grid:
-        """Return a grid with only the nodes that a part of the image needs. Interpolated values are identical."""
+        """Return a grid with only the nodes that a part of the image requires. Interpolated values stay the same."""
         top, left = ((requested.start - whole.start) // self.step for whole, requested in zip(self.place, part, strict=True))
         rows, columns = self.place
         place = (
@@ -74,8 +74,8 @@ class Grid:
 
         Args:
             nodes: (rows, columns) or (rows, columns, n) values at all nodes.
-            part: The rows and columns of the image that are needed; the default is all that the grid covers. The result
-                equals that part of the whole.
+            part: The rows and columns of the image that are needed; by default, all that the grid covers. The result equals
+                that part of the whole.
         """
         n, (rows, columns) = self.step, part or self.place
         top, left = rows.start - self.place[0].start, columns.start - self.place[1].start
@@ -91,7 +91,7 @@ class Grid:
 def step_px(projection: Projection) -> int:
     """Return the distance between grid nodes in pixels.
 
-    It is the largest power of two for which the interpolation error, ``step ** 2 / 8 * curvature``, is within
+    This is the largest power of two for which the interpolation error, ``step ** 2 / 8 * curvature``, is within
     ``MAX_MAP_ERROR_PX``.
     """
     return _step_px(cast(Hashable, projection))

@@ -15,7 +15,7 @@ from scope_ptz.simulator.sheets.layout import Slot
 
 
 def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) -> NDArray[np.float32]:
-    """Return the (H, W, 2) position (x, y) on the sheet of each pixel of a view.
+    """Return each view pixel's position (x, y) on the sheet, as (H, W, 2).
 
     Args:
         band: The band of the sphere that the panorama covers.
@@ -40,7 +40,7 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
 
 
 def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
-    """Return the pan of the image's centre and, for each node, its pan relative to the centre and its tilt, all in degrees."""
+    """Return the pan of the image's centre and, for each node, its pan relative to the centre and its tilt, in degrees."""
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         fall = projection.bottom_tilt_deg - projection.top_tilt_deg

@@ -1,4 +1,4 @@
-"""Maps from a view to tiles. The nodes of all tiles are computed together, because many small NumPy calls would be slower."""
+"""Maps from a view to tiles. The nodes for all tiles are computed together, because many small NumPy calls would be slower."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Map = NDArray[np.float32]
 def tile_maps(
     tiles: Tiles, projection: Projection, step: int, visible: Sequence[VisibleTile], slots: Sequence[Slot]
 ) -> Iterator[Map]:
-    """Yield a map for each visible tile: an (h, w, 2) array of the positions (x, y) on the sheet of the pixels in its ``place``.
+    """Yield a map for each visible tile: an (h, w, 2) array with the position (x, y) on the sheet of each pixel in its ``place``.
 
-    The values are equal to those of a ``Grid`` over the whole ``place`` of the ``TileInView``.
+    The values are equal to those from a ``Grid`` over the whole ``place`` of the ``TileInView``.
 
     Args:
         tiles: Geometry of the viewpoint's tiles.
@@ -31,7 +31,7 @@ def tile_maps(
         visible: The tiles and their places.
         slots: The tiles' slots on the sheet.
     """
-    if any(tile.showing.turn is None for tile in visible):
+    if any(tile.in_view.turn is None for tile in visible):
         yield from (_panoramic_map(tiles, projection, step, *pair) for pair in zip(visible, slots, strict=True))
         return
     grids = [_Nodes(tile, step) for tile in visible]
@@ -41,12 +41,12 @@ def tile_maps(
 
 
 class _Nodes:
-    """The grid nodes of a visible tile, and the offsets and size of the part of the interpolated map that is used."""
+    """A visible tile's grid nodes, and the offsets and size of the part of the interpolated map that is used."""
 
     __slots__ = ("columns", "height", "left", "rows", "skipped_columns", "skipped_rows", "top", "width")
 
     def __init__(self, tile: VisibleTile, step: int) -> None:
-        (whole_rows, whole_columns), (rows, columns) = tile.showing.place, tile.place
+        (whole_rows, whole_columns), (rows, columns) = tile.in_view.place, tile.place
         self.height, self.width = rows.stop - rows.start, columns.stop - columns.start
         first_row, skipped_rows = divmod(rows.start - whole_rows.start, step)
         first_column, skipped_columns = divmod(columns.start - whole_columns.start, step)
@@ -65,14 +65,14 @@ def _positions(
     slots: Sequence[Slot],
     grids: Sequence[_Nodes],
 ) -> list[Map]:
-    """Return a (rows, columns, 2) array for each tile: the positions on the sheet at its nodes."""
+    """Return a (rows, columns, 2) array for each tile: its nodes' positions on the sheet."""
     if not visible:
         return []
     counts = [grid.rows * grid.columns for grid in grids]
     ends = np.cumsum(counts)
     # One row for each parameter and one column for each tile. The columns are then repeated for each node.
-    turns = np.stack([tile.showing.turn for tile in visible if tile.showing.turn is not None])
-    views = [tiles.views[tile.showing.tile] for tile in visible]
+    turns = np.stack([tile.in_view.turn for tile in visible if tile.in_view.turn is not None])
+    views = [tiles.views[tile.in_view.tile] for tile in visible]
     parameters = np.array(
         [
             [g.left - projection.width / 2 for g in grids],
@@ -109,6 +109,6 @@ def _positions(
 
 
 def _panoramic_map(tiles: Tiles, projection: Projection, step: int, tile: VisibleTile, slot: Slot) -> Map:
-    grid = Grid(projection, step, tile.showing.place).inner(tile.place)
-    nodes = tiles.points(tile.showing, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+    grid = Grid(projection, step, tile.in_view.place).inner(tile.place)
+    nodes = tiles.points(tile.in_view, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
     return grid.to_pixels(nodes, tile.place)

@@ -1,4 +1,4 @@
-"""Geometry of a viewpoint's tiles: which tiles are visible in a view, in which parts, and how pixels map between them."""
+"""Geometry of a viewpoint's tiles: which tiles are visible in which parts of a view, and how pixels map between view and tile."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Place = tuple[slice, slice]
 
 BEHIND = 1e-6  # points with at most this depth along the optical axis count as behind the camera
 BEHIND_POSITION = -1e3  # normalised coordinates of points behind a camera, far outside its image
-_FAR_PX = 1e5  # tiles with a corner farther away than this get no polygon
-_INSET_PX = 1.5  # distance of a polygon from the edges of its tile
+_FAR_PX = 1e5  # tiles with a corner farther away than this have no polygon
+_INSET_PX = 1.5  # distance between a polygon and its tile's edges
 POLYGON_SHIFT = 8
 """Number of fractional bits of polygon coordinates, as passed to OpenCV."""
-_SIDE_POINTS = 8  # points of an outline on each side of an image
+_SIDE_POINTS = 8  # outline points on each side of an image
 
 MAX_CACHED_RESULTS = 4  # enough for a view and its half-size version, for two cameras
 
@@ -43,7 +43,7 @@ class TileInView(NamedTuple):
     edges: Floats
 
     def mask(self) -> NDArray[np.uint8] | None:
-        """Return an (H, W) mask of the part that is 255 inside the polygon, or None without a polygon."""
+        """Return an (H, W) mask of the part, 255 inside the polygon; None if there is no polygon."""
         if self.polygon is None:
             return None
         rows, columns = self.place
@@ -79,8 +79,8 @@ class Tiles:
     def _find(self, projection: Projection) -> list[TileInView]:
         if not self.views:
             return []
-        apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
-        near = self._order[(apart <= self._reach_deg + projection.max_off_axis_deg)[self._order]]
+        separation_deg = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
+        near = self._order[(separation_deg <= self._reach_deg + projection.max_off_axis_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
         places = bounds(projection, outlines)
@@ -88,26 +88,26 @@ class Tiles:
         polygons: list[NDArray[np.int32] | None]
         if isinstance(projection, Perspective):
             turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
-            polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
+            polygons = _shrink_polygons(outlines[:, ::_SIDE_POINTS] * size)
         else:
             turns, polygons = [None] * len(near), [None] * len(near)
         edges = _edges(polygons, places)
         shown = [TileInView(*fields) for fields in zip(near.tolist(), places, turns, polygons, edges, strict=True)]
-        return [showing for showing in shown if showing.place[0].start < showing.place[0].stop]
+        return [tile_in_view for tile_in_view in shown if tile_in_view.place[0].start < tile_in_view.place[0].stop]
 
-    def points(self, showing: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
-        """Return the tile's normalised points (rows, columns, 2) under columns ``x`` and rows ``y`` (pixels) of an image.
+    def points(self, tile_in_view: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
+        """Return the tile's normalised points, as (rows, columns, 2), at columns ``x`` and rows ``y`` (pixels) of an image.
 
         Points behind the tile's camera get coordinates far outside the tile.
         """
-        tile = self.views[showing.tile]
-        if showing.turn is not None:
+        tile = self.views[tile_in_view.tile]
+        if tile_in_view.turn is not None:
             right, up = x - projection.width / 2, projection.height / 2 - y
-            constant = showing.turn[:, 1, None] * up + showing.turn[:, 2, None] * projection.pixels_per_radian
-            local = showing.turn[:, 0, None, None] * right + constant[..., None]
+            constant = tile_in_view.turn[:, 1, None] * up + tile_in_view.turn[:, 2, None] * projection.pixels_per_radian
+            local = tile_in_view.turn[:, 0, None, None] * right + constant[..., None]
         else:
             points = np.stack(np.meshgrid(x / projection.width, y / projection.height), axis=-1)
-            local = np.moveaxis(projection.directions(points) @ self._axes[showing.tile].T, -1, 0)
+            local = np.moveaxis(projection.directions(points) @ self._axes[tile_in_view.tile].T, -1, 0)
         scale = tile.focal_px / np.maximum(local[2], BEHIND)
         normalised = np.empty((*local.shape[1:], 2))
         normalised[..., 0] = local[0] * (scale / tile.width) + 0.5
@@ -117,7 +117,7 @@ class Tiles:
         return normalised
 
 
-def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
+def _shrink_polygons(corners: Floats) -> list[NDArray[np.int32] | None]:
     """Shrink quadrilaterals (n, 4, 2) about their centres, so that they stay inside the tiles after rounding."""
     middle = corners.mean(axis=1, keepdims=True)
     sides, towards = np.roll(corners, -1, axis=1) - corners, middle - corners
@@ -130,7 +130,7 @@ def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
 
 
 def _edges(polygons: Sequence[NDArray[np.int32] | None], places: Sequence[Place]) -> Floats:
-    """Return the (n, 4, 3) half-planes of convex polygons, or of the rectangles of places without a polygon."""
+    """Return the (n, 4, 3) half-planes of convex polygons, or of the rectangles of places that have no polygon."""
     corners = np.array(
         [
             [(x.start, y.start), (x.stop - 1, y.start), (x.stop - 1, y.stop - 1), (x.start, y.stop - 1)]

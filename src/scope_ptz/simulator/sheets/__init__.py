@@ -1,1 +1,1 @@
-"""The sheets that contain a viewpoint's pictures."""
+"""Sheets that contain a viewpoint's pictures."""

@@ -2,7 +2,7 @@
 
 The sheet contains the panorama and every tile, each at the scales that views need. Borders are wrapped or repeated, so that
 bilinear look-ups are seamless. Pictures are read on first use. The sheet may be large, because unused parts take no
-memory. If the memory of tiles is limited, the sheet releases the least recently used tiles.
+memory. If the memory for tiles is limited, the sheet releases the least recently used tiles.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from scope_ptz.simulator.sheets.memory import CAN_RELEASE, ReleasableArray
 from scope_ptz.simulator.sheets.picture_cache import CachedSheet, PictureCache
 
 SHARPENING_SIGMA_PX = 0.7
-SHARPENING_RADIUS_PX = 2  # OpenCV's Gaussian of this sigma has 5 taps for 8-bit pictures
+SHARPENING_RADIUS_PX = 2  # for 8-bit pictures, OpenCV's Gaussian with this sigma has 5 taps
 
 STRIP_PX = 256  # rows that are decoded or sharpened at once, to keep intermediate arrays small
 
 
 class Scale(NamedTuple):
-    """A size of pictures on the sheet, relative to the stored one, and the amount of sharpening."""
+    """A picture size on the sheet, relative to the stored size, and the amount of sharpening."""
 
     size: float
     sharpening: float = 0.0
@@ -36,11 +36,11 @@ class Scale(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SheetCache:
-    """The cache of a sheet on disk.
+    """A sheet's on-disk cache.
 
     Attributes:
         pictures: The cache folder.
-        source: Identifies the content of the sheet, apart from its layout.
+        source: Identifies the sheet's contents, independently of its layout.
         verify: Verifies the file of picture ``i``. Raises ``PackError`` if it is damaged.
     """
 
@@ -49,7 +49,7 @@ class SheetCache:
     verify: Callable[[int], object]
 
     def open(self, slots: Sequence[tuple[Slot, ...]], shape: tuple[int, ...], dtype: type[np.generic]) -> CachedSheet | None:
-        """Return the sheet; None if it cannot be cached."""
+        """Return the cached sheet; None if it cannot be cached."""
         return self.pictures.sheet(self.pictures.name(self.source, slots, shape), shape, dtype)
 
 
@@ -61,13 +61,13 @@ class Atlas:
     Args:
         sizes: Width and height of the panorama and of each tile, at full size.
         load: ``load(atlas, 0)`` reads the panorama and ``load(atlas, 1 + i)`` tile ``i``, at full size.
-        dtype: Type of a pixel's channel.
+        dtype: Data type of a channel.
         channels: Channels per pixel.
-        scales: Scales of every picture on the sheet.
+        scales: Scales at which every picture is stored on the sheet.
         decode: Converts rows of a loaded picture to pixels; by default, they are used unchanged.
         pans_deg: Pan angles of the tiles; see ``lay_out``. Required with ``tile_bytes``.
-        tile_bytes: Limit on the memory of tiles. The panorama always stays in memory.
-        disk_cache: Cache of the sheet on disk. Without it, or with a limit, the sheet is only in memory.
+        tile_bytes: Memory limit for tiles. The panorama always stays in memory.
+        disk_cache: The sheet's on-disk cache. Without it, or with a memory limit, the sheet is only in memory.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class Atlas:
             self._memory = ReleasableArray(shape, dtype)
             self.sheet = self._memory.array
         self._clock = 0
-        self._last_used: dict[int, int] = {}  # keyed by shelf; contains only the shelves of tiles that are in use
+        self._last_used: dict[int, int] = {}  # keyed by shelf; contains only shelves with tiles that are in use
         self._readers: list[int] = []
 
     def _rows(self, width: int, height: int) -> int:  # noqa: ARG002 - for subclasses
@@ -110,19 +110,19 @@ class Atlas:
         return height
 
     @property
-    def unlimited(self) -> bool:
-        """Whether all pictures that were read stay in memory."""
+    def is_unlimited(self) -> bool:
+        """Whether all pictures stay in memory once they have been read."""
         return self._tile_bytes is None
 
     @property
-    def in_use(self) -> bool:
+    def is_in_use(self) -> bool:
         """Whether any picture has been read."""
         return bool(self._ready)
 
     def ensure(self, index: int, scale: int = 0) -> Slot:
-        """Load one picture at one scale, unless it is loaded already, and return its slot.
+        """Load one picture at one scale, unless it is already loaded, and return its slot.
 
-        If memory is limited, the slot keeps its content while the caller is inside ``reading``.
+        If memory is limited, the slot keeps its contents while the caller is inside ``reading``.
         """
         slot = self.slots[index][scale]
         if self._tile_bytes is None and (index, scale) in self._ready:
@@ -131,7 +131,7 @@ class Atlas:
         return slot
 
     def ensure_scales(self, index: int, scales: Sequence[int]) -> None:
-        """Load one picture at several scales, unless they are loaded already. The picture is read only once."""
+        """Load one picture at several scales, unless they are already loaded. The picture is read only once."""
         with self._lock:
             if index and self._tile_bytes is not None:
                 self._clock += 1
@@ -156,12 +156,12 @@ class Atlas:
     def _find_or_fill(self, cached: CachedSheet, index: int, scales: Sequence[int]) -> None:
         """Use the scales that are complete on disk, after verifying the picture's file, and fill the others."""
         pairs = {(index, scale) for scale in scales}
-        if pairs <= cached.complete():
+        if pairs <= cached.complete_pictures():
             self._verify(index)
             self._ready |= pairs
             return
-        with cached.filling():
-            complete = pairs & cached.complete()
+        with cached.lock_for_filling():
+            complete = pairs & cached.complete_pictures()
             if complete:
                 self._verify(index)
             self._ready |= complete
@@ -169,11 +169,11 @@ class Atlas:
             if missing:
                 self._fill_scales(index, missing)
             for scale in missing:
-                cached.completed(index, scale)
+                cached.mark_complete(index, scale)
 
     @contextmanager
     def reading(self) -> Iterator[None]:
-        """Keep every slot requested inside this context filled until the context ends."""
+        """Keep every slot that is requested inside this context filled until the context ends."""
         if self._tile_bytes is None:
             yield
             return
@@ -189,7 +189,7 @@ class Atlas:
                 self._release_oldest()
 
     def _release_oldest(self) -> None:
-        """Release shelves of tiles, the least recently used first, until the limit is met or every shelf is in use."""
+        """Release tile shelves, the least recently used first, until the limit is met or every remaining shelf is in use."""
         memory = self._memory
         if self._tile_bytes is None or memory is None:
             return
@@ -228,7 +228,7 @@ def _sharpen(picture: NDArray[Any], sharpening: float) -> None:
     radius, above = SHARPENING_RADIUS_PX, picture[:0]
     for top in range(0, len(picture), STRIP_PX):
         bottom = min(top + STRIP_PX, len(picture))
-        # The rows above are already sharpened, so their original content was saved in the previous iteration.
+        # The rows above are already sharpened, so their original contents were saved in the previous iteration.
         strip = np.concatenate([above, picture[top : bottom + radius]])
         skip = len(above)
         above = picture[bottom - radius : bottom].copy()

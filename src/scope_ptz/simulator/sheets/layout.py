@@ -1,4 +1,4 @@
-"""Lay out the pictures of an atlas on its sheet."""
+"""Lay out an atlas's pictures on its sheet."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ MAX_SIDE_PX = 32766
 """Maximum side of a sheet, because OpenCV's remap addresses its source with 16-bit integers."""
 
 BORDER_PX = 2
-"""Border around every slot in pixels: one for the bilinear neighbour, one for rounding."""
+"""Border around every slot in pixels: one pixel for the bilinear neighbour and one for rounding."""
 
 HEIGHT_CLASS_PX = 8
-"""If tiles are ordered by direction, their heights are first rounded up to a multiple of this.
+"""If tiles are sorted by direction, their heights are first rounded up to a multiple of this.
 
 Tiles with the same rounded height and scale can then lie next to their neighbours in the scene.
 """
@@ -26,7 +26,7 @@ Size = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """The slot of one picture at one scale: its first pixel on the sheet, without the border, its size, and its shelf."""
+    """The slot for one picture at one scale: its first pixel on the sheet (without the border), its size, and its shelf."""
 
     x: int
     y: int
@@ -36,9 +36,9 @@ class Slot:
 
 
 class Shelf(NamedTuple):
-    """A range of whole rows of the sheet, from ``top`` to ``bottom - 1``, with the pictures that lie side by side in it.
+    """A range of whole sheet rows, from ``top`` to ``bottom - 1``, with the pictures that lie side by side in it.
 
-    ``pictures`` are (index of the picture, index of the scale) pairs.
+    ``pictures`` are (picture index, scale index) pairs.
     """
 
     top: int
@@ -47,7 +47,7 @@ class Shelf(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """The slots of each picture, one per scale; the shelves; and the width and height of the sheet."""
+    """Each picture's slots, one per scale; the shelves; and the sheet's width and height."""
 
     slots: list[tuple[Slot, ...]]
     shelves: list[Shelf]
@@ -55,14 +55,14 @@ class Layout(NamedTuple):
 
 
 def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[float] | None = None) -> Layout:
-    """Place the pictures side by side on shelves, and widen the sheet until its height is within the limit.
+    """Place pictures side by side on shelves, and widen the sheet until its height is within the limit.
 
     Without ``pans_deg``, pictures are placed in order of decreasing height.
 
     Args:
         sizes: Width and height of the panorama and of each tile.
         scales: Sizes of each picture on the sheet, relative to its full size.
-        pans_deg: Pan angles of the tiles. If given, tiles are ordered by rounded height, scale and pan, so that a shelf holds tiles
+        pans_deg: Pan angles of the tiles. If given, tiles are sorted by rounded height, scale and pan, so that a shelf holds tiles
             that are seen together, and the panorama has separate shelves.
 
     Raises:

@@ -19,7 +19,7 @@ class ReleasableArray:
     """An array in separately mapped memory. Parts that are never written take no memory, and whole rows can be released.
 
     Attributes:
-        array: The array of the requested shape. Rows that were never written, or were released, are zero.
+        array: The array, with the requested shape. Rows that were never written, or were released, are zero.
     """
 
     def __init__(self, shape: tuple[int, ...], dtype: type[np.generic]) -> None:

@@ -1,4 +1,4 @@
-"""Sheets of instance numbers that take one byte per pixel instead of two."""
+"""Sheets that store instance numbers in one byte per pixel instead of two."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.simulator.sheets.atlas import STRIP_PX, Atlas, SheetCache
 from scope_ptz.simulator.sheets.layout import BORDER_PX, Size, Slot
 
 RARE = 255
-"""The code of every number that has no code of its own."""
+"""The code shared by all numbers without a separate code."""
 
 BLOCK_HEIGHT_PX, BLOCK_WIDTH_PX = 32, 64
 """Size of a block of ``SparseNumbers``: 4096 bytes, at two bytes per pixel."""
@@ -24,7 +24,7 @@ Indices = NDArray[np.integer]
 
 
 class NumberCodes:
-    """One-byte codes for the most common numbers of a viewpoint.
+    """One-byte codes for a viewpoint's most common numbers.
 
     Args:
         common: Distinct numbers, the most common first. The first 254 from 1 to 65535 get codes from 1 to 254; 0 has the code 0.
@@ -39,20 +39,20 @@ class NumberCodes:
             self._numbers[code], self._codes[number] = number, code
 
     def encode(self, numbers: Numbers) -> NDArray[np.uint8]:
-        """Return the codes of numbers, ``RARE`` where a number has none."""
+        """Return the codes for numbers, ``RARE`` where a number has no code."""
         return np.asarray(np.take(self._codes, numbers))
 
     def decode(self, codes: NDArray[np.uint8]) -> Numbers:
-        """Return the numbers of codes, in an array of the same shape; any number where the code is ``RARE``."""
+        """Return the numbers for codes, in an array of the same shape. Where the code is ``RARE``, the number is undefined."""
         if not codes.size:
             return np.zeros(codes.shape, np.uint16)
         return np.asarray(cv2.LUT(codes, self._numbers), np.uint16).reshape(codes.shape)
 
 
 class SparseNumbers:
-    """Numbers of a few pixels of a sheet. Memory is taken only around these pixels.
+    """Numbers for a few pixels of a sheet. Memory is used only around these pixels.
 
-    The pixels are stored in blocks of the size of a memory page. In rows, almost every page would contain one of them.
+    The pixels are stored in blocks that each fill one memory page. In row order, almost every page would contain one of them.
 
     Args:
         memory: An empty array of bytes, at least ``bytes_for(shape)`` long.
@@ -66,15 +66,15 @@ class SparseNumbers:
 
     @staticmethod
     def bytes_for(shape: tuple[int, int]) -> int:
-        """Return the number of bytes that the numbers of all pixels of a sheet would take."""
+        """Return the number of bytes needed to store a number for every pixel of a sheet."""
         return 2 * -(-shape[0] // BLOCK_HEIGHT_PX) * -(-shape[1] // BLOCK_WIDTH_PX) * BLOCK_HEIGHT_PX * BLOCK_WIDTH_PX
 
     def write(self, rows: Indices, columns: Indices, numbers: Numbers) -> None:
-        """Store the numbers of pixels."""
+        """Store numbers for pixels."""
         self._numbers[self._places(rows, columns)] = numbers
 
     def read(self, rows: Indices, columns: Indices) -> Numbers:
-        """Return the numbers of pixels that were written."""
+        """Return the numbers that were written for pixels."""
         return self._numbers[self._places(rows, columns)]
 
     def _places(self, rows: Indices, columns: Indices) -> Indices:
@@ -84,12 +84,12 @@ class SparseNumbers:
 
 
 class NumberAtlas(Atlas):
-    """An atlas of numbers. Its sheet contains their codes; the numbers without a code are stored separately.
+    """An atlas of numbers. Its sheet contains codes; numbers without a code are stored separately.
 
     Args:
         sizes: As in ``Atlas``.
         load: As in ``Atlas``.
-        codes: The codes of the viewpoint's numbers.
+        codes: The codes for the viewpoint's numbers.
         decode: Converts rows of a loaded picture to numbers; by default, they are used unchanged.
         disk_cache: As in ``Atlas``.
     """
@@ -110,11 +110,11 @@ class NumberAtlas(Atlas):
         self._rare = SparseNumbers(memory[height:], (height, memory.shape[1]))
 
     def _rows(self, width: int, height: int) -> int:
-        # The numbers without a code begin below the sheet, in rows of their own.
+        # Numbers without a code are stored in separate rows below the sheet.
         return height - (-SparseNumbers.bytes_for((height, width)) // width)
 
     def sample(self, positions: NDArray[Any]) -> Numbers:
-        """Return the (h, w) numbers of the pixels nearest to (h, w, 2) positions on the sheet."""
+        """Return the (h, w) numbers in the pixels nearest to (h, w, 2) positions on the sheet."""
         codes = self.sample_codes(positions)
         numbers = self._codes.decode(codes)
         rare = codes == RARE
@@ -124,11 +124,11 @@ class NumberAtlas(Atlas):
         return numbers
 
     def sample_codes(self, positions: NDArray[Any]) -> NDArray[np.uint8]:
-        """Return the (h, w) codes of the numbers of ``sample``. Pixels with different codes have different numbers."""
+        """Return the (h, w) codes for the numbers that ``sample`` returns. Pixels with different codes have different numbers."""
         return np.asarray(cv2.remap(self.sheet, positions, None, cv2.INTER_NEAREST), np.uint8)
 
     def at(self, rows: Indices, columns: Indices) -> Numbers:
-        """Return the numbers of the pixels in rows and columns of the sheet, which are broadcast."""
+        """Return the numbers at rows and columns of the sheet, which are broadcast together."""
         codes = self.sheet[rows, columns]
         numbers = self._codes.decode(codes)
         rare = codes == RARE

@@ -1,7 +1,7 @@
-"""A cache of decoded pictures on disk, so that later processes need not decode them again.
+"""An on-disk cache of decoded pictures, so that later processes need not decode them again.
 
 A sheet of decoded pictures is a sparse file that is mapped into memory, so only the parts that a view samples are read. A list
-file next to it names the pictures that are complete. The pack's own picture files are still verified by checksum before use.
+file next to it names the complete pictures. The checksums of the pack's own picture files are still verified before use.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ except ImportError:  # Windows: files are not sparse by default, and mapped file
     fcntl = None  # type: ignore[assignment]
 
 MAX_BYTES = 1_500_000_000
-"""Limit on the disk space of all sheets, in bytes. The least recently used sheets are removed."""
+"""Maximum disk space for all sheets, in bytes. Beyond it, the least recently used sheets are removed."""
 
 SPARE_BYTES = 1_000_000_000
-"""Minimum free disk space in bytes. If there is less, nothing is cached."""
+"""Minimum free disk space in bytes. If less is free, nothing is cached."""
 
 _SHEET, _LIST, _BLOB = ".sheet", ".list", ".blob"
 _LINE = re.compile(r"(\d{1,9}) (\d{1,9})")
@@ -41,8 +41,8 @@ class PictureCache:
     """A folder of decoded pictures.
 
     Args:
-        folder: The folder, which is created on demand. If it cannot be written, nothing is cached.
-        version: Version of the code that fills sheets. Sheets of another version are not used.
+        folder: The folder, which is created on demand. If it cannot be written to, nothing is cached.
+        version: Version of the code that fills sheets. Sheets from other versions are not used.
     """
 
     def __init__(self, folder: Path, version: str) -> None:
@@ -50,11 +50,11 @@ class PictureCache:
         self._version = f"{version} {cv2.__version__} {pillow_version} {np.dtype(np.uint16).str}"
 
     def name(self, *parts: object) -> str:
-        """Return a file name for content that is determined by ``parts``."""
+        """Return a file name for contents that are determined by ``parts``."""
         return hashlib.sha256(repr((self._version, parts)).encode()).hexdigest()[:32]
 
     def sheet(self, name: str, shape: tuple[int, ...], dtype: type[np.generic]) -> CachedSheet | None:
-        """Return a sheet, which is empty if it is new; None if it cannot be cached."""
+        """Return a sheet; None if it cannot be cached. A new sheet is empty."""
         size = int(np.prod(shape)) * np.dtype(dtype).itemsize
         path = self._folder / (name + _SHEET)
         try:
@@ -65,7 +65,7 @@ class PictureCache:
             return None
 
     def blob(self, name: str) -> bytes | None:
-        """Return the content that ``store_blob`` stored under a name; None if there is none or it is damaged."""
+        """Return the bytes that ``store_blob`` stored under a name; None if there are none or they are damaged."""
         path = self._folder / (name + _BLOB)
         try:
             content = path.read_bytes()
@@ -85,7 +85,7 @@ class PictureCache:
                 new.replace(path)
 
     def _has_room(self, path: Path, size: int) -> bool:
-        """Create the folder, remove old files, and return whether a file of this size can be written."""
+        """Create the folder, remove old files, and return whether there is room for a file of this size."""
         if fcntl is None:
             return False
         self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -116,17 +116,17 @@ class CachedSheet:
 
     def __init__(self, path: Path, size: int, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
         self._path, self._list = path, path.with_suffix(_LIST)
-        with path.open("a+b") as file, self._locked() as listed:
+        with path.open("a+b") as file, self._lock_list() as list_file:
             if os.fstat(file.fileno()).st_size != size:
-                listed.truncate(0)
+                list_file.truncate(0)
                 file.truncate(size)
             os.utime(path)
             self._memory = mmap.mmap(file.fileno(), size)
-        self._filling: IO[str] | None = None
+        self._locked_list: IO[str] | None = None
         self.array: NDArray[Any] = np.frombuffer(self._memory, dtype).reshape(shape)
 
-    def complete(self) -> set[tuple[int, int]]:
-        """Return the pictures that are complete: (index of the picture, index of the scale)."""
+    def complete_pictures(self) -> set[tuple[int, int]]:
+        """Return the complete pictures as (picture index, scale index) pairs."""
         try:
             *lines, _ = self._list.read_text(encoding="ascii").split("\n")  # the last line may be incomplete
         except (OSError, ValueError):
@@ -134,33 +134,31 @@ class CachedSheet:
         return {(int(match[1]), int(match[2])) for line in lines if (match := _LINE.fullmatch(line))}
 
     @contextmanager
-    def filling(self) -> Iterator[None]:
-        """Prevent other processes from filling the sheet inside this context, which may be nested, but is not thread-safe."""
-        if self._filling is not None:
+    def lock_for_filling(self) -> Iterator[None]:
+        """Prevent other processes from filling the sheet inside this context. Contexts may be nested, but are not thread-safe."""
+        if self._locked_list is not None:
             yield
             return
-        with self._locked() as listed:
-            self._filling = listed
+        with self._lock_list() as list_file:
+            self._locked_list = list_file
             try:
                 yield
             finally:
-                self._filling = None
+                self._locked_list = None
 
-    def completed(self, picture: int, scale: int) -> None:
-        """Record that a picture is complete, after writing its pixels to disk. Call this inside ``filling``."""
+    def mark_complete(self, picture: int, scale: int) -> None:
+        """Write a picture's pixels to disk, then record that the picture is complete. Call this inside ``lock_for_filling``."""
         # mmap.flush would hold the interpreter's lock, and all other threads would wait for the disk.
-        with (
-            suppress(FileNotFoundError),
-            self._path.open("rb") as file,
-        ):  # another process may have removed the file as the oldest one
+        # Another process may have removed the file because it was the oldest.
+        with suppress(FileNotFoundError), self._path.open("rb") as file:
             os.fsync(file.fileno())
-        if self._filling is not None:
-            self._filling.write(f"{picture} {scale}\n")
-            self._filling.flush()
+        if self._locked_list is not None:
+            self._locked_list.write(f"{picture} {scale}\n")
+            self._locked_list.flush()
 
     @contextmanager
-    def _locked(self) -> Iterator[IO[str]]:
-        """Open the list with an exclusive lock, which is released when the list is closed."""
-        with self._list.open("a", encoding="ascii") as listed:
-            fcntl.flock(listed, fcntl.LOCK_EX)
-            yield listed
+    def _lock_list(self) -> Iterator[IO[str]]:
+        """Open the list file with an exclusive lock, which is released when the file is closed."""
+        with self._list.open("a", encoding="ascii") as list_file:
+            fcntl.flock(list_file, fcntl.LOCK_EX)
+            yield list_file

@@ -1,1 +1,1 @@
-"""The stored pictures of moving actors: reading and selecting them."""
+"""Read and select the stored pictures of moving actors."""

@@ -14,30 +14,30 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import SceneActor, Sprite, Vec3
 
 SAME_HEADING_DEG = 15.0
-"""Maximum difference in degrees between an actor's current heading and that in its sprite. Beyond it, the lighting is wrong."""
+"""Maximum difference, in degrees, between an actor's heading and that in its sprite. Beyond it, the lighting is wrong."""
 
 DEGREES_PER_OCTAVE = 6.0
 """A sprite rendered at half or twice the distance counts as if its viewing angle differed by this many degrees."""
 
 FADE_FRACTION = 0.12
-"""Half the width of the fade between two sprites, as a fraction of the difference between them in viewing angle."""
+"""Half the width of the fade between two sprites, as a fraction of the difference between their viewing angles."""
 
 FADE_DEG = 12.0
-"""Sprites that differ by more than this many degrees fade proportionally faster, because a picture of both looks doubled."""
+"""Sprites that differ by more than this many degrees fade proportionally faster, because a blend of both looks doubled."""
 
 MAX_STRETCH = 1.25
-"""Maximum factor by which a sprite is stretched or compressed to the current aspect of its actor."""
+"""Maximum factor by which a sprite is stretched or compressed to match the actor's current aspect."""
 
 STIFFNESS = 0.02
-"""Weight of the unwarped sprite in the least-squares fit of ``warp_matrix``, relative to the squared size of the actor in it."""
+"""Weight of the unwarped sprite in the least-squares fit in ``warp_matrix``, relative to the actor's squared size in the sprite."""
 
 Floats = NDArray[np.float64]
 
 
 class Aspect(NamedTuple):
-    """The position and heading of an actor in camera coordinates.
+    """An actor's position and heading in camera coordinates.
 
-    ``offset_m`` is the (3,) offset of its ground point from the optical centre in metres. ``heading`` is a horizontal (3,)
+    ``offset_m`` is the (3,) offset from the optical centre to the actor's ground point in metres. ``heading`` is a horizontal (3,)
     unit vector.
     """
 
@@ -46,7 +46,7 @@ class Aspect(NamedTuple):
 
 
 class WeightedSprite(NamedTuple):
-    """A sprite, the aspect of the actor in it, and its weight in the picture, 0 to 1."""
+    """A sprite, the actor's aspect in it, and the sprite's weight in the picture, from 0 to 1."""
 
     sprite: Sprite
     aspect: Aspect
@@ -54,7 +54,7 @@ class WeightedSprite(NamedTuple):
 
 
 class SpriteChoice:
-    """Selects the sprites of one actor for a view.
+    """Selects one actor's sprites for a view.
 
     Args:
         actor: The actor.
@@ -89,7 +89,7 @@ class SpriteChoice:
         return np.asarray(self._rotation @ np.array([math.sin(bearing), math.cos(bearing), 0.0]))
 
     def reach_deg(self, offset_m: Floats) -> float:
-        """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any pixel of its sprites."""
+        """Return the largest angle between the actor's ground point, which lies at ``offset_m``, and any pixel in its sprites."""
         return math.degrees(math.atan2(MAX_STRETCH * self._reach_m, float(np.linalg.norm(offset_m))))
 
     def choose(self, now: Aspect, phase: float) -> list[WeightedSprite]:
@@ -108,7 +108,7 @@ class SpriteChoice:
             closeness = max(0.0, (float(cost[order[0]]) / total - (0.5 - fade)) / (2 * fade))
             second_weight = closeness * closeness * (3 - 2 * closeness)
         weights = [1.0 - second_weight, second_weight]
-        return [self._weighted(place, phase, weight) for place, weight in zip(order, weights, strict=False) if weight > 0]
+        return [self._weighted_sprite(place, phase, weight) for place, weight in zip(order, weights, strict=False) if weight > 0]
 
     def _mismatch(self, now: Aspect) -> Floats:
         """Return the mismatch between the sprites at each position and the current aspect, in degrees of viewing angle."""
@@ -117,7 +117,7 @@ class SpriteChoice:
         wrong_heading = self._headings @ now.heading < math.cos(math.radians(SAME_HEADING_DEG))
         return np.where(wrong_heading & ~wrong_heading.all(), np.inf, value)
 
-    def _weighted(self, place: int, phase: float, weight: float) -> WeightedSprite:
+    def _weighted_sprite(self, place: int, phase: float, weight: float) -> WeightedSprite:
         sprite = min(self._places[place], key=lambda s: min(abs(s.phase - phase), 1.0 - abs(s.phase - phase)))
         return WeightedSprite(sprite, Aspect(self._offsets[place], self._headings[place]), weight)
 
@@ -128,9 +128,9 @@ class SpriteChoice:
 
 
 def _reach_m(sprite: Sprite, offset_m: Floats) -> float:
-    """Return the largest distance of a sprite's pixels from its ground point, perpendicular to the line of sight.
+    """Return the largest distance between a sprite's pixels and its ground point, perpendicular to the line of sight.
 
-    It is infinite for a sprite that reaches 90 degrees away from its ground point.
+    The distance is infinite if the sprite reaches 90 degrees away from its ground point.
     """
     view = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     margin = np.array([2.0 / sprite.width, 2.0 / sprite.height])
@@ -140,21 +140,21 @@ def _reach_m(sprite: Sprite, offset_m: Floats) -> float:
 
 
 def warp_matrix(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
-    """Return the (2, 2) matrix that warps a sprite about its ground point to the current aspect of its actor.
+    """Return the (2, 2) matrix that warps a sprite about its ground point to the actor's current aspect.
 
-    It is the linear map, in (right, up) coordinates, that best fits the projections of the actor's length, width and height in
-    the sprite to their current projections (least squares). For example, it rotates a bicycle seen from above into its current
-    direction. It does not correct the size for the distance, because the sprite is scaled separately.
+    The matrix is the linear map, in (right, up) coordinates, that best fits the projections of the actor's length, width and height
+    in the sprite to their current projections (least squares). For example, it rotates a bicycle seen from above into its current
+    direction. It does not correct the size for distance, because the sprite is scaled separately.
     """
     width, length, height = actor.size_m
-    sprite_box, current_box = (_projected(aspect, length, width, height) for aspect in (stored, now))
+    sprite_box, current_box = (_project_box(aspect, length, width, height) for aspect in (stored, now))
     stiff = STIFFNESS * float((sprite_box**2).sum()) * np.eye(2)
     fitted = (current_box @ sprite_box.T + stiff) @ np.linalg.inv(sprite_box @ sprite_box.T + stiff)
     left, stretch, right = np.linalg.svd(fitted)
     return np.asarray(left @ np.diag(np.clip(stretch, 1 / MAX_STRETCH, MAX_STRETCH)) @ right)
 
 
-def _projected(aspect: Aspect, length: float, width: float, height: float) -> Floats:
+def _project_box(aspect: Aspect, length: float, width: float, height: float) -> Floats:
     """Return the (2, 3) projections (right, up) of an actor's half length, half width and height, seen from the optical centre."""
     pan, tilt = (float(a) for a in pan_tilt_deg(aspect.offset_m))
     east, north, _ = aspect.heading.tolist()

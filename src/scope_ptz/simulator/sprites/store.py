@@ -1,4 +1,4 @@
-"""The sprites of a viewpoint's actors. Sheets are decoded once. Sprites stay compressed in memory and are expanded when needed."""
+"""The sprites for a viewpoint's actors. Sheets are decoded once. Sprites stay compressed in memory and are expanded when needed."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from scope_ptz.simulator.sheets.memory import release_free_memory
 from scope_ptz.simulator.sheets.picture_cache import PictureCache
 
 EXPANDED_BYTES = 16_000_000
-"""Limit on the memory of expanded sprites in bytes. Expanding a sprite takes about a millisecond."""
+"""Memory limit for expanded sprites, in bytes. Expanding a sprite takes about a millisecond."""
 
 SHRUNK_BYTES = 4_000_000
-"""Limit on the memory of shrunk sprites in bytes. A distant actor has the same size in many successive frames."""
+"""Memory limit for shrunk sprites, in bytes. A distant actor has the same size in many successive frames."""
 
 RELEASE_BYTES = 5_000_000
-"""After expanding this many bytes, free memory is returned to the operating system. Sprites of many sizes leave it fragmented."""
+"""After expanding this many bytes, free memory is returned to the operating system, because sprites of many sizes fragment it."""
 
 EDGE_PX = 2
-"""Search radius in pixels for covered pixels around a half-covered pixel of a sprite."""
+"""Search radius, in pixels, for covered pixels around a half-covered sprite pixel."""
 
 MIN_COVERED = 3
-"""Number of covered pixels needed to recolour a half-covered one."""
+"""Minimum number of covered pixels nearby for a half-covered pixel to be recoloured."""
 
 Part = Literal["colour", "distances"]
 Key = tuple[Part, int, int, int]
@@ -45,11 +45,11 @@ class SpriteStore:
     """
 
     def __init__(self, pictures: Pictures, picture_cache: PictureCache | None = None) -> None:
-        """Set up the store.
+        """Create the store.
 
         Args:
-            pictures: The files of the viewpoint.
-            picture_cache: Cache on disk for compressed sprites.
+            pictures: The viewpoint's files.
+            picture_cache: On-disk cache for compressed sprites.
         """
         self._pictures, self._picture_cache = pictures, picture_cache
         self._packed: dict[Key, bytes] = {}
@@ -62,11 +62,11 @@ class SpriteStore:
         self._lock = RLock()
 
     def distances(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint16]:
-        """Return a sprite's (h, w) distance codes, 0 where it does not show the actor."""
+        """Return a sprite's (h, w) distance codes, 0 where the sprite does not show the actor."""
         return self._get("distances", sheet, sprite)
 
     def colour(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
-        """Return a sprite's (h, w, 4) colour premultiplied by alpha. Ground truth does not use it.
+        """Return a sprite's (h, w, 4) colour, premultiplied by alpha. Ground truth does not use it.
 
         Raises:
             PackError: The actor's sheet has no transparency.
@@ -99,15 +99,15 @@ class SpriteStore:
             self._boxes[key] = x, y, width, height
         return self._boxes[key]
 
-    def farthest(self, sheet: ActorSheet, sprite: Sprite) -> int:
-        """Return the largest distance code of a sprite's pixels."""
+    def farthest_code(self, sheet: ActorSheet, sprite: Sprite) -> int:
+        """Return the largest distance code in a sprite."""
         key = (sheet.number, sprite.left, sprite.top)
         if key not in self._farthest:
             self._farthest[key] = int(self.distances(sheet, sprite).max())
         return self._farthest[key]
 
     def load(self, sheets: Iterable[ActorSheet]) -> None:
-        """Read the sheets of actors, so that later requests need not wait."""
+        """Read actors' sheets, so that later requests need not wait."""
         for sheet in sheets:
             with self._lock:
                 self._read("distances", sheet)
@@ -152,13 +152,13 @@ class SpriteStore:
             self._picture_cache.store_blob(self._cache_name(self._picture_cache, part, sheet), lengths.tobytes() + b"".join(packed))
 
     def _read_cached(self, part: Part, sheet: ActorSheet, places: list[tuple[int, int]]) -> bool:
-        """Load compressed sprites from the cache, after verifying the sheet's file. Return whether they were in the cache."""
+        """Load compressed sprites from the cache after verifying the sheet's file. Return whether the cache contained them."""
         if self._picture_cache is None:
             return False
         blob = self._picture_cache.blob(self._cache_name(self._picture_cache, part, sheet))
         if blob is None:
             return False
-        self._pictures.checked(sheet.depth if part == "distances" else sheet.colour)
+        self._pictures.verify(sheet.depth if part == "distances" else sheet.colour)
         lengths = np.frombuffer(blob, np.uint32, len(places))
         ends = lengths.nbytes + np.cumsum(lengths, dtype=np.int64)
         for place, length, end in zip(places, lengths.tolist(), ends.tolist(), strict=True):
@@ -175,14 +175,14 @@ class SpriteStore:
         if key[0] == "distances":
             return np.frombuffer(pixels, np.uint16).reshape(sprite.height, sprite.width)
         straight = np.frombuffer(pixels, np.uint8).reshape(sprite.height, sprite.width, 4)
-        return _premultiplied(straight, self.distances(sheet, sprite) > 0)
+        return _premultiply(straight, self.distances(sheet, sprite) > 0)
 
 
-def _premultiplied(colour: NDArray[np.uint8], actor_pixels: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return (H, W, 4) colour times alpha.
+def _premultiply(colour: NDArray[np.uint8], actor_pixels: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Return (H, W, 4) colour premultiplied by alpha.
 
     Lossy coding mixes the black of empty pixels into an actor's half-covered edge, so edge pixels take their colour from the
-    covered pixels around them. Edges are few, so only they are processed one by one.
+    covered pixels around them.
     """
     alpha = np.ascontiguousarray(colour[..., 3])
     sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
@@ -192,11 +192,11 @@ def _premultiplied(colour: NDArray[np.uint8], actor_pixels: NDArray[np.bool_]) -
     for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
         neighbours = rows + down, columns + right
         clipped = np.clip(neighbours[0], 0, alpha.shape[0] - 1), np.clip(neighbours[1], 0, alpha.shape[1] - 1)
-        counts = covered[clipped] & (clipped[0] == neighbours[0]) & (clipped[1] == neighbours[1])
-        total += colour[..., :3][clipped] * counts[:, None]
-        count += counts
-    enough = count >= MIN_COVERED
-    rows, columns = rows[enough], columns[enough]
-    inward = total[enough] / count[enough, None]
+        is_covered = covered[clipped] & (clipped[0] == neighbours[0]) & (clipped[1] == neighbours[1])
+        total += colour[..., :3][clipped] * is_covered[:, None]
+        count += is_covered
+    is_recoloured = count >= MIN_COVERED
+    rows, columns = rows[is_recoloured], columns[is_recoloured]
+    inward = total[is_recoloured] / count[is_recoloured, None]
     sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
     return np.asarray(sheet)

@@ -1,4 +1,4 @@
-"""Drafts of tasks: questions and commands about a place that have no final wording and no id yet."""
+"""Task drafts: questions and commands about a place that have no final wording and no id yet."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from typing import Literal
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Wordings
 from scope_ptz.bench.tasks.task import Behaviour, Category, EvidenceView, Item, Need, ProgramCall
-from scope_ptz.taskgen.authoring.noun_phrases import capital
+from scope_ptz.taskgen.authoring.noun_phrases import capitalise
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.tools.arguments import View
 
 # Placeholders of the sentence frames: {d} is the question in its direct form and {i} the question as a clause. {m} is the moves as
-# a complete phrase, and {l} the moves as a phrase to which "and ..." can be added. {D}, {M} and {L} begin with a capital letter.
+# a complete phrase, and {l} is the moves as a phrase to which "and ..." can be added. {D}, {M} and {L} begin with a capital letter.
 # {p} is a preset.
-_WRAPPERS = (
+_MOVE_PATTERNS = (
     "{M}. {D}", "{L} and tell me {i}.", "{L}, then tell me {i}.", "Please {l} and let me know {i}.", "{M}: {d}",
     "Could you {l} and report {i}?", "I'd like you to {m}. {D}", "{L} and find out {i}.", "First {m}. {D}",
     "I need to know {i}. {M} to see.", "{L} and have a look: {d}", "Tell me {i}. You will have to {m} for that.",
     "Can you {m}? {D}", "{L} and answer this: {d}", "For the log, {l} and note {i}.", "{D} To find out, {m}.",
     "Would you {l} and say {i}?", "Let me know {i}: {l} and look.",
 )  # fmt: skip
-_AT_PRESET = (
+_PRESET_PATTERNS = (
     "At the {p} preset, {d}", "From the {p} preset, {d}", "{D} Use the {p} preset.", "Check the {p} view: {d}",
     "Looking from the {p} preset, {d}", "In the {p} view, {d}", "Using the preset {p}, tell me {i}.",
 )  # fmt: skip
-_AROUND = (
+_SWEEP_PATTERNS = (
     "In the whole scene, {d}", "Taking in everything around the camera, {d}", "{D} Consider the whole scene.",
     "All around the camera, {d}", "Over the full scene, tell me {i}.", "{D} Not in this view only, but all around.",
     "Looking in every direction, {d}",
 )  # fmt: skip
-_IN_CURRENT_VIEW = (
+_START_VIEW_PATTERNS = (
     "{D}", "In the current view, {d}", "In this view, tell me {i}.", "Looking straight at what the camera shows now, {d}",
     "Without moving the camera, {d}", "Right here in this view, {d}",
 )  # fmt: skip
@@ -63,16 +63,16 @@ class TaskDraft:
         category: The category of the task.
         question_type: The type of the question or command, such as "sum" or "close-up". The selection balances the types.
         key: A key for the question, so that it is asked only once about a view.
-        place: The start of the task, and the view that it is about.
+        place: Where the task starts, and the view that the task is about.
         expected: The expected answer.
         question: The wordings of the question; None for a task with ``instructions``.
         instructions: Complete wordings, for a task that is not a question about a place.
         evidence: The views from which the answer follows.
         perception_calls: The calls of the reference program that use perception.
         program: The reference program. By default, the calls of the place followed by ``perception_calls``.
-        behaviour: What a run must do in addition to answering.
+        behaviour: What a run must do besides answering.
         needs: The actions that an agent must take before it can answer. By default, those of the place.
-        tags: Tags of the task.
+        tags: The task's tags.
         weight: Number of objects to tell apart, which contributes to the difficulty.
         twin: For a draft about an absent object, the draft with the same wording about a present one.
         answer_key: The answer as a short text, which the selection balances.
@@ -106,7 +106,7 @@ class TaskDraft:
         return any(call.tool == "zoom_to_object" for call in self.perception_calls)
 
     @property
-    def calls_move(self) -> bool:
+    def moves_camera(self) -> bool:
         """Whether the reference program moves the camera or sweeps."""
         return self.place.swept or any(call.tool not in ("count_objects", "query_answer", "take_image") for call in self.calls)
 
@@ -127,22 +127,24 @@ class TaskDraft:
 
     @property
     def full_key(self) -> str:
-        """A key for the combination of question and view."""
+        """A key for the question and the view together."""
         return f"{self.place.key}|{self.key}"
 
     def digest(self, seed: int | str) -> str:
-        """Return a pseudo-random hexadecimal number, by which drafts are shuffled. It depends only on the seed and this draft."""
+        """Return a pseudo-random hexadecimal number for shuffling drafts. It depends only on the seed and this draft."""
         text = f"{seed}|{self.category}|{self.question_type}|{self.full_key}|{self.answer_key}|{self.place.start}"
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 class SentenceFrames:
-    """The sentence frames of a category, and how often each is used. All are used about equally often, and no text twice.
+    """A category's sentence frames, with the number of times each has been used.
 
-    A sentence frame is one wording of a question inside one of the sentence patterns of this module, such as "First {m}. {D}".
+    Frames are used equally often, and no text is used twice.
+
+    A sentence frame is one wording of a question in one of the sentence patterns of this module, such as "First {m}. {D}".
 
     Args:
-        texts: Instructions that are already used. ``take`` adds to this set.
+        texts: Instructions that are already used. ``record_use`` adds to this set.
     """
 
     def __init__(self, texts: set[str]) -> None:
@@ -167,7 +169,7 @@ class SentenceFrames:
         text, frame = rng.choice([o for o in options if self.used[o[1]] == lowest])
         return text, frame
 
-    def take(self, text: str, frame: str) -> None:
+    def record_use(self, text: str, frame: str) -> None:
         """Record that a wording is used."""
         self.texts.add(text)
         self.used[frame] += 1
@@ -176,19 +178,19 @@ class SentenceFrames:
         if draft.question is None:
             return [(text, f"{draft.question_type}/{n}") for n, text in enumerate(draft.instructions)]
         place, options = draft.place, list[tuple[str, str]]()
-        for n, (direct, inside) in enumerate(draft.question.forms):
-            words = {"d": direct, "D": capital(direct), "i": inside}
+        for n, (direct, clause) in enumerate(draft.question.forms):
+            words = {"d": direct, "D": capitalise(direct), "i": clause}
             name = f"{draft.question_type}/{n}"
             if place.is_start_view:
-                options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_IN_CURRENT_VIEW)]
+                options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_START_VIEW_PATTERNS)]
                 continue
             if place.preset is not None and not place.swept:
-                options += [(w.format(p=place.preset, **words), f"{name}/preset{k}") for k, w in enumerate(_AT_PRESET)]
+                options += [(w.format(p=place.preset, **words), f"{name}/preset{k}") for k, w in enumerate(_PRESET_PATTERNS)]
             if place.swept and not place.calls:
-                options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_AROUND)]
-            for k, wrapper in enumerate(_WRAPPERS):
+                options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_SWEEP_PATTERNS)]
+            for k, wrapper in enumerate(_MOVE_PATTERNS):
                 moves, before_and = place.move_phrases(rng)
-                text = wrapper.format(m=moves, M=capital(moves), l=before_and, L=capital(before_and), **words)
+                text = wrapper.format(m=moves, M=capitalise(moves), l=before_and, L=capitalise(before_and), **words)
                 options.append((text, f"{name}/{k}"))
         return options
 
@@ -196,7 +198,7 @@ class SentenceFrames:
 def evidence_view(
     place: TaskPlace, shows: AnyExpected | None, about: Wordings, items: Sequence[Item] = (), *, whole: bool
 ) -> EvidenceView:
-    """Return the view of a place as evidence for an answer.
+    """Return a place's view as evidence for an answer.
 
     Args:
         place: The view, or the sweep.
@@ -221,13 +223,13 @@ def evidence_view(
 
 
 def sweep_tilt_range() -> tuple[float, float]:
-    """Return the lowest and the highest tilt in a sweep, in degrees."""
+    """Return the lowest and highest tilt in a sweep, in degrees."""
     sweep = TASK_CAMERA.sweep()
     return round(sweep.bottom_tilt_deg + 0.01, 2), round(sweep.top_tilt_deg, 2)
 
 
 def scope_of(place: TaskPlace) -> View:
-    """Return the scope of perception calls about a place."""
+    """Return the scope for perception calls about a place."""
     return "full" if place.swept else "current"
 
 
@@ -236,9 +238,9 @@ def count_call(description: str, place: TaskPlace) -> ProgramCall:
     return ProgramCall(tool="count_objects", arguments={"description": description, "view": scope_of(place)})
 
 
-def ask_call(question: str, place: TaskPlace) -> ProgramCall:
+def query_call(question: str, place: TaskPlace) -> ProgramCall:
     """Return a call that asks perception a question about a place."""
-    return ProgramCall(tool="query_answer", arguments={"question": capital(question), "view": scope_of(place)})
+    return ProgramCall(tool="query_answer", arguments={"question": capitalise(question), "view": scope_of(place)})
 
 
 Difficulty = Literal["easy", "medium", "hard"]

@@ -1,4 +1,4 @@
-"""English phrases for instructions: plurals, articles, lists, and words for object kinds, colours and amounts."""
+"""Write English phrases for instructions: plurals, articles, lists, and words for object kinds, colours and amounts."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from scope_ptz.bench.tasks.expected import Options, Wordings
 from scope_ptz.taskgen.facts.kinds import Kind
 
-_IRREGULAR = {
+_IRREGULAR_PLURALS = {
     "person": "people", "man": "men", "woman": "women", "child": "children", "shelf": "shelves", "leaf": "leaves", "mouse": "mice",
     "goose": "geese", "sheep": "sheep", "deer": "deer", "banksman": "banksmen", "aircraft": "aircraft", "knife": "knives",
     "loaf": "loaves",
 }  # fmt: skip
-UNCOUNTED = frozenset({
+UNCOUNTABLE_CATEGORIES = frozenset({
     "tree", "bush", "hedge", "building", "house", "pylon", "guardrail", "bridge", "hill", "road", "pavement", "surface", "fence",
     "fence panel", "wall", "sky", "field", "grass", "plant", "shrub", "kerb", "roof", "platform", "track", "shopfront", "window",
     "railing", "bunting", "cable", "puddle", "produce", "goods", "scaffolding", "gravel pile", "sand pile", "ground", "marker post",
@@ -24,7 +24,7 @@ UNCOUNTED = frozenset({
     "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
     "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
-"""Categories that people would count inconsistently, because the objects are not clearly separate or extend into the distance."""
+"""Categories that people count inconsistently, because the objects are not clearly separate or extend into the distance."""
 
 _COLOUR_SYNONYMS: dict[str, Wordings] = {
     "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),
@@ -32,22 +32,22 @@ _COLOUR_SYNONYMS: dict[str, Wordings] = {
     "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
     "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
 }  # fmt: skip
-"""Plain colours, and other words for each of them."""
+"""Plain colours, with other words for each."""
 
 _PLAIN_COLOURS = {name: plain for plain, others in _COLOUR_SYNONYMS.items() for name in (plain, *others)}
 
 
-def plural(noun: str) -> str:
+def pluralise(noun: str) -> str:
     """Return the plural of a noun phrase. The inflected word is the last one, or the one before a preposition such as "of"."""
     words = noun.split()
     head = next((i for i, word in enumerate(words) if i and word in {"of", "with", "in", "on", "for", "carrying"}), len(words)) - 1
-    words[head] = _plural(words[head])
+    words[head] = _pluralise_word(words[head])
     return " ".join(words)
 
 
-def _plural(word: str) -> str:
-    if word in _IRREGULAR:
-        return _IRREGULAR[word]
+def _pluralise_word(word: str) -> str:
+    if word in _IRREGULAR_PLURALS:
+        return _IRREGULAR_PLURALS[word]
     if word.endswith("man") and word not in {"human"}:
         return word[:-3] + "men"
     if word.endswith("y") and word[-2:-1] not in "aeiou":
@@ -55,7 +55,7 @@ def _plural(word: str) -> str:
     return word + ("es" if word.endswith(("s", "x", "ch", "sh")) else "s")
 
 
-def article(noun: str) -> str:
+def with_article(noun: str) -> str:
     """Return a noun phrase with "a" or "an" before it."""
     first = noun.lower()
     vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
@@ -66,12 +66,12 @@ _VOWEL_SOUNDS = ("SUV", "8", "11 ", "18 ")
 """Beginnings of noun phrases that take "an" although they are not spelt with a lower-case vowel."""
 
 
-def the(name: str) -> str:
-    """Return a name with "the" before it. Names that end in a number ("dock door 5") have no article."""
+def with_the(name: str) -> str:
+    """Return a name with "the" before it. Names that end in a number ("dock door 5") get no article."""
     return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
 
 
-def listing(names: Sequence[str], word: str = "and") -> str:
+def join_names(names: Sequence[str], word: str = "and") -> str:
     """Join names with commas, and the last two with the conjunction ``word``."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
 
@@ -88,23 +88,23 @@ _EVERYDAY_NAMES = {
 }  # fmt: skip
 
 
-def noun_of(kind: Kind) -> str:
+def singular_noun(kind: Kind) -> str:
     """Return the noun phrase for one object of a kind, with its attributes in their usual order."""
     noun = everyday_name(kind.category)
     if kind.attribute is not None:
         key, value = kind.attribute
         key = "posture" if kind.category == "person" and key == "state" else key
-        return _ATTRIBUTE_PHRASES.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=article(value))
+        return _ATTRIBUTE_PHRASES.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=with_article(value))
     return f"{kind.colour} {noun}" if kind.colour else noun
 
 
-def many_of(kind: Kind) -> str:
+def plural_noun(kind: Kind) -> str:
     """Return the noun phrase for several objects of a kind."""
     key = kind.attribute[0] if kind.attribute is not None else ""
     key = "posture" if kind.category == "person" and key == "state" else key
     if kind.attribute is not None and key in _ATTRIBUTE_PHRASES:
-        return _ATTRIBUTE_PHRASES[key][1].format(value=kind.attribute[1], many=plural(everyday_name(kind.category)))
-    return plural(noun_of(kind))
+        return _ATTRIBUTE_PHRASES[key][1].format(value=kind.attribute[1], many=pluralise(everyday_name(kind.category)))
+    return pluralise(singular_noun(kind))
 
 
 _ATTRIBUTE_PHRASES = {
@@ -115,12 +115,12 @@ _ATTRIBUTE_PHRASES = {
 }
 
 
-def unit_of(kind: Kind) -> Wordings:
+def answer_words(kind: Kind) -> Wordings:
     """Return the words that an answer may use for the counted objects: the whole name, the category, and its last word."""
-    return tuple(dict.fromkeys((noun_of(kind), everyday_name(kind.category), kind.category, kind.category.split()[-1])))
+    return tuple(dict.fromkeys((singular_noun(kind), everyday_name(kind.category), kind.category, kind.category.split()[-1])))
 
 
-def about(*kinds: Kind) -> Wordings:
+def object_words(*kinds: Kind) -> Wordings:
     """Return words for objects of these kinds. A perception call about such objects mentions at least one of the words."""
     words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_OTHER_WORDS.get(kind.category, ())))
     return tuple(dict.fromkeys(words))
@@ -134,7 +134,7 @@ def plain_colour(colour: object) -> str | None:
     return _PLAIN_COLOURS.get(str(colour))
 
 
-def wordings(options: Options) -> Wordings:
+def all_wordings(options: Options) -> Wordings:
     """Return all wordings of all options."""
     return tuple(word for name, others in options.items() for word in (name, *others))
 
@@ -144,16 +144,16 @@ def colour_options() -> Options:
     return dict(_COLOUR_SYNONYMS)
 
 
-def degrees(number: float) -> str:
+def angle_words(number: float) -> str:
     """Return an angle in words."""
     return f"{number:g} degrees" if number != 1 else "1 degree"
 
 
-def times(factor: float) -> str:
+def factor_words(factor: float) -> str:
     """Return a magnification in words: "twice", "three times", "1.5 times"."""
     return {2.0: "twice", 3.0: "three times", 4.0: "four times"}.get(factor, f"{factor:g} times")
 
 
-def capital(text: str) -> str:
+def capitalise(text: str) -> str:
     """Return the text with its first letter capitalised."""
     return text[:1].upper() + text[1:]

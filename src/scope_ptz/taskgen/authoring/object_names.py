@@ -1,4 +1,4 @@
-"""Choose names for objects that identify exactly one object in a view."""
+"""Choose names that identify exactly one object in a view."""
 
 from __future__ import annotations
 
@@ -9,9 +9,16 @@ from functools import lru_cache
 
 from scope_ptz.bench.tasks.expected import Wordings
 from scope_ptz.simulator.truth import Sighting
-from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, everyday_name, noun_of, plain_colour, the
-from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, own_colour, similar_colours
-from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
+from scope_ptz.taskgen.authoring.noun_phrases import (
+    UNCOUNTABLE_CATEGORIES,
+    everyday_name,
+    object_words,
+    plain_colour,
+    singular_noun,
+    with_the,
+)
+from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, are_similar_colours, has_colour, own_colour
+from scope_ptz.taskgen.facts.robust import RobustTruth, ids_with_parts
 
 RECOGNISABLE_TEXT_PX = 8.0
 """Minimum height of capital letters, in pixels, for a person to recognise an expected text."""
@@ -24,8 +31,8 @@ class NamedThing:
     Attributes:
         thing: The object as it appears in the view.
         name: The name without an article ("excavator", "leftmost car").
-        kind: The kind of object that the name states, such as "car" in "leftmost car".
-        positional: Whether the name compares the object with others by its position ("leftmost", "nearest").
+        kind: The kind of object in the name, such as "car" in "leftmost car".
+        positional: Whether the name compares the object's position with those of others ("leftmost", "nearest").
     """
 
     thing: Sighting
@@ -36,12 +43,12 @@ class NamedThing:
     @property
     def the(self) -> str:
         """The name with its article."""
-        return the(self.name)
+        return with_the(self.name)
 
     @property
     def words(self) -> Wordings:
-        """Words for the object. A perception call about it mentions at least one of them."""
-        return tuple(dict.fromkeys((*about(self.kind), self.name, self.name.split()[-1])))
+        """Words for the object. A perception call about the object mentions at least one of them."""
+        return tuple(dict.fromkeys((*object_words(self.kind), self.name, self.name.split()[-1])))
 
 
 @lru_cache(maxsize=2048)
@@ -54,7 +61,7 @@ def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) 
         min_pixels: Minimum size of an object in pixels.
     """
     named = []
-    categories = sorted({s.instance.category for s in truth.clear})
+    categories = sorted({s.instance.category for s in truth.clear_sightings})
     for category in categories:
         only_things = truth.all_of(Kind(category))
         if only_things is not None and len(only_things) == 1 and is_only_candidate(truth, Kind(category), only_things[0]):
@@ -62,18 +69,18 @@ def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) 
             continue
         if not coloured:
             continue
-        colours_in_view = (own_colour(s.instance) for s in truth.clear if s.instance.category == category)
+        colours_in_view = (own_colour(s.instance) for s in truth.clear_sightings if s.instance.category == category)
         colours = sorted({colour for colour in colours_in_view if colour is not None and " and " not in colour})
         for colour in colours:
             things = truth.all_of(Kind(category, colour))
             if things is not None and len(things) == 1 and is_only_candidate(truth, Kind(category, colour), things[0]):
-                named.append(NamedThing(things[0], noun_of(Kind(category, colour)), Kind(category, colour)))
-    return tuple(n for n in named if n.thing.pixels >= min_pixels and n.kind.category not in UNCOUNTED)
+                named.append(NamedThing(things[0], singular_noun(Kind(category, colour)), Kind(category, colour)))
+    return tuple(n for n in named if n.thing.pixels >= min_pixels and n.kind.category not in UNCOUNTABLE_CATEGORIES)
 
 
 def is_only_candidate(truth: RobustTruth, kind: Kind, thing: Sighting) -> bool:
     """Return whether no other object in the view, not even a barely visible one, fits a kind or could be taken for it."""
-    return not any(kind.fits(other) or kind.ambiguous_with(other) for other in truth.others(thing))
+    return not any(kind.fits(other) or kind.is_ambiguous_with(other) for other in truth.other_objects(thing))
 
 
 @lru_cache(maxsize=2048)
@@ -86,24 +93,24 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
         min_text_px: Minimum height of capital letters, in pixels, if a person needs to read them to recognise the object.
     """
     named = []
-    for sighting in truth.clear:
+    for sighting in truth.clear_sightings:
         thing, name = sighting.instance, name_in_instruction(sighting.instance.name)
         words = name.lower().split()
         required_pixels = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
         if (
             sighting.pixels < required_pixels
-            or truth.split_by_sweep(sighting)
-            or thing.category in _HARD_TO_TELL_APART
+            or truth.is_split_by_sweep(sighting)
+            or thing.category in _INDISTINCT_CATEGORIES
             or not 2 <= len(words) <= _MAX_NAME_WORDS
         ):
             continue
         if (
-            set(words) & _MISLEADING
+            set(words) & _MISLEADING_WORDS
             or (set(words) & _PART_WORDS and sighting.visible_fraction < _MIN_SHARE_WITH_PART)
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
             or not is_recognisable(truth, sighting, name, min_text_px)
-            or any(name_could_refer_to(other, name, thing) for other in truth.others(sighting))
+            or any(name_could_refer_to(other, name, thing) for other in truth.other_objects(sighting))
         ):
             continue
         named.append(NamedThing(sighting, name, Kind(thing.category)))
@@ -117,15 +124,17 @@ def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_
     (or the number) of the name and be large enough to read.
     """
     thing = sighting.instance
-    distinctive = _words(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
-    by_number, by_text = name[-1].isdigit(), thing.category in _KNOWN_BY_TEXT and not distinctive <= COLOUR_WORDS
+    distinctive = _words_in(name) - _FUNCTION_WORDS - _COMMON_WORDS - _words_in(thing.category) - _words_in(_head_noun(name))
+    by_number, by_text = name[-1].isdigit(), thing.category in _LETTERED_CATEGORIES and not distinctive <= COLOUR_WORDS
     if not by_number and not by_text:
         return True
-    parts = with_parts(truth.scene, thing.id)
+    parts = ids_with_parts(truth.scene, thing.id)
     texts = [
-        t for t in truth.first.texts if t.text.parent in parts and t.cap_height_px >= min_text_px and t.unhidden_fraction > 0.9
+        t
+        for t in truth.first_sample.texts
+        if t.text.parent in parts and t.cap_height_px >= min_text_px and t.unhidden_fraction > 0.9
     ]
-    lettering = {word for t in texts for word in _words(t.text.text)}
+    lettering = {word for t in texts for word in _words_in(t.text.text)}
     if by_number:
         return name.split()[-1] in lettering
     return any(a[:_STEM_CHARS] == b[:_STEM_CHARS] for a in distinctive for b in lettering)
@@ -134,7 +143,7 @@ def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_
 _STEM_CHARS = 4
 """Words that share this many first letters count as forms of the same word ("optician", "opticians")."""
 
-_KNOWN_BY_TEXT = SIGNS | {"shop", "kiosk", "market stall", "door"}
+_LETTERED_CATEGORIES = SIGNS | {"shop", "kiosk", "market stall", "door"}
 """Categories whose objects people tell apart by their lettering."""
 
 _PART_WORDS = frozenset({"with", "carrying", "pushing", "holding"})
@@ -147,14 +156,14 @@ _PERSON_PX = 700
 """Minimum number of pixels of a person for clothes and carried objects to be visible."""
 
 
-def _head(name: str) -> str:
+def _head_noun(name: str) -> str:
     """Return the head noun of a name; an empty string if the name ends in a number."""
     head = re.split(r" (?:of|with|in|on|by|for|at) ", name)[0].split()[-1]
     return head if head.isalpha() else ""
 
 
 def name_in_instruction(name: str) -> str:
-    """Return the scene's name of an object in the form in which instructions use it after "the"."""
+    """Return an object's name in the scene, in the form that instructions use after "the"."""
     name = re.sub(r"^(\w+) (standing|walking|waiting|sitting)$", r"\2 \1", name)
     return name.removeprefix("The ").replace("price of ", "price card for ").replace("belisha", "Belisha")
 
@@ -170,18 +179,18 @@ def name_could_refer_to(other: SceneThing, name: str, thing: SceneThing) -> bool
         name: The name.
         thing: The object that the name belongs to.
     """
-    named = _words(name) - _FUNCTION_WORDS
+    named = _words_in(name) - _FUNCTION_WORDS
     facts = (f"{key} {value}" for key, value in other.attributes.items() if isinstance(value, str))
-    described = _words(" ".join((other.name, other.category, *facts)))
+    described = _words_in(" ".join((other.name, other.category, *facts)))
     if named <= described:
         return True
-    if other.category != thing.category and not Kind(thing.category).ambiguous_with(other):
+    if other.category != thing.category and not Kind(thing.category).is_ambiguous_with(other):
         return False
-    distinctive = named - _COMMON_WORDS - _words(thing.category) - _words(_head(name))
-    return all(word in described or any(similar_colours(word, colour) for colour in described) for word in distinctive)
+    distinctive = named - _COMMON_WORDS - _words_in(thing.category) - _words_in(_head_noun(name))
+    return all(word in described or any(are_similar_colours(word, colour) for colour in described) for word in distinctive)
 
 
-def _words(text: str) -> set[str]:
+def _words_in(text: str) -> set[str]:
     """Return the words and numbers in a text, in lower case."""
     return set(re.findall(r"[^\W_]+", text.lower()))
 
@@ -195,14 +204,14 @@ _COMMON_WORDS = frozenset({
 })  # fmt: skip
 """Words that do not reliably distinguish two objects."""
 
-_MISLEADING = frozenset({
+_MISLEADING_WORDS = frozenset({
     "no", "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle",
     "left", "right",
 })  # fmt: skip
-"""Words that make a name ambiguous: it may be about two objects, a location, or something that is absent."""
+"""Words that make a name ambiguous: the name may refer to two objects, to a location, or to something absent."""
 
 _MAX_NAME_WORDS = 5
-_HARD_TO_TELL_APART = frozenset({
+_INDISTINCT_CATEGORIES = frozenset({
     "tree", "bush", "hedge", "hill", "road", "pavement", "surface", "field", "grass", "plant", "shrub", "kerb", "track", "ground",
     "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house", "terrace",
     "townhouse", "gantry", "parking space", "bay number", "dock number", "walkway", "hatched zone", "road marking", "wheel stop",
@@ -218,18 +227,18 @@ def nameable_things(truth: RobustTruth, min_pixels: int = 500, min_text_px: floa
     The arguments are those of ``named_things``. Names from ``unique_things`` are preferred, because they are shorter.
     """
     named = (*named_things(truth, min_pixels, min_text_px), *unique_things(truth, coloured=True, min_pixels=min_pixels))
-    return list({one.thing.instance.id: one for one in named}.values())
+    return list({thing.thing.instance.id: thing for thing in named}.values())
 
 
 def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
     """Yield the leftmost, rightmost and nearest of several objects of a kind, if they are unambiguous."""
-    for category in sorted({s.instance.category for s in truth.clear} - UNCOUNTED):
+    for category in sorted({s.instance.category for s in truth.clear_sightings} - UNCOUNTABLE_CATEGORIES):
         kind = Kind(category)
         things = truth.all_of(kind)
         if things is None or not 2 <= len(things) <= 9 or not is_complete_group(truth, kind):
             continue
         for axis_name, which in (("leftmost", 0), ("rightmost", -1)):
-            end = outermost(truth, things, which)
+            end = find_outermost(truth, things, which)
             if end is not None and end.pixels >= min_pixels:
                 yield NamedThing(end, f"{axis_name} {everyday_name(category)}", kind, positional=True)
         by_distance = sorted(things, key=lambda s: s.distance_m)
@@ -239,32 +248,32 @@ def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedT
 
 def coloured_boards(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
     """Yield boards with lettering that can be identified by their colour ("navy shop sign")."""
-    for sighting in truth.clear:
+    for sighting in truth.clear_sightings:
         thing = sighting.instance
         colour = own_colour(thing)
         if (
             thing.category not in _COLOURED_BOARDS
             or colour is None
             or sighting.pixels < min_pixels
-            or truth.split_by_sweep(sighting)
+            or truth.is_split_by_sweep(sighting)
         ):
             continue
-        rivals = (other for other in truth.others(sighting) if other.category == thing.category)
-        if not any(colours_confusable(colour, own_colour(rival)) for rival in rivals):
+        rivals = (other for other in truth.other_objects(sighting) if other.category == thing.category)
+        if not any(are_confusable_colours(colour, own_colour(rival)) for rival in rivals):
             kind = Kind(thing.category, colour)
-            yield NamedThing(sighting, noun_of(kind), kind)
+            yield NamedThing(sighting, singular_noun(kind), kind)
 
 
 _COLOURED_BOARDS = frozenset({"shop sign", "hanging sign", "pavement board"})
 
 
-def colours_confusable(one: str, other: str | None) -> bool:
+def are_confusable_colours(one: str, other: str | None) -> bool:
     """Return whether people could confuse two colours: they share a word or a plain colour, or are similar."""
     return (
         other is None
         or bool({*one.split()} & {*other.split()})
         or plain_colour(one) == plain_colour(other)
-        or similar_colours(one, other)
+        or are_similar_colours(one, other)
     )
 
 
@@ -277,8 +286,8 @@ def is_complete_group(truth: RobustTruth, kind: Kind) -> bool:
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 
 
-def outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
+def find_outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
     """Return the leftmost object (``which`` is 0) or the rightmost one (-1); None if its neighbour is too close to it."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
     pair = order[:2] if which == 0 else order[-2:]
-    return order[which] if truth.in_order(pair, 0, 0.05) is not None else None
+    return order[which] if truth.sort_by_position(pair, 0, 0.05) is not None else None

@@ -1,4 +1,4 @@
-"""Create the drafts of one scene, by category."""
+"""Create the drafts for one scene, by category."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 _OFF_PRESET_VIEWS = 64  # number of views away from the presets, per scene
-_CANDIDATE_VIEWS = 2  # number of random candidates for each of these views; the one with the most visible objects is used
+_CANDIDATE_VIEWS = 2  # number of random candidates for each such view; the one with the most visible objects is used
 _START_VIEWS = 3  # number of presets with questions about the start view, which need no move
 _MAX_GROUPS = 40  # maximum number of pairs of presets to compare, and of groups of three presets
 _MAX_PER_TYPE = 10  # maximum number of drafts per question type and view
@@ -38,13 +38,13 @@ _READING_VIEWS = 36  # maximum number of views that are zoomed in to read a text
 
 
 class SceneDrafts:
-    """The drafts of one scene, in an order that depends on the seed. The ground truth of a view is read on first use.
+    """The drafts for one scene, in an order that depends on the seed. A view's ground truth is read on first use.
 
     Args:
         scene: The scene.
         seed: Seed for every random choice.
         nouns: Nouns of object categories that a question may be about even if the scene has no such object.
-        values: The values of attributes in all scenes, from which the options of a question are taken.
+        values: The attribute values in all scenes, which questions offer as options.
     """
 
     def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:
@@ -63,24 +63,24 @@ class SceneDrafts:
             by_viewpoint.setdefault(preset.viewpoint, []).append(preset.name)
         longest = max(map(len, by_viewpoint.values()))
         names = [group[n] for n in range(longest) for group in by_viewpoint.values() if n < len(group)]
-        return [self.places.from_other_preset(name) for name in names]
+        return [self.places.place_from_other_preset(name) for name in names]
 
     @cached_property
     def views(self) -> list[TaskPlace]:
         """The places that most categories use: presets, sweeps, views away from the presets, and some start views."""
         sweeps = {place.at.viewpoint: place for place in reversed(self.places.sweeps()) if not place.calls}
-        stays = [self.places.at_preset(str(p.preset)) for p in self.presets]
-        self._rng("stays").shuffle(stays)
-        return [*self.presets, *sweeps.values(), *self._off_presets(), *stays[:_START_VIEWS]]
+        start_views = [self.places.place_at_preset(str(p.preset)) for p in self.presets]
+        self._rng("stays").shuffle(start_views)
+        return [*self.presets, *sweeps.values(), *self._off_preset_views(), *start_views[:_START_VIEWS]]
 
-    def _off_presets(self) -> Iterator[TaskPlace]:
-        """Yield views away from the presets. Each is the one with the most objects among a few candidates."""
-        stream, seen = self.places.off_presets(), set[str]()
+    def _off_preset_views(self) -> Iterator[TaskPlace]:
+        """Yield views away from the presets. Each one is the candidate with the most objects among a few."""
+        stream, seen = self.places.off_preset_views(), set[str]()
         for _ in range(_OFF_PRESET_VIEWS):
             candidates = [place for place in islice(stream, _CANDIDATE_VIEWS) if place.key not in seen]
             if not candidates:
                 return
-            best = max(candidates, key=lambda place: len(place.truth.first.visible))
+            best = max(candidates, key=lambda place: len(place.truth.first_sample.visible))
             seen.add(best.key)
             yield best
 
@@ -105,15 +105,15 @@ class SceneDrafts:
                     continue
                 pan, tilt = pan_tilt_deg(origin.offset(centre))
                 zoom = TASK_CAMERA.optics.zoom_for_hfov(min(hfov, TASK_CAMERA.optics.hfov_deg(1.0)))
-                place = self.places.towards(viewpoint.name, float(pan), float(tilt), zoom)
-                if place is not None and any(t.text.id == text.id and t.legible for t in place.truth.first.texts):
+                place = self.places.place_towards(viewpoint.name, float(pan), float(tilt), zoom)
+                if place is not None and any(t.text.id == text.id and t.legible for t in place.truth.first_sample.texts):
                     by_object[text.parent] = place
                 if len(by_object) == _READING_VIEWS:
                     return list(by_object.values())
         return list(by_object.values())
 
     def drafts(self, category: Category) -> Iterator[TaskDraft]:
-        """Yield all drafts of a category."""
+        """Yield all drafts in a category."""
         rng = self._rng(category)
         match category:
             case "single_call":

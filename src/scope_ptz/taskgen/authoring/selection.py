@@ -1,4 +1,4 @@
-"""Selection of the drafts of a category, balanced over scenes, viewpoints, question types and answers."""
+"""Select a category's drafts, balanced over scenes, viewpoints, question types and answers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.bench.scoring.coverage import uncovered_part
 from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.authoring.drafts import SentenceFrames, TaskDraft
-from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.answer_phrasing import offered_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
@@ -26,19 +26,19 @@ MAX_SAME_ANSWER: dict[Category, int] = {
 }  # fmt: skip
 """Maximum number of tasks per category that have the same correct answer, not counting pairs.
 
-Over all categories, these are at most 3% of the tasks.
+Over all categories, at most 3% of the tasks have the same correct answer.
 """
 
 MAX_SAME_YES_NO = 1
-"""Maximum number of tasks per question type that have the answer "yes", and maximum for "no", not counting pairs."""
+"""Maximum number of tasks with the answer "yes", and of tasks with "no", per question type, not counting pairs."""
 
 MAX_SAME_QUESTION = 2
 """Maximum number of tasks in a scene that have the same question and answer, about different views."""
 
 MAX_AT_ONE_POSITION: dict[Category, int] = {"descriptor": 3, "location": 3, "comparative": 5}
-"""Maximum number of tasks whose correct answer is at the same position among the options of the question, not counting pairs.
+"""Maximum number of tasks whose correct answer has the same position among the question's options, not counting pairs.
 
-Over all categories, these are at most 3% of the tasks.
+Over all categories, the correct answer has the same position in at most 3% of the tasks.
 """
 
 _NO_LIMIT = 1000.0  # slack at which the limits on equal questions, equal answers and answer positions have no effect
@@ -46,11 +46,11 @@ _NO_LIMIT = 1000.0  # slack at which the limits on equal questions, equal answer
 MAX_FRAME_SHARE = 0.06  # maximum fraction of a category's tasks with the same sentence frame
 MAX_FROM_START = 3  # maximum number of tasks per category that can be answered from the start view
 
-# Weights of the traits in the cost of selecting another draft with the same trait.
+# The cost of selecting another draft with the same trait, by trait.
 _WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "question type": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
 
 CanAnswer = Callable[[TaskDraft], bool]
-"""A function that returns whether ground-truth perception can answer the perception calls of a draft's reference program."""
+"""A function that returns whether ground-truth perception can answer the calls in a draft's reference program."""
 
 _AddDraft = Callable[[TaskDraft], bool]
 
@@ -77,24 +77,24 @@ class SharedLimits:
     """Limits that all categories share, and the questions and instructions that any category has already used.
 
     Attributes:
-        asked: Keys of the questions and views that are already used.
+        used_questions: Keys of the questions and views that are already used.
         texts: Instructions that are already used.
         scale: Size of this dataset relative to the published one. Limits are multiplied by it.
         can_answer: Returns whether perception can answer a draft; None accepts all drafts.
     """
 
-    asked: set[str] = field(default_factory=set)
+    used_questions: set[str] = field(default_factory=set)
     texts: set[str] = field(default_factory=set)
     scale: float = 1.0
     can_answer: CanAnswer | None = None
 
-    def scaled(self, limit: int) -> int:
-        """Return a limit scaled to the size of this dataset, at least 1."""
+    def scale_limit(self, limit: int) -> int:
+        """Scale a limit to the size of this dataset. The result is at least 1."""
         return max(1, round(limit * self.scale))
 
 
 class Selection:
-    """The selection of drafts for one category, from the drafts of all scenes."""
+    """Selects drafts for one category from the drafts for all scenes."""
 
     def __init__(self, category: Category, quota: int, shared: SharedLimits, seed: int) -> None:
         self.category, self.quota, self.shared = category, quota, shared
@@ -111,18 +111,18 @@ class Selection:
         pool = sorted(drafts, key=lambda draft: draft.digest(self.seed))
         pairs = [draft for draft in pool if draft.twin is not None]
         pair_count = (
-            min(self.shared.scaled(PAIR_QUOTAS.get(self.category, 0)), self.quota // 2) if self.category in PAIR_QUOTAS else 0
+            min(self.shared.scale_limit(PAIR_QUOTAS.get(self.category, 0)), self.quota // 2) if self.category in PAIR_QUOTAS else 0
         )
         for _ in range(pair_count):
-            self._best(pairs, self._pair)
+            self._add_best(pairs, self._add_pair)
         for slack in (1.0, 1.2, 1.4, 1.6, 2.0, 3.0, _NO_LIMIT):
             # If there are too few drafts within the limits, the limits are raised step by step.
             self.slack, singles = slack, [draft for draft in pool if draft.twin is None]
-            while len(self.rows) < self.quota and self._best(singles, self._single):
+            while len(self.rows) < self.quota and self._add_best(singles, self._add_single):
                 pass
         return self.rows
 
-    def _best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
+    def _add_best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
         """Select the draft that improves the balance most, and return whether there is one.
 
         The selected draft and the drafts that ``add_draft`` rejected are removed from the pool.
@@ -134,34 +134,34 @@ class Selection:
         return False
 
     def _cost(self, draft: TaskDraft) -> float:
-        """Return the weighted number of times that the traits of a draft are already used."""
+        """Return the weighted number of times that a draft's traits are already used."""
         twin = () if draft.twin is None else (("answer", draft.twin.answer_key),)
         return sum(_WEIGHTS[name] * self.used[name][value] for name, value in (*draft.traits, *twin))
 
-    def _single(self, draft: TaskDraft) -> bool:
+    def _add_single(self, draft: TaskDraft) -> bool:
         return not self._exceeds_limits(draft) and self._add(draft) is not None
 
     def _exceeds_limits(self, draft: TaskDraft) -> bool:
         if draft.expected.kind == "yes_no":
-            return self.used["polar"][draft.question_type, draft.answer_key] >= self.shared.scaled(MAX_SAME_YES_NO)
+            return self.used["polar"][draft.question_type, draft.answer_key] >= self.shared.scale_limit(MAX_SAME_YES_NO)
         if draft.expected.kind == "action_only":
             return False
         if self.used["same"][draft.place.scene.name, draft.key, draft.answer_key] >= int(self.slack * MAX_SAME_QUESTION):
             return True
-        limit = self.shared.scaled(MAX_SAME_ANSWER.get(self.category, self.quota))
+        limit = self.shared.scale_limit(MAX_SAME_ANSWER.get(self.category, self.quota))
         return self.used["unpaired"][draft.answer_key] >= int(self.slack * limit)
 
-    def _pair(self, draft: TaskDraft) -> bool:
+    def _add_pair(self, draft: TaskDraft) -> bool:
         twin, limit = draft.twin, MAX_PAIRS_OF_TYPE.get(draft.question_type)
-        if twin is None or (limit is not None and self.used["pairs"][draft.question_type] >= self.shared.scaled(limit)):
+        if twin is None or (limit is not None and self.used["pairs"][draft.question_type] >= self.shared.scale_limit(limit)):
             return False
-        if twin.full_key in self.shared.asked or draft.full_key in self.shared.asked:
+        if twin.full_key in self.shared.used_questions or draft.full_key in self.shared.used_questions:
             return False
         row = self._add(draft)
         if row is None:
             return False
         if self._add(twin, frame=row.frame.split("/", 1)[1]) is None:
-            self._drop(row)
+            self._remove(row)
             return False
         self.used["pairs"][draft.question_type] += 1
         return True
@@ -172,27 +172,35 @@ class Selection:
         Return None if its question is already used, it can be answered from the start view, a limit is reached, or no wording is
         left. ``frame`` is the frame of the draft's twin, which it must share.
         """
-        if draft.full_key in self.shared.asked or answerable_from_start(draft):
+        if draft.full_key in self.shared.used_questions or is_answerable_from_start(draft):
             return None
         if self.shared.can_answer is not None and not self.shared.can_answer(draft):
             return None
-        from_start_view = draft.place.is_start_view and not draft.calls_move
-        if from_start_view and self.category != "single_call" and self.used["stays"][True] >= self.shared.scaled(MAX_FROM_START):
+        from_start_view = draft.place.is_start_view and not draft.moves_camera
+        if (
+            from_start_view
+            and self.category != "single_call"
+            and self.used["stays"][True] >= self.shared.scale_limit(MAX_FROM_START)
+        ):
             return None
         rng = random.Random(draft.digest(self.seed))
-        worded = self.frames.word(draft, rng, frame and f"{draft.question_type}/{frame}")
-        if worded is None or self.frames.used[worded[1]] >= self.max_per_frame:
+        wording = self.frames.word(draft, rng, frame and f"{draft.question_type}/{frame}")
+        if wording is None or self.frames.used[wording[1]] >= self.max_per_frame:
             return None
-        unpaired, limited = frame is None and draft.twin is None, self.slack < _NO_LIMIT
-        limit = self.shared.scaled(MAX_AT_ONE_POSITION.get(self.category, self.quota))
-        if unpaired and limited and any(self.used["position"][index] >= limit for index in answer_positions(draft, worded[0])):
+        is_unpaired, is_limited = frame is None and draft.twin is None, self.slack < _NO_LIMIT
+        limit = self.shared.scale_limit(MAX_AT_ONE_POSITION.get(self.category, self.quota))
+        if (
+            is_unpaired
+            and is_limited
+            and any(self.used["position"][index] >= limit for index in answer_positions(draft, wording[0]))
+        ):
             return None
-        self.frames.take(*worded)
-        self.shared.asked.add(draft.full_key)
+        self.frames.record_use(*wording)
+        self.shared.used_questions.add(draft.full_key)
         others = [self.frames.word(draft, rng) for _ in range(5)]
-        row = ChosenDraft(draft, *worded, variants=[o[0] for o in others if o is not None])
+        row = ChosenDraft(draft, *wording, variants=[o[0] for o in others if o is not None])
         self.rows.append(row)
-        self._count_use(row, 1, paired=not unpaired)
+        self._count_use(row, 1, paired=not is_unpaired)
         self.used["stays"][True] += from_start_view
         return row
 
@@ -207,16 +215,16 @@ class Selection:
         for index in answer_positions(row.draft, row.text):
             self.used["position"][index] += step
 
-    def _drop(self, row: ChosenDraft) -> None:
+    def _remove(self, row: ChosenDraft) -> None:
         self.rows.remove(row)
         self._count_use(row, -1, paired=True)
-        self.shared.asked.discard(row.draft.full_key)
+        self.shared.used_questions.discard(row.draft.full_key)
         self.shared.texts.discard(row.text)
         self.frames.used[row.frame] -= 1
 
 
 def answer_positions(draft: TaskDraft, text: str) -> list[str]:
-    """Return the position of the correct answer among the options in a wording, and "last" if it is the last option.
+    """Return the position of the correct answer among the options in a wording, and also "last" for the last option.
 
     The list is empty if the wording does not contain the answer.
     """
@@ -227,13 +235,13 @@ def answer_positions(draft: TaskDraft, text: str) -> list[str]:
     return [] if index < 0 else [str(index), *(["last"] if index == len(names) - 1 else [])]
 
 
-def answerable_from_start(draft: TaskDraft) -> bool:
+def is_answerable_from_start(draft: TaskDraft) -> bool:
     """Return whether a task that needs a move or a sweep would also pass all checks if a run observed only the start view."""
     place = draft.place
     needs = place.needs if draft.needs is None else draft.needs
     views = [view for view in draft.evidence if view.must_look]
     preset = next(p for p in place.scene.file.presets if p.name == place.start)
-    start = preset_at(preset)
+    start = preset_position(preset)
     moved = draft.program is None and not draft.ends_zoomed and place.at != start
     if not needs or not views or moved or (draft.behaviour is not None and draft.behaviour.final is not None):
         return False

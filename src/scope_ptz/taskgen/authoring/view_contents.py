@@ -6,7 +6,7 @@ import random
 from collections.abc import Sequence
 from functools import lru_cache
 
-from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED
+from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTABLE_CATEGORIES
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.facts.kinds import Kind, kinds_in, own_colour
 from scope_ptz.taskgen.facts.robust import RobustTruth
@@ -36,25 +36,25 @@ _UNASKED_NOUNS = frozenset({
 
 
 @lru_cache(maxsize=512)
-def countable(truth: RobustTruth) -> tuple[tuple[Kind, int], ...]:
-    """Return the kinds in a view with an unambiguous count, with that count (at least one)."""
+def countable_kinds(truth: RobustTruth) -> tuple[tuple[Kind, int], ...]:
+    """Return the kinds in a view whose count is unambiguous, each with its count (at least one)."""
     counts = []
-    for kind in kinds_in(s.instance for s in truth.clear):
-        if kind.category in UNCOUNTED:
+    for kind in kinds_in(s.instance for s in truth.clear_sightings):
+        if kind.category in UNCOUNTABLE_CATEGORIES:
             continue
         things = truth.all_of(kind)
         max_count, min_px = (_MAX_COUNT_IN_SWEEP, _MIN_PX_IN_SWEEP) if truth.pose is None else (_MAX_COUNT, _MIN_PX)
         if things and len(things) <= max_count and all(t.pixels >= min_px and t.visible_fraction >= _MIN_SHARE for t in things):
-            special = kind.colour is not None or kind.attribute is not None
-            redundant = special and len(things) == len(truth.all_of(Kind(kind.category)) or ())
-            if not redundant:  # if all cars are red, "red cars" asks the same as "cars"
+            is_specific = kind.colour is not None or kind.attribute is not None
+            is_redundant = is_specific and len(things) == len(truth.all_of(Kind(kind.category)) or ())
+            if not is_redundant:  # if all cars are red, "red cars" asks the same as "cars"
                 counts.append((kind, len(things)))
     return tuple(counts)
 
 
-def plain_counts(truth: RobustTruth) -> list[tuple[Kind, int]]:
-    """Return the countable kinds, with their counts, that are defined by their category alone."""
-    return [(kind, n) for kind, n in countable(truth) if kind.colour is None and kind.attribute is None]
+def category_counts(truth: RobustTruth) -> list[tuple[Kind, int]]:
+    """Return the countable kinds that are defined by their category alone, with their counts."""
+    return [(kind, n) for kind, n in countable_kinds(truth) if kind.colour is None and kind.attribute is None]
 
 
 @lru_cache(maxsize=512)
@@ -65,15 +65,19 @@ def absent_kinds(truth: RobustTruth, nouns: frozenset[str]) -> tuple[Kind, ...]:
     scene ("red car" in a view with white cars only).
     """
     kinds = [Kind(noun) for noun in sorted(nouns - _UNASKED_NOUNS)]
-    categories = sorted({s.instance.category for s in truth.clear if own_colour(s.instance) is not None} - UNCOUNTED)
+    categories = sorted(
+        {s.instance.category for s in truth.clear_sightings if own_colour(s.instance) is not None} - UNCOUNTABLE_CATEGORIES
+    )
     colours = {(t.category, own_colour(t)) for t in truth.scene.things if t.category in categories}
     kinds += [Kind(category, colour) for category, colour in sorted(colours, key=str) if colour in _ABSENT_COLOURS]
-    return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and truth.certainly_lacks(kind))
+    return tuple(kind for kind in kinds if kind.category not in UNCOUNTABLE_CATEGORIES and truth.certainly_lacks(kind))
 
 
-def disjoint(truth: RobustTruth, kinds: Sequence[Kind]) -> bool:
+def are_disjoint(truth: RobustTruth, kinds: Sequence[Kind]) -> bool:
     """Return whether no object in view could belong to two of these kinds, as with "people" and "workers"."""
-    return not any(sum(kind.fits(thing) or kind.ambiguous_with(thing) for kind in kinds) > 1 for thing in truth.traces)
+    return not any(
+        sum(kind.fits(thing) or kind.is_ambiguous_with(thing) for kind in kinds) > 1 for thing in truth.discernible_objects
+    )
 
 
 def scene_kinds_first(place: TaskPlace, kinds: Sequence[Kind], rng: random.Random) -> list[Kind]:
@@ -81,6 +85,6 @@ def scene_kinds_first(place: TaskPlace, kinds: Sequence[Kind], rng: random.Rando
 
     The noun in a question then does not reveal that the answer is "there is none".
     """
-    elsewhere = {thing.category for thing in place.scene.things}
+    scene_categories = {thing.category for thing in place.scene.things}
     shuffled = rng.sample(kinds, len(kinds))
-    return sorted(shuffled, key=lambda kind: kind.category not in elsewhere)
+    return sorted(shuffled, key=lambda kind: kind.category not in scene_categories)

@@ -13,14 +13,14 @@ from scope_ptz.taskgen.facts.kinds import SceneThing
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA, RobustTruth
 
 FILL = 0.75
-"""Fraction of the frame's width or height, whichever it fills more, that an object fills after ``zoom_to_object``."""
+"""Fraction of the frame's width or height that an object fills after ``zoom_to_object``, whichever fraction is larger."""
 
 
 MIN_TARGET_PX = 150
 """Minimum size of an object in pixels, so that it can be detected reliably."""
 
 
-def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
+def close_up_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
     """Return the pose that frames an outline, and the fraction of the frame's width or height that the outline then fills.
 
     Args:
@@ -35,12 +35,12 @@ def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, fl
     pose, fill = Pose(), 0.0
     for _ in range(10):
         pan, tilt = (float(v) for v in pan_tilt_deg(middle))
-        wide = Perspective(pan, tilt, TASK_CAMERA.optics.hfov_deg(1.0), TASK_CAMERA.width, TASK_CAMERA.height)
-        points = wide.points(outline)
+        widest_view = Perspective(pan, tilt, TASK_CAMERA.optics.hfov_deg(1.0), TASK_CAMERA.width, TASK_CAMERA.height)
+        points = widest_view.points(outline)
         if np.isnan(points).any():
             return None
         low, high = points.min(axis=0), points.max(axis=0)
-        middle = wide.directions((low + high) / 2)
+        middle = widest_view.directions((low + high) / 2)
         size = float((high - low).max())
         zoom = TASK_CAMERA.optics.zoom_for_focal(TASK_CAMERA.optics.focal(1.0) * FILL / max(size, 1e-6))
         pose = Pose(pan, tilt, min(max(zoom, zoom_limits[0]), zoom_limits[1]))
@@ -48,7 +48,7 @@ def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, fl
     return pose, fill
 
 
-def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace | None:
+def close_up_place(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace | None:
     """Return the view after zooming in on an object.
 
     Returns:
@@ -61,19 +61,19 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
     limits = TASK_CAMERA.limits
     if extent is None:
         return None
-    close_up = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
+    close_up = close_up_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
     if close_up is None or limits.clamp(close_up[0])[1] or close_up[0].zoom < place.at.pose.zoom * 1.1:
         return None
     return TaskPlace(place.scene, place.start, place.calls, CameraPosition(place.at.viewpoint, close_up[0]))
 
 
-def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
+def target_framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
     """Return the framing that a task requires; None if the object is partly hidden or the zoom range is too small to frame it."""
-    close = framed(place, sighting, thing)
+    close = close_up_place(place, sighting, thing)
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
     if close is None or extent is None or sighting.visible_fraction < 0.97:
         return None
-    fill = (close_pose(extent.hull, (TASK_CAMERA.limits.min_zoom, TASK_CAMERA.limits.max_zoom)) or (Pose(), 0.0))[1]
+    fill = (close_up_pose(extent.hull, (TASK_CAMERA.limits.min_zoom, TASK_CAMERA.limits.max_zoom)) or (Pose(), 0.0))[1]
     close_truth = RobustTruth(place.scene, str(place.at.viewpoint), close.at.pose, place.truth.time_s)
     if not 0.7 <= fill <= 0.8 or not close_truth.visibility(thing.number):
         return None

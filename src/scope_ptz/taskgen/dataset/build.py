@@ -1,4 +1,4 @@
-"""Build the whole dataset: every split, its validation report, and the gold runs for the error modes."""
+"""Build the whole dataset: every split with its validation report, and the gold runs for the error modes."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from scope_ptz.taskgen.gold.reference_runs import matrix_lines
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
 PROGRESS_INTERVAL = 100
-"""Number of validated tasks between two progress notes."""
+"""Number of tasks to validate between progress notes."""
 
 ValidateTasks = Callable[[Sequence[Task], int, Callable[[int, int], None]], ValidationReport]
-"""A function that validates tasks with a seed, and reports progress to a callback."""
+"""A function that validates tasks, given a seed, and reports progress to a callback."""
 MakeGold = Callable[[Sequence[Task], int], list[GoldRun]]
-"""A function that creates the gold runs of tasks with a seed."""
+"""A function that creates gold runs from tasks, given a seed."""
 
 
 def build_dataset(
@@ -44,15 +44,15 @@ def build_dataset(
     """Write a dataset to a folder. The same scenes, seed and variations always give identical files.
 
     Args:
-        scenes: Scenes of the tasks, by name.
-        out: Folder of the dataset.
+        scenes: Scenes for the tasks, by name.
+        out: The dataset folder.
         seed: Seed for every random choice.
         numbers: Numbers of the scene variations for the unseen split.
-        quotas: Number of tasks of each category; None for the published numbers.
+        quotas: Number of tasks in each category; None for the published numbers.
         validate: Validates the tasks of one split.
         make_gold: Creates gold runs from the core tasks.
         can_answer: Returns whether ground-truth perception can answer the questions of a draft.
-        report: Called with each line of the result.
+        report: Called with each line that states a result.
         notify: Called with notes about progress and missing tasks.
 
     Returns:
@@ -60,11 +60,11 @@ def build_dataset(
     """
     core = build(list(scenes.values()), seed, quotas, notify, can_answer)
     unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer, seed)
-    short = [missing_tasks_message(core), missing_tasks_message(unseen, " unseen")]
-    for text in filter(None, short):
+    messages = [missing_tasks_message(core), missing_tasks_message(unseen, " unseen")]
+    for text in filter(None, messages):
         notify(text)
     written = write_splits(core.tasks, unseen.tasks, out, seed=seed)
-    report(f"{len(core.tasks)} tasks and {len(unseen.tasks)} unseen ones in {out}")
+    report(f"Wrote {len(core.tasks)} tasks and {len(unseen.tasks)} unseen tasks to {out}")
 
     reports = {}
     for name, tasks in (("published", core.tasks), ("unseen", unseen.tasks)):
@@ -79,12 +79,12 @@ def build_dataset(
     for line in matrix_lines(gold):
         report(line)
     write_manifest(out, written, scenes.values(), seed=seed, unseen=list(numbers), **({} if quotas is None else {"quotas": quotas}))
-    return not any(short) and all(result.sound for result in reports.values())
+    return not any(messages) and all(result.sound for result in reports.values())
 
 
 def missing_tasks_message(built: BuiltTasks, split: str = "") -> str:
     """Return a message about unmet quotas; empty if all quotas are met. ``split`` qualifies the tasks, such as " unseen"."""
-    missing = ", ".join(f"{number} of {name} are missing" for name, number in built.short.items())
+    missing = ", ".join(f"{number} of {name} are missing" for name, number in built.missing.items())
     return f"too few{split} tasks: {missing}" if missing else ""
 
 

@@ -1,4 +1,4 @@
-"""Distributions of a dataset over categories, scenes, viewpoints, difficulty, needs and answers, as tables and charts."""
+"""Show how a dataset is distributed over categories, scenes, viewpoints, difficulty, needs and answers, as tables and charts."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ _ORDER = {"easy": 1, "medium": 2, "hard": 3}
 def cross_table(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
     """Return the header and the rows of a table that counts tasks by two keys. The last column and row contain totals."""
     counts = Counter((rows(task), columns(task)) for task in tasks)
-    across = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
-    down = list(dict.fromkeys(rows(task) for task in tasks))
-    body: list[list[str | int]] = [[row, *(counts[row, c] for c in across), sum(counts[row, c] for c in across)] for row in down]
-    body.append(["all", *(sum(counts[row, c] for row in down) for c in across), len(tasks)])
-    return ["", *across, "all"], body
+    column_names = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
+    row_names = list(dict.fromkeys(rows(task) for task in tasks))
+    body: list[list[str | int]] = [
+        [row, *(counts[row, c] for c in column_names), sum(counts[row, c] for c in column_names)] for row in row_names
+    ]
+    body.append(["all", *(sum(counts[row, c] for row in row_names) for c in column_names), len(tasks)])
+    return ["", *column_names, "all"], body
 
 
 def value_counts(tasks: Iterable[Task], values_of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
@@ -44,7 +46,7 @@ def viewpoint(task: Task) -> str:
 
 
 def short_answer(task: Task) -> str:
-    """Return the correct answer as a short text. All actions have the same text, and so do all absences."""
+    """Return the correct answer as a short text. All actions share one text, and all absences share another."""
     match task.expected:
         case ActionOnly():
             return "(an action)"
@@ -58,7 +60,7 @@ def short_answer(task: Task) -> str:
 
 
 def answer_statistics(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
-    """Yield each category with its number of tasks, its number of different answers, and its most frequent answers."""
+    """Yield each category with the number of tasks, the number of different answers, and the most frequent answers."""
     for category in dict.fromkeys(task.category for task in tasks):
         counts = Counter(short_answer(task) for task in tasks if task.category == category)
         yield category, counts.total(), len(counts), counts.most_common(MAX_ANSWERS)
@@ -87,13 +89,13 @@ def start_view_count(tasks: Iterable[Task]) -> int:
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str | int]]) -> str:
     """Return a Markdown table with numbers aligned to the right."""
     body = [list(row) for row in rows]
-    right = [all(isinstance(row[n], int) for row in body) for n in range(len(head))]
-    lines = [head, ["--:" if r else "---" for r in right], *body]
+    right_aligned = [all(isinstance(row[n], int) for row in body) for n in range(len(head))]
+    lines = [head, ["--:" if is_right else "---" for is_right in right_aligned], *body]
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
 def chart(values: Sequence[tuple[str, int]]) -> str:
-    """Return values as a bar chart of text in a code block."""
-    most, width = max((n for _, n in values), default=0), max((len(name) for name, _ in values), default=0)
-    lines = [f"{name:>{width}} {'█' * max(1, round(BAR_CHARS * n / most)) if n else ''} {n}" for name, n in values]
+    """Return a bar chart of the values as text in a code block."""
+    maximum, width = max((n for _, n in values), default=0), max((len(name) for name, _ in values), default=0)
+    lines = [f"{name:>{width}} {'█' * max(1, round(BAR_CHARS * n / maximum)) if n else ''} {n}" for name, n in values]
     return "\n".join(["```text", *lines, "```"])

@@ -1,4 +1,4 @@
-"""Build the unseen split: core tasks in variations of the scenes."""
+"""Build the unseen split, which contains core tasks in variations of the scenes."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ def build_unseen(
     Returns:
         The tasks, and how many are missing per category.
     """
-    worlds = [(scene, number, scene.varied(number)) for scene in scenes for number in dict.fromkeys(numbers)]
+    variations = [(scene, number, scene.create_variation(number)) for scene in scenes for number in dict.fromkeys(numbers)]
     # This seed is larger than the seeds of core datasets, so the wordings and objects of the unseen tasks differ from theirs.
-    drawn = 1_000_000 + sum(number * 31**k for k, number in enumerate(numbers))
+    split_seed = 1_000_000 + sum(number * 31**k for k, number in enumerate(numbers))
     if seed != PUBLISHED_SEED:
-        drawn = int.from_bytes(sha256(f"{drawn}:{seed}".encode()).digest()[:8], "big")
-    built = build([world for _, _, world in worlds], drawn, dict(quotas or QUOTAS), progress, can_answer)
-    origins = {world.name: (scene, number) for scene, number, world in worlds}
-    tasks = [_with_variation(task, *origins[task.scene]) for task in built.tasks if task.stratum == "core"]
-    return BuiltTasks(tasks, built.short)
+        split_seed = int.from_bytes(sha256(f"{split_seed}:{seed}".encode()).digest()[:8], "big")
+    built = build([variation for _, _, variation in variations], split_seed, dict(quotas or QUOTAS), progress, can_answer)
+    origins = {variation.name: (scene, number) for scene, number, variation in variations}
+    tasks = [_set_variation(task, *origins[task.scene]) for task in built.tasks if task.stratum == "core"]
+    return BuiltTasks(tasks, built.missing)
 
 
-def _with_variation(task: Task, scene: Scene, number: int) -> Task:
+def _set_variation(task: Task, scene: Scene, number: int) -> Task:
     """Return a task with the name of the original scene and the number of its variation."""
     return Task.model_validate({**task.model_dump(), "scene": scene.name, "variation": number})

@@ -1,5 +1,5 @@
-"""Facts about views, objects and answers, shared by the authoring and the validation of tasks.
+"""Facts about views, objects and answers, shared by task authoring and validation.
 
-``robust`` reads the ground truth of a view and reports only facts that are certain. ``kinds`` defines kinds of objects, and which
-of them people confuse. ``answer_phrasing`` words correct and wrong answers, and ``near_duplicates`` compares tasks.
+``robust`` reads a view's ground truth and reports only facts that are certain. ``kinds`` defines kinds of objects and states which
+kinds people confuse. ``answer_phrasing`` words correct and wrong answers, and ``near_duplicates`` compares tasks.
 """

@@ -1,4 +1,4 @@
-"""Wordings of correct and wrong answers for every type of expected answer. Validation uses them as answers of runs."""
+"""Word correct and wrong answers for every type of expected answer. Validation uses them as the answers of runs."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from scope_ptz.bench.tasks.expected import (
 from scope_ptz.english import number_word
 
 _DIRECTIONS = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
-_MISREADINGS = "ACDEFHJKMNPRTUVWXY2346790"
-"""Letters and digits that replace a character of a text to simulate a misreading."""
+_REPLACEMENT_CHARACTERS = "ACDEFHJKMNPRTUVWXY2346790"
+"""Letters and digits that can replace a character to simulate a misreading."""
 
 
 def correct_answers(expected: AnyExpected) -> tuple[str, ...]:
     """Return five or more wordings of the correct answer."""
     match expected:
         case Number():
-            return _numbers(expected.value, expected.unit)
+            return _number_wordings(expected.value, expected.unit)
         case YesNo():
             word = "yes" if expected.value else "no"
             return (
@@ -42,23 +42,23 @@ def correct_answers(expected: AnyExpected) -> tuple[str, ...]:
                 f"The answer is {word}.",
             )
         case Choice():
-            return _names(expected.value)
+            return _name_wordings(expected.value)
         case Text():
             text = expected.accepted[0]
             return f'It reads "{text}".', text, f"The text says '{text}'.", f"It says **{text}**.", f'"{text.upper()}"'
         case NameSet():
-            return _sets(expected.value)
+            return _set_wordings(expected.value)
         case Ordering():
             listed = ", ".join(expected.value)
             in_sequence = ", then ".join(expected.value)
             numbered = "\n".join(f"{n}. {name}" for n, name in enumerate(expected.value, 1))
             return listed, f"The order is {listed}.", in_sequence.capitalize() + ".", " > ".join(expected.value), numbered
         case Relation():
-            return _relations(expected, expected.value)
+            return _relation_wordings(expected, expected.value)
         case Description():
-            return _descriptions([fact.any_of[0] for fact in expected.facts])
+            return _description_wordings([fact.any_of[0] for fact in expected.facts])
         case NoneThere():
-            many = plural(expected.subject[0])
+            many = pluralise(expected.subject[0])
             return "None.", "No.", f"There are no {many}.", f"I don't see any {many}.", f"No {many} are visible."
         case ActionOnly():
             return "Done.", "Ready.", "The camera is there.", "OK.", "I have done that."
@@ -83,7 +83,7 @@ def offered_answers(expected: AnyExpected, question: str) -> tuple[str, ...]:
 
 
 _MAX_OFFER_GAP = 26
-"""Maximum number of characters between two offered answers, for words such as " or the"."""
+"""Maximum number of characters between two offered answers, such as " or the "."""
 
 
 def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
@@ -94,39 +94,39 @@ def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
                 expected.tolerance + rng.choice((1, 2)),
                 *([-expected.tolerance - 1] if expected.value > expected.tolerance else []),
             ]
-            return rng.choice(_numbers(float(round(expected.value + rng.choice(steps))), expected.unit))
+            return rng.choice(_number_wordings(float(round(expected.value + rng.choice(steps))), expected.unit))
         case YesNo():
             return rng.choice(correct_answers(expected.model_copy(update={"value": not expected.value})))
         case Choice():
             others = [name for name in expected.options if name != expected.value]
-            return rng.choice(_names(rng.choice(others))) if others else None
+            return rng.choice(_name_wordings(rng.choice(others))) if others else None
         case Text():
-            return f'It reads "{_misread(expected.accepted[0], rng)}".'
+            return f'It reads "{_misread_character(expected.accepted[0], rng)}".'
         case NameSet():
-            return rng.choice(_sets(_other_set(expected, rng)))
+            return rng.choice(_set_wordings(_wrong_set(expected, rng)))
         case Ordering():
             first, second, *rest = expected.value
             return ", ".join((second, first, *rest))
         case Relation():
-            return rng.choice(_relations(expected, "backward" if expected.value != "backward" else "forward"))
+            return rng.choice(_relation_wordings(expected, "backward" if expected.value != "backward" else "forward"))
         case Description():
             facts = [fact.any_of[0] for fact in expected.facts]
             if expected.contradictions and rng.random() < 0.5:
-                return _descriptions([*facts, rng.choice(expected.contradictions).any_of[0]])[0]
+                return _description_wordings([*facts, rng.choice(expected.contradictions).any_of[0]])[0]
             facts.pop(rng.randrange(len(facts)))
-            return _descriptions(facts)[0] if facts else "A view."
+            return _description_wordings(facts)[0] if facts else "A view."
         case NoneThere():
             one = expected.subject[0]
-            return rng.choice(("Yes.", f"There is a {one}.", f"I can see 2 {plural(one)}."))
+            return rng.choice(("Yes.", f"There is a {one}.", f"I can see 2 {pluralise(one)}."))
         case ActionOnly():
             return None
 
 
-def plural(words: str) -> str:
+def pluralise(words: str) -> str:
     """Return the plural of a noun phrase by simple rules."""
     noun = re.split(r" (?:in|who|with|of|on|for|carrying) ", words)[0]
     if noun != words:
-        return plural(noun) + words[len(noun) :].replace(" who is ", " who are ")
+        return pluralise(noun) + words[len(noun) :].replace(" who is ", " who are ")
     if words.endswith("person"):
         return words[:-6] + "people"
     if words.endswith("f") and words.endswith(("loaf", "leaf", "shelf")):
@@ -143,12 +143,12 @@ def number_in_words(number: int) -> str:
     return number_word(number)
 
 
-def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
+def _number_wordings(value: float, unit: Sequence[str]) -> tuple[str, ...]:
     number = f"{value:g}"
     word = number_in_words(int(value)) if value == int(value) else number
     noun = unit[0] if unit else "thing"
-    things = noun if value == 1 else plural(noun)
-    be = "is" if value == 1 else "are"
+    things = noun if value == 1 else pluralise(noun)
+    verb = "is" if value == 1 else "are"
     if value == 0 and not unit:
         return "0", "Zero.", "None.", "The answer is 0.", "It is zero."
     if value == 0:
@@ -156,7 +156,7 @@ def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
     if not unit:
         return number, f"**{number}**", f"The answer is {number}.", word.capitalize() + ".", f"It is {number}."
     return (
-        f"There {be} {number} {things}.",
+        f"There {verb} {number} {things}.",
         number,
         f"I count {word} {things} in the view.",
         f"{things}: {number}",
@@ -164,11 +164,11 @@ def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _names(name: str) -> tuple[str, ...]:
+def _name_wordings(name: str) -> tuple[str, ...]:
     return name, f"It is {name}.", f"**{name.capitalize()}**", f"The answer is {name}.", f"I would say {name}."
 
 
-def _sets(names: Sequence[str]) -> tuple[str, ...]:
+def _set_wordings(names: Sequence[str]) -> tuple[str, ...]:
     if not names:
         return "None.", "Nothing.", "There are none.", "none", "None of them is there."
     listed = " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
@@ -176,7 +176,7 @@ def _sets(names: Sequence[str]) -> tuple[str, ...]:
     return listed, f"I can see {listed}.", bullets, f"There are: {', '.join(names)}.", " & ".join(reversed(names))
 
 
-def _relations(expected: Relation, value: str) -> tuple[str, ...]:
+def _relation_wordings(expected: Relation, value: str) -> tuple[str, ...]:
     one, two = expected.subject[0], expected.object[0]
     if value == "same":
         return (
@@ -199,7 +199,7 @@ def _relations(expected: Relation, value: str) -> tuple[str, ...]:
     return tuple(wordings)
 
 
-def _descriptions(facts: Sequence[str]) -> tuple[str, ...]:
+def _description_wordings(facts: Sequence[str]) -> tuple[str, ...]:
     listed = ", ".join(facts)
     return (
         f"The view shows {listed}.", f"I can see {listed}.", f"{listed}", "\n".join(f"- {fact}" for fact in facts),
@@ -207,7 +207,7 @@ def _descriptions(facts: Sequence[str]) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
+def _wrong_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
     missing = [name for name in expected.options if name not in expected.value]
     if missing and (not expected.value or rng.random() < 0.5):
         return (*expected.value, rng.choice(missing))
@@ -218,11 +218,13 @@ def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
     )
 
 
-def _misread(text: str, rng: random.Random) -> str:
+def _misread_character(text: str, rng: random.Random) -> str:
     """Return a text with one letter or digit replaced by a different one. "0" and "O" do not replace each other."""
     positions = [index for index, letter in enumerate(text) if letter.isalnum()]
     index = rng.choice(positions)
     others = [
-        letter for letter in _MISREADINGS if letter.lower() != text[index].lower() and {letter, text[index].upper()} != {"0", "O"}
+        letter
+        for letter in _REPLACEMENT_CHARACTERS
+        if letter.lower() != text[index].lower() and {letter, text[index].upper()} != {"0", "O"}
     ]
     return text[:index] + rng.choice(others) + text[index + 1 :]

@@ -1,7 +1,7 @@
 """Kinds of objects that a question can be about, and rules for objects that people might count as another kind.
 
-For example, people disagree whether a litter bin is a recycling bin. If people could disagree about an object in a view, no
-question is asked about its kind, so that every expected number is unambiguous.
+For example, people disagree about whether a litter bin is a recycling bin. If a view contains an object that people could disagree
+about, no task asks about that kind. Every expected number is therefore unambiguous.
 """
 
 from __future__ import annotations
@@ -33,24 +33,23 @@ SIGNS = frozenset({
 })  # fmt: skip
 """Categories that people could call a sign."""
 
-RECOGNISED_BY_TEXT = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
+TEXT_CATEGORIES = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
 """Categories that people recognise only from the side with the lettering."""
 
-UNRECOGNISABLE = frozenset({
+UNRECOGNISABLE_CATEGORIES = frozenset({
     "cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter", "dock light",
     "camera pole",
 })  # fmt: skip
-"""Plain boxes, poles and lamps that people cannot recognise from a distance. No question is asked about them."""
+"""Plain boxes, poles and lamps that people cannot recognise from a distance. No task asks about them."""
 
 INCOMPLETE_CATEGORIES: Mapping[str, frozenset[str]] = {
     "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
     "station-square": frozenset({"awning"}),
     "freight-yard": frozenset({"roller door"}),
 }
-"""Categories whose visible objects are not all in the ground truth, by scene.
+"""Categories for which the ground truth does not contain every visible object, by scene.
 
-Some of these objects are in the backdrop, are parts of larger objects or lie under other objects, so people would disagree about
-their number.
+Some of these objects belong to the backdrop, to larger objects or to stacks, so people would disagree about their number.
 """
 
 _CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (
@@ -122,13 +121,13 @@ _SIMILAR_COLOURS = (
 )  # fmt: skip
 """Sets of words. Two colours are similar if their words together include one of these sets."""
 
-_WITH_VISIBLE_DRIVER = frozenset(
+_OPEN_VEHICLES = frozenset(
     {"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"}
 )
 """Categories of vehicles whose driver may be visible."""
 
 _OTHER_NAMES = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
-"""Words in the name of an object that some people would use instead of its category, by category."""
+"""Words in an object's name that some people would use instead of its category, by category."""
 
 COLOUR_WORDS = frozenset({
     "white", "black", "grey", "silver", "red", "blue", "navy", "green", "yellow", "orange", "brown", "beige", "cream", "buff",
@@ -164,10 +163,10 @@ class Kind:
         )
 
     def may_be_driver_of(self, thing: SceneThing) -> bool:
-        """Return whether a vehicle may have a visible driver of this kind who is not an object in the ground truth."""
-        return self.category in GROUPS["person"] and thing.category in _WITH_VISIBLE_DRIVER
+        """Return whether a vehicle may have a visible driver who is of this kind but is not in the ground truth."""
+        return self.category in GROUPS["person"] and thing.category in _OPEN_VEHICLES
 
-    def ambiguous_with(self, thing: SceneThing) -> bool:
+    def is_ambiguous_with(self, thing: SceneThing) -> bool:
         """Return whether people could count an object as this kind, although it does not fit."""
         if self.fits(thing):
             return False
@@ -180,11 +179,13 @@ class Kind:
         if self.attribute is not None:
             return self.attribute[0] not in thing.attributes
         colour = own_colour(thing) or ""
-        return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or similar_colours(self.colour, colour)
+        return (
+            not colour or bool(set((self.colour or "").split()) & set(colour.split())) or are_similar_colours(self.colour, colour)
+        )
 
 
 def own_colour(thing: SceneThing) -> str | None:
-    """Return the colour of an object itself; None if it is the colour of clothes or contents ("planter with red flowers")."""
+    """Return an object's own colour; None if the colour is that of clothes or contents ("planter with red flowers")."""
     colour = thing.attributes.get("colour")
     if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
         return None
@@ -195,26 +196,26 @@ def own_colour(thing: SceneThing) -> str | None:
 
 def has_colour(thing: SceneThing) -> bool:
     """Return whether people would describe an object of this category by a single colour."""
-    return thing.category not in _COLOURLESS
+    return thing.category not in _COLOURLESS_CATEGORIES
 
 
-def colour_shows(thing: SceneThing) -> bool:
-    """Return whether a picture shows the colour of an object, and its name does not reveal the colour.
+def is_colour_visible(thing: SceneThing) -> bool:
+    """Return whether pictures show an object's colour and its name does not reveal the colour.
 
     Signs, striped objects and open doors do not show a single colour.
     """
     facts = thing.attributes
-    striped = facts.get("pattern", "plain") != "plain"
+    is_striped = facts.get("pattern", "plain") != "plain"
     is_open_door = "door" in thing.category and facts.get("state", "closed") != "closed"
-    implied = not _COLOUR_IMPLYING.isdisjoint(thing.name.lower().split())
-    return thing.category not in SIGNS and not striped and not is_open_door and not implied
+    name_reveals_colour = not _COLOURED_MATERIALS.isdisjoint(thing.name.lower().split())
+    return thing.category not in SIGNS and not is_striped and not is_open_door and not name_reveals_colour
 
 
-_COLOUR_IMPLYING = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
-"""Materials in a name that reveal the colour."""
+_COLOURED_MATERIALS = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
+"""Materials that reveal an object's colour when they occur in its name."""
 
 
-_COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
+_COLOURLESS_CATEGORIES = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
     "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
     "plate compactor", "belisha beacon",
 }  # fmt: skip
@@ -223,8 +224,8 @@ _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
 _PREPOSITIONS = frozenset({"of", "with", "in", "on", "for"})
 
 
-def similar_colours(one: str | None, other: str) -> bool:
-    """Return whether two colours are so similar that people disagree which of them an object has."""
+def are_similar_colours(one: str | None, other: str) -> bool:
+    """Return whether two colours are so similar that people disagree about which of them an object has."""
     words = {*(one or "").split(), *other.split()}
     return one is not None and any(words >= pair for pair in _SIMILAR_COLOURS)
 
@@ -243,11 +244,11 @@ COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
 
 
 def kinds_in(things: Iterable[SceneThing]) -> list[Kind]:
-    """Return the kinds of the given objects in a fixed order: categories with and without colour, groups, and states."""
-    present = list(things)
-    coloured = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
-    plain = [Kind(category, colour) for category, colour in sorted(coloured, key=str)]
-    groups = [Kind(group) for group in GROUPS if Kind(group) not in plain]
-    grouped = [kind for kind in groups if any(kind.fits(thing) for thing in present)]
+    """Return the kinds to which the given objects belong, in a fixed order: categories with and without colour, groups, states."""
+    objects = list(things)
+    category_colours = {(t.category, c) for t in objects for c in (None, own_colour(t)) if c is None or " and " not in c}
+    category_kinds = [Kind(category, colour) for category, colour in sorted(category_colours, key=str)]
+    groups = [Kind(group) for group in GROUPS if Kind(group) not in category_kinds]
+    present_groups = [kind for kind in groups if any(kind.fits(thing) for thing in objects)]
     states = [Kind(category, None, (key, value)) for category, key, value in COUNTED_STATES]
-    return [*plain, *grouped, *(kind for kind in states if any(kind.fits(thing) for thing in present))]
+    return [*category_kinds, *present_groups, *(kind for kind in states if any(kind.fits(thing) for thing in objects))]

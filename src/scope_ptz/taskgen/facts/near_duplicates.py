@@ -1,7 +1,7 @@
-"""Detect near-duplicate tasks: those that ask the same question about the same view, and those with almost the same words.
+"""Detect near-duplicate tasks, which ask the same question about the same view or use almost the same words.
 
-Texts are compared by the Jaccard similarity of their sets of five-character shingles, including numbers and names. For a few
-thousand short texts, this is as fast as an estimate with MinHash, and exact.
+Texts are compared by the Jaccard similarity between their sets of five-character shingles, including numbers and names. For a few
+thousand short texts, this is exact and as fast as a MinHash estimate.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from scope_ptz.bench.tasks.task import Task
 
 SHINGLE_CHARS = 5
 MIN_SIMILARITY = 0.75
-"""Minimum similarity of near-duplicates. Only texts about the same scene and variation are compared."""
+"""Minimum similarity between near-duplicates. Only texts about the same scene and variation are compared."""
 
 
 def shingles(text: str) -> frozenset[str]:
-    """Return all substrings of five characters of a text, in lower case and with single spaces."""
+    """Return all five-character substrings of a text, after converting it to lower case and single spaces."""
     normalised = f" {' '.join(re.findall(r'[a-z0-9]+', text.lower()))} "
     return frozenset(normalised[index : index + SHINGLE_CHARS] for index in range(max(1, len(normalised) - SHINGLE_CHARS + 1)))
 
 
 def similarity(one: frozenset[str], two: frozenset[str]) -> float:
-    """Return the Jaccard similarity of two sets, from 0 to 1."""
+    """Return the Jaccard similarity between two sets, from 0 to 1."""
     return len(one & two) / len(one | two) if one or two else 1.0
 
 
 def question_key(task: Task) -> str | None:
-    """Return a key for the expected answer, the views and the objects of a task, independent of its words.
+    """Return a key for a task's expected answer, views and objects that does not depend on its wording.
 
     Return None for a task without evidence.
     """
@@ -49,8 +49,8 @@ class NearDuplicate:
     """An earlier task that a new task repeats.
 
     Attributes:
-        task: The id of the earlier task.
-        similarity: The similarity of their texts; 1 if they ask the same question about the same view.
+        task: Id of the earlier task.
+        similarity: Similarity between the two texts; 1 if both ask the same question about the same view.
     """
 
     task: str
@@ -67,7 +67,7 @@ class KnownTasks:
             self.add(task)
 
     def add(self, task: Task) -> None:
-        """Add a task, with which later tasks are compared."""
+        """Add a task. Later tasks are compared with it."""
         self._texts.setdefault(task.world, []).append((task.id, shingles(task.instruction)))
         if (key := question_key(task)) is not None:
             self._questions.setdefault(key, task.id)

@@ -1,8 +1,8 @@
 """Robust ground truth: facts about a view that remain true if the pose, time and visibility thresholds change slightly.
 
-The ground truth of a view is read at its pose and at eight nearby poses, each at a later time. A sweep is read at its start and at
-three later times. A fact is reported only if it is true in all of these samples, and with visibility thresholds that are 30% lower
-and 30% higher. This module does not process language.
+A view's ground truth is read at the view's own pose, and at eight nearby poses at later times. A sweep is read at its start and at
+three later times. A fact is reported only if it holds in all of these samples, and also with visibility thresholds that are 30%
+lower and 30% higher. This module does not process language.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ from scope_ptz.simulator.truth import (
     ViewTruth,
     view_truth,
 )
-from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, RECOGNISED_BY_TEXT, UNRECOGNISABLE, Kind, SceneThing
+from scope_ptz.taskgen.facts.kinds import INCOMPLETE_CATEGORIES, TEXT_CATEGORIES, UNRECOGNISABLE_CATEGORIES, Kind, SceneThing
 
 TASK_CAMERA = FrameGeometry(1280, 720)
 """The camera for which tasks are created and validated."""
 
-JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # offset of the nearby poses in pan and tilt (degrees), and in zoom (fraction)
+JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # offset of the nearby poses in pan and tilt (degrees) and in zoom (fraction)
 THRESHOLDS = (0.7, 1.0, 1.3)
 """Factors by which the visibility thresholds are multiplied. A fact must be true with each of them."""
 
 TRACE_PX = 20
-"""Maximum number of visible pixels of an object that counts as absent. People do not notice so few pixels."""
+"""An object with at most this many visible pixels counts as absent, because people do not notice it."""
 
 FAINT_PX = 40
-"""Maximum number of pixels of an object that people certainly do not count.
+"""An object with at most this many visible pixels is certainly not counted by people.
 
 If an object has more pixels but does not meet the definition of visible, no question asks for the number of its kind.
 """
@@ -55,7 +55,7 @@ _MIN_FACING_COSINE = 0.2
 """Minimum cosine of the angle between the line of sight and the normal of a text. Below it, the text is seen edge-on."""
 
 SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
-"""Seconds after the start at which texts must also be legible, if actors pass through the view."""
+"""Seconds after the start at which texts must also be legible if actors pass through the view."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 """Seconds after the start at which the nearby poses are read, one for each pose. A sweep is read at three of these times."""
@@ -63,7 +63,7 @@ LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 
 @dataclass(frozen=True)
 class RobustTruth:
-    """Facts about a view, or about a sweep, that are certainly true.
+    """Facts about a view or a sweep that are certainly true.
 
     Attributes:
         scene: The scene.
@@ -85,16 +85,16 @@ class RobustTruth:
         return TASK_CAMERA.sweep() if self.pose is None else TASK_CAMERA.view(self.pose)
 
     @cached_property
-    def first(self) -> ViewTruth:
+    def first_sample(self) -> ViewTruth:
         """The ground truth at the pose itself."""
         return self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s)
 
     @cached_property
     def samples(self) -> tuple[ViewTruth, ...]:
-        """The ground truth at the pose, then at eight nearby poses, each at another time. For a sweep, only the time differs."""
+        """The ground truth at the pose itself, then at eight nearby poses at later times. For a sweep, only the time differs."""
         if self.pose is None:
             later_times_s = LATER_S[1::3]
-            return self.first, *(
+            return self.first_sample, *(
                 self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in later_times_s
             )
         corners = product((-1, 1), repeat=3)
@@ -102,7 +102,7 @@ class RobustTruth:
             Pose(self.pose.pan_deg + a * JITTER_DEG, self.pose.tilt_deg + b * JITTER_DEG, self.pose.zoom * (1 + c * JITTER_ZOOM))
             for a, b, c in corners
         ]
-        return self.first, *(
+        return self.first_sample, *(
             self.read_truth(self.scene, self.viewpoint, TASK_CAMERA.view(p), self.time_s + s)
             for p, s in zip(nearby, LATER_S, strict=True)
         )
@@ -119,14 +119,16 @@ class RobustTruth:
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
-        """The visibility results of each object over all samples and thresholds, by the object's number."""
+        """Whether each object is visible, in all samples and with all thresholds, by the object's number."""
         results: dict[int, set[bool]] = {}
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings}
         for truth in self.samples:
             by_number = {s.instance.number: s for s in truth.sightings}
             for number in numbers:
                 sighting = by_number.get(number)
-                results.setdefault(number, set()).update(sighting is not None and visible(sighting, scale) for scale in THRESHOLDS)
+                results.setdefault(number, set()).update(
+                    sighting is not None and is_visible(sighting, scale) for scale in THRESHOLDS
+                )
         return results
 
     def visibility(self, number: int) -> bool | None:
@@ -137,29 +139,33 @@ class RobustTruth:
         return next(iter(outcomes)) if len(outcomes) == 1 else None
 
     @cached_property
-    def clear(self) -> tuple[Sighting, ...]:
+    def clear_sightings(self) -> tuple[Sighting, ...]:
         """Objects that are certainly visible and recognisable, nearest first."""
-        return tuple(s for s in self.samples[0].sightings if self.visibility(s.instance.number) and self.recognisable(s.instance))
+        return tuple(
+            s for s in self.samples[0].sightings if self.visibility(s.instance.number) and self.is_recognisable(s.instance)
+        )
 
-    def recognisable(self, thing: SceneThing) -> bool:
+    def is_recognisable(self, thing: SceneThing) -> bool:
         """Return whether people can recognise an object in a picture from this viewpoint.
 
         Objects of some categories are recognised only by their lettering, which must face the viewpoint.
         """
-        if self.unreliable(thing.category) or thing.attributes.get("canopy") == "rolled up":
+        if self.is_unreliable(thing.category) or thing.attributes.get("canopy") == "rolled up":
             return False  # a market stall with a rolled-up canopy looks like a bare frame
-        if thing.category not in RECOGNISED_BY_TEXT:
+        if thing.category not in TEXT_CATEGORIES:
             return True
         camera_position = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
-        return any(_faces(text, camera_position) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
+        return any(_is_facing(text, camera_position) for text in texts_of_object(self.scene, thing.id)) or not texts_of_object(
+            self.scene, thing.id
+        )
 
-    def unreliable(self, category: str) -> bool:
-        """Return whether objects of a category cannot be recognised, or are not all in the ground truth of this scene."""
-        return category in UNRECOGNISABLE or category in INCOMPLETE_CATEGORIES.get(self.scene.name, ())
+    def is_unreliable(self, category: str) -> bool:
+        """Return whether objects of a category cannot be recognised, or are missing from the ground truth of this scene."""
+        return category in UNRECOGNISABLE_CATEGORIES or category in INCOMPLETE_CATEGORIES.get(self.scene.name, ())
 
     def all_of(self, kind: Kind) -> tuple[Sighting, ...] | None:
         """Return all visible objects of a kind; None if their number is uncertain or people could disagree about it."""
-        if self.unreliable(kind.category):
+        if self.is_unreliable(kind.category):
             return None
         members = []
         for sighting in self.samples[0].sightings:
@@ -175,11 +181,11 @@ class RobustTruth:
         thing = sighting.instance
         visible = self.visibility(thing.number)
         if not kind.fits(thing):
-            return None if visible is not False and kind.ambiguous_with(thing) else False
+            return None if visible is not False and kind.is_ambiguous_with(thing) else False
         if visible is False:
-            return None if thing.number in self.noticeable else False
+            return None if thing.number in self.noticeable_numbers else False
         behind_glass = thing.attributes.get("behind") == "glass"  # people disagree whether objects behind a window count
-        if visible is None or behind_glass or not self.recognisable(thing) or self.split_by_sweep(sighting):
+        if visible is None or behind_glass or not self.is_recognisable(thing) or self.is_split_by_sweep(sighting):
             return None
         return True
 
@@ -191,57 +197,57 @@ class RobustTruth:
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
         return any(kind.fits(s.instance) and self.visibility(s.instance.number) is not False for s in others)
 
-    def split_by_sweep(self, sighting: Sighting) -> bool:
-        """Return whether an object extends over both ends of a sweep, so that it has no single position."""
+    def is_split_by_sweep(self, sighting: Sighting) -> bool:
+        """Return whether an object extends across both ends of a sweep, so that it has no single position."""
         return self.pose is None and sighting.box[2] - sighting.box[0] > 0.5
 
     def certainly_lacks(self, kind: Kind) -> bool:
         """Return whether the view certainly shows no object of a kind, nor a similar one, at any time."""
-        if self.unreliable(kind.category) or any(
-            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing_actors
+        if self.is_unreliable(kind.category) or any(
+            kind.fits(a) or kind.is_ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing_actors
         ):
             return False
-        return not any(kind.fits(thing) or kind.ambiguous_with(thing) for thing in self.traces)
+        return not any(kind.fits(thing) or kind.is_ambiguous_with(thing) for thing in self.discernible_objects)
 
     @cached_property
-    def noticeable(self) -> frozenset[int]:
+    def noticeable_numbers(self) -> frozenset[int]:
         """Numbers of the objects that are large enough in some sample for an attentive person to count them."""
         return frozenset(s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > FAINT_PX)
 
     @cached_property
-    def traces(self) -> tuple[SceneThing, ...]:
+    def discernible_objects(self) -> tuple[SceneThing, ...]:
         """Objects with more than ``TRACE_PX`` visible pixels in any sample."""
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     @cached_property
-    def _shown_in_any_sample(self) -> tuple[SceneThing, ...]:
+    def _objects_in_any_sample(self) -> tuple[SceneThing, ...]:
         """Objects with more than ``TRACE_PX`` visible pixels in any sample, and the actors that pass through the view."""
         passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing_actors)
-        return tuple(thing for thing in self.traces if thing not in passing) + passing
+        return tuple(thing for thing in self.discernible_objects if thing not in passing) + passing
 
-    def others(self, sighting: Sighting) -> tuple[SceneThing, ...]:
+    def other_objects(self, sighting: Sighting) -> tuple[SceneThing, ...]:
         """Return all other objects that are in the view at any time."""
-        return tuple(thing for thing in self._shown_in_any_sample if thing.number != sighting.instance.number)
+        return tuple(thing for thing in self._objects_in_any_sample if thing.number != sighting.instance.number)
 
     def centres(self, sighting: Sighting) -> list[tuple[float, float]]:
-        """Return the centre of an object in the frame (x and y from 0 to 1) for each sample that shows it."""
+        """Return the position of an object's centre in the frame (x and y from 0 to 1) in each sample that shows it."""
         number = sighting.instance.number
         boxes = [s.box for truth in self.samples for s in truth.sightings if s.instance.number == number]
         return [((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for b in boxes]
 
     def areas(self, sighting: Sighting) -> list[float]:
-        """Return the number of visible pixels of an object for each sample that shows it."""
+        """Return an object's number of visible pixels in each sample that shows it."""
         number = sighting.instance.number
         return [float(s.pixels) for truth in self.samples for s in truth.sightings if s.instance.number == number]
 
     def side(self, sighting: Sighting, axis: int, margin: float = 0.06) -> int | None:
-        """Return the half of the frame in which an object certainly is.
+        """Return the half of the frame that certainly contains an object.
 
         Args:
             sighting: The object.
             axis: 0 for left and right, 1 for upper and lower.
-            margin: Minimum distance of the object's centre from the middle line, as a fraction of the frame.
+            margin: Minimum distance from the middle line to the object's centre, as a fraction of the frame.
 
         Returns:
             0 for left or upper, 1 for right or lower; None if the object is too close to the middle line.
@@ -252,8 +258,8 @@ class RobustTruth:
             return 0
         return 1 if min(middles) > 0.5 + margin and low > 0.5 - margin / 2 else None
 
-    def in_order(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
-        """Return objects from left to right (axis 0) or top to bottom (axis 1); None if two of them are too close together."""
+    def sort_by_position(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
+        """Sort objects from left to right (axis 0) or top to bottom (axis 1). Return None if two of them are too close together."""
         centres = {s.instance.number: self.centres(s) for s in things}
         order = sorted(things, key=lambda s: centres[s.instance.number][0][axis])
         for one, two in pairwise(order):
@@ -265,7 +271,9 @@ class RobustTruth:
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
         """Texts that are certainly legible, sorted from top to bottom and left to right."""
-        legible_ids = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
+        legible_ids = [
+            {t.text.id for t in truth.texts if all(is_legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples
+        ]
         ids = frozenset.intersection(*(frozenset(names) for names in legible_ids))
         for later_s in SOON_S if ids and self.passing_actors else ():
             later_truth = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
@@ -274,7 +282,7 @@ class RobustTruth:
 
     def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
         """Return all texts on an object and its parts; None if one of them is only partly legible."""
-        part_ids = with_parts(self.scene, thing.id)
+        part_ids = ids_with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
         shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_fraction > 0.3]
         if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_HEIGHT_PX * 0.35 for t in shown):
@@ -293,7 +301,7 @@ class RobustTruth:
     def _item(
         self, name: str, box: tuple[float, float, float, float], value: str | bool | float | None, cap_deg: float | None
     ) -> Item:
-        """Return an evidence item for a box, which is shrunk until its outline in pan and tilt lies inside the frame."""
+        """Return an evidence item for a box. The box is shrunk until its outline in pan and tilt lies inside the frame."""
         x0, y0, x1, y1 = box
         for _ in range(12):
             middle_x, middle_y = (x0 + x1) / 2, (y0 + y1) / 2
@@ -314,7 +322,7 @@ class RobustTruth:
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
-    """Return the positions of each actor by its number, every 0.5 s for the longest period of an actor (at most two minutes)."""
+    """Return the appearances of each actor, by its number, every 0.5 s over the longest actor period (at most two minutes)."""
     origin, by_actor = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
     for time_s in np.arange(0.0, min(longest, 120.0), 0.5):
@@ -324,8 +332,8 @@ def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance
 
 
 @lru_cache(maxsize=4096)
-def with_parts(scene: Scene, whole: str) -> frozenset[str]:
-    """Return the ids of an object, its parts, and their parts."""
+def ids_with_parts(scene: Scene, whole: str) -> frozenset[str]:
+    """Return the ids of an object, of its parts, and of their parts."""
     ids = {whole}
     while new := {part.id for part in scene.file.instances if part.parent in ids} - ids:
         ids |= new
@@ -333,25 +341,25 @@ def with_parts(scene: Scene, whole: str) -> frozenset[str]:
 
 
 @lru_cache(maxsize=4096)
-def lettering(scene: Scene, whole: str) -> tuple[SceneText, ...]:
+def texts_of_object(scene: Scene, whole: str) -> tuple[SceneText, ...]:
     """Return the texts on an object and its parts."""
-    part_ids = with_parts(scene, whole)
+    part_ids = ids_with_parts(scene, whole)
     return tuple(text for text in scene.file.texts if text.parent in part_ids)
 
 
-def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
+def _is_facing(text: SceneText, point: NDArray[np.float64]) -> bool:
     """Return whether the front of a text faces a point and is not seen edge-on."""
     normal = np.cross(text.right, text.up)
     direction = point - np.array(text.centre_m)
     return float(normal @ direction) > _MIN_FACING_COSINE * float(np.linalg.norm(direction))
 
 
-def visible(sighting: Sighting, scale: float = 1.0) -> bool:
+def is_visible(sighting: Sighting, scale: float = 1.0) -> bool:
     """Return whether an object meets the definition of visible, with both thresholds multiplied by ``scale``."""
     return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.visible_fraction >= MIN_VISIBLE_FRACTION * scale
 
 
-def legible(text: TextSighting, scale: float = 1.0) -> bool:
+def is_legible(text: TextSighting, scale: float = 1.0) -> bool:
     """Return whether a text meets the definition of legible. A ``scale`` above 1 makes all thresholds stricter."""
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale

@@ -1,4 +1,4 @@
-"""Generation of additional tasks: a language model drafts them, and only drafts that pass validation are kept.
+"""Generate additional tasks. A language model drafts them, and only drafts that pass validation are kept.
 
 ``draft_prompt`` writes the request, which includes recorded ``operator_runs``, and ``draft_schema`` validates the reply.
 ``draft_places`` resolves the views of a draft, and ``answer_programs`` computes the correct answer from the ground truth.

@@ -1,4 +1,4 @@
-"""Programs that compute the correct answer to a draft from the ground truth, one for each program name in the schema.
+"""Compute the correct answer to a draft from the ground truth, with one function for each program name in the schema.
 
 Programs use only robust ground truth (see ``facts.robust``). A draft with an uncertain answer is rejected.
 """
@@ -13,12 +13,19 @@ from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, Choice, None
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView, ProgramCall, Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import Sighting
-from scope_ptz.taskgen.authoring.drafts import ask_call, count_call, difficulty, evidence_view
-from scope_ptz.taskgen.authoring.noun_phrases import about, colour_options, many_of, noun_of, plain_colour, unit_of
+from scope_ptz.taskgen.authoring.drafts import count_call, difficulty, evidence_view, query_call
+from scope_ptz.taskgen.authoring.noun_phrases import (
+    answer_words,
+    colour_options,
+    object_words,
+    plain_colour,
+    plural_noun,
+    singular_noun,
+)
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.facts.kinds import Kind
-from scope_ptz.taskgen.generating.draft_places import DraftRejectedError, places_of
-from scope_ptz.taskgen.generating.draft_schema import ALLOWED, Draft
+from scope_ptz.taskgen.generating.draft_places import DraftRejectedError, resolve_places
+from scope_ptz.taskgen.generating.draft_schema import ALLOWED_PROGRAMS, Draft
 
 _MAX_COUNT = 15  # people disagree about larger counts
 TAG = "generated"
@@ -26,14 +33,14 @@ TAG = "generated"
 
 @dataclass(frozen=True)
 class _Solution:
-    """The result of a program.
+    """The result of an answer program.
 
     Attributes:
         expected: The correct answer.
         evidence: The views from which the answer follows.
         program: The reference program.
         size: Number of objects to tell apart.
-        tags: Tags of the task.
+        tags: The task's tags.
     """
 
     expected: AnyExpected
@@ -43,31 +50,31 @@ class _Solution:
     tags: tuple[str, ...] = ()
 
 
-def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
+def create_task(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
     """Create a task from a draft, with an expected answer from the ground truth.
 
     Args:
         draft: The draft.
-        scene: The scene of the task.
+        scene: The task's scene.
         name: Id of the task.
         dataset: Name of the dataset.
 
     Raises:
         DraftRejectedError: The draft cannot become a task.
     """
-    if draft.program not in ALLOWED[draft.category]:
-        raise DraftRejectedError(f"'{draft.program}' makes no task of the category {draft.category}")
-    places = places_of(draft, scene)
+    if draft.program not in ALLOWED_PROGRAMS[draft.category]:
+        raise DraftRejectedError(f"'{draft.program}' is not allowed in the category {draft.category}")
+    places = resolve_places(draft, scene)
     categories = {thing.category for thing in scene.things} | set(scene.file.absent)
     for kind in _kinds(draft):
         if kind.category not in categories:
             raise DraftRejectedError(f"the inventory has no '{kind.category}'")
-        if not names_any(draft.instruction, about(kind)):
+        if not names_any(draft.instruction, object_words(kind)):
             raise DraftRejectedError(f"the instruction does not name the {kind.category}")
         if kind.colour is not None and kind.colour not in draft.instruction.lower():
             raise DraftRejectedError(f"the instruction does not say {kind.colour}")
     solution = _PROGRAMS[draft.program](draft, places)
-    _compare(draft, solution.expected)
+    _check_expected_answer(draft, solution.expected)
     last = places[-1]
     return Task(
         id=name,
@@ -90,7 +97,7 @@ def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
     )
 
 
-def _compare(draft: Draft, expected: AnyExpected) -> None:
+def _check_expected_answer(draft: Draft, expected: AnyExpected) -> None:
     """Reject a draft whose expected answer is wrong, or whose instruction contains the answer."""
     if isinstance(expected, ActionOnly):
         return
@@ -106,58 +113,62 @@ def _kinds(draft: Draft) -> list[Kind]:
     return [Kind(thing.category, thing.colour) for thing in draft.things]
 
 
-def _one(draft: Draft) -> Kind:
+def _only_kind(draft: Draft) -> Kind:
     if len(draft.things) != 1:
-        raise DraftRejectedError("this program takes exactly one kind of thing")
+        raise DraftRejectedError("this program needs exactly one kind of thing")
     return _kinds(draft)[0]
 
 
-def _single(places: Sequence[TaskPlace]) -> TaskPlace:
+def _only_place(places: Sequence[TaskPlace]) -> TaskPlace:
     if len(places) != 1:
-        raise DraftRejectedError("this program takes exactly one view")
+        raise DraftRejectedError("this program needs exactly one view")
     return places[0]
 
 
-def _counted(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, EvidenceView, int]:
-    """Return the certain number of objects of a kind in a view, as an expected answer, as evidence and as a number."""
+def _count_objects(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, EvidenceView, int]:
+    """Return the number of objects of a kind in a view, if certain, as an expected answer, as evidence and as an integer."""
     things = place.truth.all_of(kind)
     if things is None:
-        raise DraftRejectedError(f"the number of {many_of(kind)} in that view is uncertain")
+        raise DraftRejectedError(f"the number of {plural_noun(kind)} in that view is uncertain")
     if not things:
         if not place.truth.certainly_lacks(kind):
-            raise DraftRejectedError(f"it is uncertain whether that view shows a {noun_of(kind)}")
-        none = NoneThere(subject=unit_of(kind))
-        return none, evidence_view(place, none, about(kind), whole=True), 0
+            raise DraftRejectedError(f"it is uncertain whether that view shows a {singular_noun(kind)}")
+        none = NoneThere(subject=answer_words(kind))
+        return none, evidence_view(place, none, object_words(kind), whole=True), 0
     if len(things) > _MAX_COUNT:
-        raise DraftRejectedError(f"there are more than {_MAX_COUNT} {many_of(kind)}: people would count them differently")
-    number = Number(value=float(len(things)), unit=unit_of(kind))
-    return number, evidence_view(place, number, about(kind), [place.truth.item(t, True) for t in things], whole=True), len(things)
+        raise DraftRejectedError(f"there are more than {_MAX_COUNT} {plural_noun(kind)}, so people would count them differently")
+    number = Number(value=float(len(things)), unit=answer_words(kind))
+    return (
+        number,
+        evidence_view(place, number, object_words(kind), [place.truth.item(t, True) for t in things], whole=True),
+        len(things),
+    )
 
 
 def _only_object(place: TaskPlace, kind: Kind) -> Sighting:
     things = place.truth.all_of(kind)
     if not things or len(things) > 1:
-        raise DraftRejectedError(f"it is uncertain whether that view shows exactly one {noun_of(kind)}")
+        raise DraftRejectedError(f"it is uncertain whether that view shows exactly one {singular_noun(kind)}")
     return things[0]
 
 
-def _count(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    place, kind = _single(places), _one(draft)
-    expected, evidence, number = _counted(place, kind)
+def _solve_count(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _only_place(places), _only_kind(draft)
+    expected, evidence, number = _count_objects(place, kind)
     tag = "sort:none" if not number else "sort:count"
-    return _Solution(expected, (evidence,), (*place.calls, count_call(many_of(kind), place)), number, (tag,))
+    return _Solution(expected, (evidence,), (*place.calls, count_call(plural_noun(kind), place)), number, (tag,))
 
 
-def _exists(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    place, kind = _single(places), _one(draft)
-    expected, evidence, number = _counted(place, kind)
-    answer = YesNo(value=True, affirms=unit_of(kind)) if number else expected
+def _solve_exists(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _only_place(places), _only_kind(draft)
+    expected, evidence, number = _count_objects(place, kind)
+    answer = YesNo(value=True, affirms=answer_words(kind)) if number else expected
     evidence = evidence.model_copy(update={"shows": answer})
-    return _Solution(answer, (evidence,), (*place.calls, count_call(many_of(kind), place)), 1, ("sort:exists",))
+    return _Solution(answer, (evidence,), (*place.calls, count_call(plural_noun(kind), place)), 1, ("sort:exists",))
 
 
-def _colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    place, kind = _single(places), _one(draft)
+def _solve_colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _only_place(places), _only_kind(draft)
     thing = _only_object(place, kind)
     colour = plain_colour(thing.instance.attributes.get("colour"))
     if colour is None or kind.colour is not None:
@@ -165,92 +176,92 @@ def _colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     if colour in draft.instruction.lower():
         raise DraftRejectedError("the instruction contains its answer")
     choice = Choice(value=colour, options=colour_options())
-    evidence = evidence_view(place, choice, about(kind), [place.truth.item(thing, colour)], whole=False)
-    question = ask_call(f"what colour is the {noun_of(kind)}?", place)
+    evidence = evidence_view(place, choice, object_words(kind), [place.truth.item(thing, colour)], whole=False)
+    question = query_call(f"what colour is the {singular_noun(kind)}?", place)
     return _Solution(choice, (evidence,), (*place.calls, question), 1, ("attribute", "sort:colour"))
 
 
-def _text(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    place, kind = _single(places), _one(draft)
+def _solve_text(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _only_place(places), _only_kind(draft)
     thing = _only_object(place, kind)
     texts = place.truth.texts_on(thing.instance)
     if not texts:
-        raise DraftRejectedError(f"the text on the {noun_of(kind)} is not certainly legible in that view")
+        raise DraftRejectedError(f"the text on the {singular_noun(kind)} is not certainly legible in that view")
     words = " / ".join(dict.fromkeys(t.text.text.strip() for t in texts))
     text = Text(accepted=(words,), ocr=True)
-    evidence = evidence_view(place, text, about(kind), [place.truth.text_item(t) for t in texts], whole=False)
-    question = ask_call(f"what does the {noun_of(kind)} say?", place)
+    evidence = evidence_view(place, text, object_words(kind), [place.truth.text_item(t) for t in texts], whole=False)
+    question = query_call(f"what does the {singular_noun(kind)} say?", place)
     return _Solution(text, (evidence,), (*place.calls, question), len(texts), ("sort:text",))
 
 
-def _side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    place, kind = _single(places), _one(draft)
+def _solve_side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _only_place(places), _only_kind(draft)
     if draft.axis is None or place.swept:
-        raise DraftRejectedError("a side is asked about one view, with the axis across or down")
+        raise DraftRejectedError("a side question needs one view, and the axis across or down")
     thing = _only_object(place, kind)
     names = ("left", "right") if draft.axis == "across" else ("upper", "lower")
     side = place.truth.side(thing, 0 if draft.axis == "across" else 1)
     if side is None:
-        raise DraftRejectedError(f"it is uncertain in which half the {noun_of(kind)} is")
+        raise DraftRejectedError(f"it is uncertain in which half the {singular_noun(kind)} is")
     further = {"upper": ("top", "above"), "lower": ("bottom", "below")}
     choice = Choice(value=names[side], options={name: further.get(name, ()) for name in names})
-    evidence = evidence_view(place, choice, about(kind), [place.truth.item(thing, names[side])], whole=False)
-    question = ask_call(f"is the {noun_of(kind)} in the {names[0]} or the {names[1]} half of the picture?", place)
+    evidence = evidence_view(place, choice, object_words(kind), [place.truth.item(thing, names[side])], whole=False)
+    question = query_call(f"is the {singular_noun(kind)} in the {names[0]} or the {names[1]} half of the picture?", place)
     return _Solution(choice, (evidence,), (*place.calls, question), 1, ("frame", "sort:side"))
 
 
-def _most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    """Return which of several kinds in a view is the most numerous, or which of several views shows the most of one kind."""
+def _solve_most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    """Find the most numerous of several kinds in a view, or the view that shows the most objects of one kind."""
     kinds = _kinds(draft)
     if len(places) == 1 and len(kinds) > 1:
-        pairs = [(places[0], kind, many_of(kind)) for kind in kinds]
+        pairs = [(places[0], kind, plural_noun(kind)) for kind in kinds]
     elif len(kinds) == 1 and len(places) > 1:
         pairs = [(place, kinds[0], _preset_of(place)) for place in places]
     else:
-        raise DraftRejectedError("'most' compares several kinds in one view, or one kind in several views")
+        raise DraftRejectedError("'most' must compare several kinds in one view, or one kind in several views")
     if len({name for _, _, name in pairs}) < len(pairs):
         raise DraftRejectedError("something is compared with itself")
-    counts = [_counted(place, kind) for place, kind, _ in pairs]
+    counts = [_count_objects(place, kind) for place, kind, _ in pairs]
     numbers = [number for _, _, number in counts]
     names = [name for _, _, name in pairs]
     best = max(numbers)
     if numbers.count(best) > 1:
-        raise DraftRejectedError(f"no number is the single largest: {', '.join(map(str, numbers))}")
+        raise DraftRejectedError(f"the largest count is not unique: {', '.join(map(str, numbers))}")
     options: dict[str, tuple[str, ...]] = dict.fromkeys(names, ())
     choice = Choice(value=names[numbers.index(best)], options=options, picks=("more", "most"))
-    return _Solution(choice, tuple(evidence for _, evidence, _ in counts), _visits(pairs), sum(numbers), ("sort:more",))
+    return _Solution(choice, tuple(evidence for _, evidence, _ in counts), _visit_calls(pairs), sum(numbers), ("sort:more",))
 
 
-def _sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
-    kind = _one(draft)
+def _solve_sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    kind = _only_kind(draft)
     if len(places) < 2:
-        raise DraftRejectedError("a sum is taken over several views")
-    counts = [_counted(place, kind) for place in places]
+        raise DraftRejectedError("a sum needs several views")
+    counts = [_count_objects(place, kind) for place in places]
     shown = [item.instance for _, evidence, _ in counts for item in evidence.items]
     if len(set(shown)) < len(shown):
-        raise DraftRejectedError("one thing shows in two of the views: a sum would count it twice")
+        raise DraftRejectedError("an object is visible in two of the views, so a sum would count it twice")
     total = sum(number for _, _, number in counts)
     if not 0 < total <= _MAX_COUNT:
-        raise DraftRejectedError(f"the sum is {total}")
-    number = Number(value=float(total), unit=unit_of(kind))
-    visits = _visits([(place, kind, "") for place in places])
+        raise DraftRejectedError(f"the sum must be from 1 to {_MAX_COUNT}, got {total}")
+    number = Number(value=float(total), unit=answer_words(kind))
+    visits = _visit_calls([(place, kind, "") for place in places])
     return _Solution(number, tuple(evidence for _, evidence, _ in counts), visits, total, ("sort:sum",))
 
 
-def _action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+def _solve_action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     if draft.things or any(place.swept for place in places):
-        raise DraftRejectedError("an action has no sweep and no things")
+        raise DraftRejectedError("an action must have neither a sweep nor things")
     calls = places[-1].calls
     if not calls or (len(calls) == 1) != (draft.category == "single_call"):
-        raise DraftRejectedError("a single call is one move, a multi-step command is more than one")
+        raise DraftRejectedError("a single call must be one move, and a multi-step command must be several")
     return _Solution(ActionOnly(), program=calls, tags=("sort:action",))
 
 
-def _visits(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
+def _visit_calls(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
     """Return the moves from view to view, with a count call at each view."""
     program, call_count = list[ProgramCall](), 0
     for place, kind, _ in pairs:
-        program += [*place.calls[call_count:], count_call(many_of(kind), place)]
+        program += [*place.calls[call_count:], count_call(plural_noun(kind), place)]
         call_count = len(place.calls)
     return tuple(program)
 
@@ -258,11 +269,17 @@ def _visits(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, 
 def _preset_of(place: TaskPlace) -> str:
     last = place.calls[-1] if place.calls else None
     if last is None or last.tool != "go_to_preset" or place.swept:
-        raise DraftRejectedError("several views are compared by preset name, so each of them must be a preset")
+        raise DraftRejectedError("each of several compared views must be a preset, because answers name presets")
     return str(last.arguments["name"])
 
 
 _PROGRAMS: dict[str, Callable[[Draft, Sequence[TaskPlace]], _Solution]] = {
-    "count": _count, "exists": _exists, "colour": _colour, "text": _text, "side": _side, "most": _most, "sum": _sum,
-    "action": _action,
-}  # fmt: skip
+    "count": _solve_count,
+    "exists": _solve_exists,
+    "colour": _solve_colour,
+    "text": _solve_text,
+    "side": _solve_side,
+    "most": _solve_most,
+    "sum": _solve_sum,
+    "action": _solve_action,
+}

@@ -1,4 +1,4 @@
-"""The record of all drafts on disk, from which generation resumes after an interruption, and a list of tasks for review."""
+"""The on-disk record of all drafts, from which an interrupted generation resumes, and the list of tasks to review."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class LedgerEntry(BaseModel):
 
     Attributes:
         batch: Number of the request.
-        fate: What became of the draft: "kept", or how it was rejected.
-        reason: The reason why it was not kept; empty if it was.
+        fate: "kept", or how the draft was rejected.
+        reason: Why the draft was not kept; empty for a kept draft.
         draft: The draft as the model wrote it.
-        task: The task created from the draft; None if it was not kept.
+        task: The task created from the draft; None if the draft was not kept.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -40,7 +40,7 @@ class LedgerEntry(BaseModel):
 
 
 class DraftLedger:
-    """The record of drafts in a folder. Entries are only added, never changed."""
+    """The record of drafts in a folder. Entries are added, but never changed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -49,7 +49,7 @@ class DraftLedger:
             lines = (folder / RECORD).read_text("utf-8").splitlines() if (folder / RECORD).is_file() else []
         except OSError as error:
             raise OutputError(f"The folder {folder} cannot be used: {error.strerror}. Choose another with --out.") from error
-        self.entries = [_entry(line, folder / RECORD, number) for number, line in enumerate(lines, 1)]
+        self.entries = [_parse_entry(line, folder / RECORD, number) for number, line in enumerate(lines, 1)]
 
     @property
     def kept(self) -> list[Task]:
@@ -62,12 +62,12 @@ class DraftLedger:
         return max((entry.batch for entry in self.entries), default=0)
 
     def missing(self, requested: dict[Category, int]) -> dict[Category, int]:
-        """Return the number of missing tasks for each category that is not complete."""
+        """Return the number of missing tasks for each incomplete category."""
         existing = Counter(task.category for task in self.kept)
         return {category: number - existing[category] for category, number in requested.items() if number > existing[category]}
 
     def last_reasons(self, limit: int = 8) -> list[str]:
-        """Return the most recent reasons why drafts were not kept, without duplicates."""
+        """Return the most recent reasons for not keeping drafts, without duplicates."""
         reasons = [entry.reason for entry in reversed(self.entries) if entry.fate in ("dropped", "near-duplicate")]
         return list(dict.fromkeys(reasons))[:limit]
 
@@ -83,17 +83,17 @@ class DraftLedger:
         self.entries.append(entry)
 
     def finish(self) -> list[Path]:
-        """Write the kept tasks and the list for review, and return their paths."""
+        """Write the kept tasks and the review list, and return the paths of both files."""
         tasks, review = self.folder / TASKS, self.folder / REVIEW
         try:
             dump_tasks(self.kept, tasks)
-            review.write_text("\n".join(_review(self.entries)) + "\n", "utf-8")
+            review.write_text("\n".join(_review_lines(self.entries)) + "\n", "utf-8")
         except OSError as error:
             raise OutputError(f"The tasks cannot be written to {self.folder}: {error.strerror}.") from error
         return [tasks, review]
 
 
-def _entry(line: str, path: Path, number: int) -> LedgerEntry:
+def _parse_entry(line: str, path: Path, number: int) -> LedgerEntry:
     try:
         return LedgerEntry.model_validate_json(line)
     except ValidationError as error:
@@ -102,7 +102,7 @@ def _entry(line: str, path: Path, number: int) -> LedgerEntry:
         ) from error
 
 
-def _review(entries: Sequence[LedgerEntry]) -> list[str]:
+def _review_lines(entries: Sequence[LedgerEntry]) -> list[str]:
     """Return the review list as Markdown. The model's text is in code spans, so that it is not interpreted as markup."""
     counts_by_fate = Counter(entry.fate for entry in entries)
     lines = [
@@ -115,16 +115,18 @@ def _review(entries: Sequence[LedgerEntry]) -> list[str]:
     for entry in entries:
         if entry.fate == "kept" and entry.task is not None:
             task = entry.task
-            lines.append(f"- [ ] {task.id} ({task.category}, {task.difficulty}), from {task.preset}: {_code(task.instruction)}")
-            lines.append(f"      expected: {_code(expected_in_words(task.expected))}")
+            lines.append(
+                f"- [ ] {task.id} ({task.category}, {task.difficulty}), from {task.preset}: {_code_span(task.instruction)}"
+            )
+            lines.append(f"      expected: {_code_span(expected_in_words(task.expected))}")
     lines += ["", "## Not kept", ""]
     for entry in entries:
         if entry.fate != "kept":
             text = entry.draft.get("instruction", entry.draft) if isinstance(entry.draft, dict) else entry.draft
-            lines.append(f"- {entry.fate}: {_code(entry.reason)}" + (f" {_code(str(text)[:200])}" if text else ""))
+            lines.append(f"- {entry.fate}: {_code_span(entry.reason)}" + (f" {_code_span(str(text)[:200])}" if text else ""))
     return lines
 
 
-def _code(text: str) -> str:
+def _code_span(text: str) -> str:
     clean = "".join(c if c.isprintable() else " " for c in text).replace("`", "'")
     return f"`{clean}`"

@@ -1,7 +1,8 @@
-"""The format of drafts that a model writes. Drafts are data, never code, and are validated before use.
+"""The format in which a model writes drafts. Drafts are data, never code, and are validated before use.
 
-A draft contains the moves to one or more views, the program that computes the answer from the ground truth, and the answer that the
-model expects, which is compared with the computed one. Class names and docstrings are part of the schema that the model receives.
+A draft contains the moves to one or more views, the name of the program that computes the answer from the ground truth, and the
+answer that the model expects, which is compared with the computed one. Class names and docstrings are part of the schema that the
+model receives.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from scope_ptz.bench.tasks.task import Category
 
 Program = Literal["count", "exists", "colour", "text", "side", "most", "sum", "action"]
-ALLOWED: dict[Category, tuple[Program, ...]] = {
+ALLOWED_PROGRAMS: dict[Category, tuple[Program, ...]] = {
     "counting": ("count",),
     "descriptor": ("colour", "exists"),
     "location": ("side", "exists"),
@@ -25,18 +26,18 @@ ALLOWED: dict[Category, tuple[Program, ...]] = {
     "multi_step_reasoning": ("sum", "most"),
     "comparative": ("most",),
 }
-"""Programs that are allowed for tasks of each category."""
+"""The programs allowed for tasks in each category."""
 
 MAX_DRAFTS, MAX_REPLY_CHARS = 20, 200_000  # maximum number of drafts and of characters in one reply
 Word = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[\w][\w '/&-]*$")]
 _FENCE = re.compile(r"\A\s*```(?:json)?\s*(.*?)\s*```\s*\Z", re.DOTALL)
 
 
-class _Written(BaseModel):
+class _StrictModel(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
-class Move(_Written):
+class Move(_StrictModel):
     """Going to a preset, or turning and zooming; not both."""
 
     preset: Word | None = None
@@ -50,21 +51,21 @@ class Move(_Written):
         return bool(self.pan_deg or self.tilt_deg or self.zoom_factor)
 
 
-class DraftView(_Written):
+class DraftView(_StrictModel):
     """A view: the moves that lead there from the one before, and whether everything around it is meant."""
 
     moves: Annotated[list[Move], Field(max_length=4)] = []
     sweep: bool = False
 
 
-class Thing(_Written):
+class Thing(_StrictModel):
     """A kind of thing, as the inventory has it."""
 
     category: Word
     colour: Word | None = None
 
 
-class Draft(_Written):
+class Draft(_StrictModel):
     """A task as a model drafts it. ``things``: one, or for "most" in a single view those to compare."""
 
     instruction: Annotated[str, Field(min_length=8, max_length=400)]
@@ -78,7 +79,7 @@ class Draft(_Written):
 
     @field_validator("instruction", "expected")
     @classmethod
-    def _printable(cls, text: str) -> str:
+    def _check_printable(cls, text: str) -> str:
         if not text.isprintable():
             raise ValueError("holds characters that cannot be printed")
         return text.strip()
@@ -91,15 +92,15 @@ def reply_schema() -> dict[str, Any]:
         "properties": {"drafts": {"type": "array", "items": {"$ref": "#/$defs/Draft"}, "maxItems": MAX_DRAFTS}},
         "required": ["drafts"],
         "additionalProperties": False,
-        "$defs": {**Draft.model_json_schema().get("$defs", {}), "Draft": _without_defs(Draft.model_json_schema())},
+        "$defs": {**Draft.model_json_schema().get("$defs", {}), "Draft": _inline_defs(Draft.model_json_schema())},
     }
 
 
-def _without_defs(schema: dict[str, Any]) -> dict[str, Any]:
+def _inline_defs(schema: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in schema.items() if name != "$defs"}
 
 
-def read_reply(text: str) -> list[Any]:
+def parse_reply(text: str) -> list[Any]:
     """Return the drafts in a reply as JSON data, without validating them. Drafts beyond ``MAX_DRAFTS`` are omitted.
 
     Raises:
@@ -118,7 +119,7 @@ def read_reply(text: str) -> list[Any]:
     return rows[:MAX_DRAFTS]
 
 
-def read_draft(row: Any) -> Draft | str:
+def parse_draft(row: Any) -> Draft | str:
     """Return a draft, or the reason why it is not valid."""
     try:
         return Draft.model_validate_json(json.dumps(row))

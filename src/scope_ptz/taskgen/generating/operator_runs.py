@@ -1,4 +1,4 @@
-"""Recorded runs of operators with their feedback, which show a model the instructions that people give to a camera."""
+"""Operators' recorded runs with feedback, which show a model what instructions people give to a camera."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Feedback(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class OperatorRun:
-    """A recorded run, with the feedback on it if there is any."""
+    """A recorded run, with any feedback on it."""
 
     trace: Trace
     feedback: Feedback | None
@@ -53,13 +53,13 @@ def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
     Raises:
         InputError: The folder or the feedback cannot be read, or the feedback is about a run that does not exist.
     """
-    comments = {row.run: row for row in _feedback(feedback)} if feedback is not None else {}
+    comments = {row.run: row for row in _read_feedback(feedback)} if feedback is not None else {}
     if folder is None:
         if comments:
-            raise InputError("Feedback needs the recorded runs. Give their folder with --runs.")
+            raise InputError("Feedback needs the recorded runs. Specify their folder with --runs.")
         return []
     if not folder.is_dir():
-        raise InputError(f"The folder of runs {folder} does not exist. Correct --runs.")
+        raise InputError(f"The runs folder {folder} does not exist. Correct --runs.")
     names = sorted(path.name for path in folder.iterdir() if (path / FILE_NAME).is_file())
     if unknown := sorted(set(comments) - set(names)):
         raise InputError(f"The feedback is about the run '{unknown[0]}', which is not in {folder}.")
@@ -67,7 +67,7 @@ def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
     return [OperatorRun(read_trace(folder / name), comments.get(name)) for name in chosen]
 
 
-def _feedback(path: Path) -> Sequence[Feedback]:
+def _read_feedback(path: Path) -> Sequence[Feedback]:
     try:
         lines = path.read_text("utf-8").splitlines()
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Read a file of drafts from operators' runs, and validate its drafts."""
+"""Read a file of drafts that were created from operators' runs, and validate the drafts."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.facts.near_duplicates import KnownTasks
 from scope_ptz.taskgen.generating.draft_ledger import DraftLedger, LedgerEntry
-from scope_ptz.taskgen.generating.draft_schema import read_draft
-from scope_ptz.taskgen.generating.drafting_loop import ValidateTask, entry_of
+from scope_ptz.taskgen.generating.draft_schema import parse_draft
+from scope_ptz.taskgen.generating.drafting_loop import ValidateTask, validate_draft
 
 ValidatorOf = Callable[[Scene], ValidateTask]
-"""A function that returns the validator of tasks in a scene."""
+"""A function that returns the task validator for a scene."""
 
 
 class RunDraft(BaseModel):
@@ -28,7 +28,7 @@ class RunDraft(BaseModel):
         instruction: The operator's instruction.
         note: The operators' comments.
         draft: The draft.
-        reason: The reason why the run cannot be converted to a draft.
+        reason: Why the run cannot be converted to a draft.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -51,7 +51,7 @@ def read_run_drafts(path: Path) -> list[RunDraft]:
         lines = path.read_text("utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not a text file"
-        raise InputError(f"The file of drafts {path} cannot be read: {reason}.") from error
+        raise InputError(f"The drafts file {path} cannot be read: {reason}.") from error
     rows = []
     for number, line in enumerate(lines, 1):
         try:
@@ -66,41 +66,41 @@ def read_run_drafts(path: Path) -> list[RunDraft]:
     return rows
 
 
-async def accept_drafts(
+async def validate_run_drafts(
     rows: Sequence[RunDraft],
     open_scene: Callable[[str], Scene | None],
     validator_of: ValidatorOf,
     known_tasks: KnownTasks,
     ledger: DraftLedger,
 ) -> None:
-    """Validate the drafts of runs, and record each one in the ledger. Drafts that are already in the ledger are skipped.
+    """Validate drafts from runs, and record each one in the ledger. Drafts that are already in the ledger are skipped.
 
     Args:
         rows: The lines of the file.
         open_scene: A function that opens a scene by its name. It returns None if the scene is not installed or has no ground truth.
-        validator_of: A function that returns the validator of tasks in a scene.
+        validator_of: A function that returns the task validator for a scene.
         known_tasks: Tasks that must not be repeated. Accepted tasks are added.
         ledger: The ledger to extend.
     """
-    done = [entry.draft for entry in ledger.entries]
+    recorded = [entry.draft for entry in ledger.entries]
     scenes: dict[str, tuple[Scene, ValidateTask] | None] = {}
     for row in rows:
-        written = row.draft if row.draft is not None else row.instruction
-        if written in done:
+        original = row.draft if row.draft is not None else row.instruction
+        if original in recorded:
             continue
-        entry = LedgerEntry(batch=1, fate="dropped", reason=row.reason or "the line has no draft", draft=written)
+        entry = LedgerEntry(batch=1, fate="dropped", reason=row.reason or "the line has no draft", draft=original)
         if row.draft is not None:
             if row.scene not in scenes:
                 scene = open_scene(row.scene)
                 scenes[row.scene] = None if scene is None else (scene, validator_of(scene))
-            opened, draft = scenes[row.scene], read_draft(row.draft)
+            opened, draft = scenes[row.scene], parse_draft(row.draft)
             if isinstance(draft, str):
                 entry = entry.model_copy(update={"reason": draft})
             elif opened is None:
                 entry = entry.model_copy(update={"reason": f"there is no scene '{row.scene[:60]}' with ground truth"})
             else:
-                entry = await entry_of(draft, row.draft, opened[0], known_tasks, ledger, opened[1], 1)
+                entry = await validate_draft(draft, row.draft, opened[0], known_tasks, ledger, opened[1], 1)
         ledger.add(entry)
-        done.append(written)
+        recorded.append(original)
         if entry.fate == "kept" and entry.task is not None:
             known_tasks.add(entry.task)

@@ -1,7 +1,7 @@
 """Convert operators' recorded runs to drafts, in the same format as drafts by language models.
 
 A run becomes a draft if its tool calls match one of the draft programs. ``answer_programs`` decides later, from the ground truth,
-whether the draft makes a valid task.
+whether the draft becomes a task.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from scope_ptz.bench.answers import names_any
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.noun_phrases import about
-from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.authoring.noun_phrases import object_words
+from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.kinds import Kind, own_colour
 from scope_ptz.taskgen.generating.draft_places import DraftRejectedError
-from scope_ptz.taskgen.generating.draft_schema import Draft, Program, read_draft
+from scope_ptz.taskgen.generating.draft_schema import Draft, Program, parse_draft
 from scope_ptz.taskgen.generating.run_draft_file import RunDraft
 
 START_TOLERANCE_DEG, START_TOLERANCE_ZOOM = 0.5, 0.03
-"""Maximum distance of a run's start from the pose of a preset: degrees of pan and tilt, and fraction of the zoom."""
+"""Maximum difference between a run's start pose and a preset's pose, in degrees of pan and tilt and as a fraction of the zoom."""
 _SOURCE_NOTE = re.compile(r"\s*\(Source: [^()]*\)\s*\Z")  # a note at the end of a run's answer, which drafts omit
 _ASKS_WHETHER = re.compile(r"\b(?:is|are) there\b(?! how)|\bany\b|\bwhether\b|\bdo you see\b|\bcan you see\b", re.IGNORECASE)
 _ASKS_COUNT = re.compile(r"\bhow many\b|\bcount\b|\bnumber of\b", re.IGNORECASE)
@@ -46,7 +46,7 @@ _QUESTIONS: tuple[tuple[Program, Category, str | None, re.Pattern[str]], ...] = 
 
 @dataclass
 class _View:
-    """A view of a run: the moves to it, and the kinds of object and the questions that were asked about there."""
+    """A view in a run: the moves that lead to it, and the object kinds and questions in the perception calls on it."""
 
     moves: list[dict[str, Any]] = field(default_factory=list)
     sweep: bool = False
@@ -54,8 +54,8 @@ class _View:
     questions: list[str] = field(default_factory=list)
 
 
-def run_draft(run: str, trace: Trace, note: str, open_scene: Callable[[str], Scene]) -> RunDraft:
-    """Convert a run to a line of the drafts file: a draft, or the reason why the run cannot be converted.
+def convert_run(run: str, trace: Trace, note: str, open_scene: Callable[[str], Scene]) -> RunDraft:
+    """Convert a run to a line of the drafts file: a draft, or why the run cannot be converted.
 
     Args:
         run: Name of the run folder.
@@ -68,13 +68,13 @@ def run_draft(run: str, trace: Trace, note: str, open_scene: Callable[[str], Sce
     if started.scene is None:
         return line.model_copy(update={"reason": "the camera is not simulated, so the correct answer is not known"})
     try:
-        draft = draft_of(trace, open_scene(started.scene))
+        draft = create_draft(trace, open_scene(started.scene))
     except DraftRejectedError as rejected:
         return line.model_copy(update={"reason": str(rejected)})
     return line.model_copy(update={"draft": draft.model_dump(mode="json", exclude_defaults=True)})
 
 
-def draft_of(trace: Trace, scene: Scene) -> Draft:
+def create_draft(trace: Trace, scene: Scene) -> Draft:
     """Convert a run to a draft.
 
     Raises:
@@ -83,8 +83,8 @@ def draft_of(trace: Trace, scene: Scene) -> Draft:
     started, ended = trace.started, trace.ended
     if ended is None or ended.outcome != "answered":
         raise DraftRejectedError("the run did not end with an answer")
-    views = _views(trace.calls, scene)
-    program, category, axis, things = _program(started.instruction, views)
+    views = _group_views(trace.calls, scene)
+    program, category, axis, things = _match_program(started.instruction, views)
     row = {
         "instruction": started.instruction.strip(),
         "category": category,
@@ -95,7 +95,7 @@ def draft_of(trace: Trace, scene: Scene) -> Draft:
         "axis": axis,
         "expected": "" if program == "action" else _SOURCE_NOTE.sub("", ended.text),
     }
-    draft = read_draft(row)
+    draft = parse_draft(row)
     if isinstance(draft, str):
         raise DraftRejectedError(draft)
     return draft
@@ -105,13 +105,13 @@ def _start_preset(trace: Trace, scene: Scene) -> str:
     started = trace.started
     pose = started.pose.pose()
     for preset in scene.file.presets:
-        at = preset_at(preset)
-        if at.viewpoint == started.viewpoint and _close(pose, at.pose):
+        at = preset_position(preset)
+        if at.viewpoint == started.viewpoint and _is_close(pose, at.pose):
             return preset.name
-    raise DraftRejectedError("the run does not start at a preset, as tasks do")
+    raise DraftRejectedError("the run does not start at a preset, as tasks must")
 
 
-def _close(one: Pose, other: Pose) -> bool:
+def _is_close(one: Pose, other: Pose) -> bool:
     turn = (one.pan_deg - other.pan_deg + 180.0) % 360.0 - 180.0
     return (
         abs(turn) <= START_TOLERANCE_DEG
@@ -120,8 +120,8 @@ def _close(one: Pose, other: Pose) -> bool:
     )
 
 
-def _views(calls: Sequence[Called], scene: Scene) -> list[_View]:
-    """Group the tool calls of a run into views. A move or a change of scope after a question begins a new view."""
+def _group_views(calls: Sequence[Called], scene: Scene) -> list[_View]:
+    """Group a run's tool calls into views. A move or a change of scope after a question begins a new view."""
     views = [_View()]
     for called in calls:
         call = called.outcome.call
@@ -129,7 +129,7 @@ def _views(calls: Sequence[Called], scene: Scene) -> list[_View]:
             raise DraftRejectedError(f"the call of {call.name} failed")
         if call.name == "get_presets":
             continue
-        if (moved := _move(call.name, call.arguments)) is not None:
+        if (moved := _parse_move(call.name, call.arguments)) is not None:
             if views[-1].kinds or views[-1].questions:
                 views.append(_View())
             views[-1].moves.append(moved)
@@ -139,26 +139,26 @@ def _views(calls: Sequence[Called], scene: Scene) -> list[_View]:
             views.append(_View())
         views[-1].sweep = sweep
         if call.name == "count_objects":
-            views[-1].kinds.append(kind_named(str(call.arguments.get("description", "")), scene))
+            views[-1].kinds.append(find_kind(str(call.arguments.get("description", "")), scene))
         elif call.name == "query_answer":
             question = str(call.arguments.get("question", ""))
             views[-1].questions.append(question)
-            views[-1].kinds.append(kind_named(question, scene))
+            views[-1].kinds.append(find_kind(question, scene))
         else:
             raise DraftRejectedError(f"no draft program calls {call.name}")
     return views
 
 
-def _move(tool: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
-    """Convert a tool call to a move of a draft; None if the call is not a move."""
+def _parse_move(tool: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
+    """Convert a tool call to a move in a draft. Return None if the call is not a move."""
     if tool == "go_to_preset":
         return {"preset": str(arguments.get("name", ""))}
     if tool == "go_home":
-        raise DraftRejectedError("a draft goes to presets by name, not home")
+        raise DraftRejectedError("a draft cannot go home, only to named presets")
     if tool != "adjust_ptz":
         return None
     if arguments.get("zoom_limit") is not None:
-        raise DraftRejectedError("a draft zooms by a factor, not to the limit")
+        raise DraftRejectedError("a draft can zoom by a factor, but not to the limit")
     factor, percent = arguments.get("zoom_factor"), arguments.get("zoom_percent")
     if factor is None and percent is not None:
         factor = 1 + float(percent) / 100
@@ -166,7 +166,7 @@ def _move(tool: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
     return move if factor is None else {**move, "zoom_factor": float(factor)}
 
 
-def kind_named(text: str, scene: Scene) -> Kind:
+def find_kind(text: str, scene: Scene) -> Kind:
     """Return the kind of object that a text names, with the category and colour from the scene's inventory.
 
     Raises:
@@ -174,27 +174,27 @@ def kind_named(text: str, scene: Scene) -> Kind:
     """
     categories = {thing.category for thing in scene.things} | set(scene.file.absent)
     # If several names occur in the text, the longest one is meant: "traffic cone" rather than "cone".
-    full_names = [each for each in categories if names_any(text, (each,))]
-    candidates = full_names or [each for each in categories if names_any(text, about(Kind(each)))]
+    full_names = [category for category in categories if names_any(text, (category,))]
+    candidates = full_names or [category for category in categories if names_any(text, object_words(Kind(category)))]
     if not candidates:
-        raise DraftRejectedError(f"the inventory has nothing that '{text[:80]}' names")
+        raise DraftRejectedError(f"'{text[:80]}' names nothing in the inventory")
     category = max(sorted(candidates), key=len)
     colours = {own_colour(thing) for thing in scene.things if thing.category == category} - {None}
     named = [colour for colour in colours if colour is not None and re.search(rf"\b{re.escape(colour)}\b", text, re.IGNORECASE)]
     return Kind(category, max(sorted(named), key=len) if named else None)
 
 
-def _program(instruction: str, views: Sequence[_View]) -> tuple[Program, Category, str | None, list[Kind]]:
-    """Return the program, the category, the axis and the kinds of object of a draft."""
+def _match_program(instruction: str, views: Sequence[_View]) -> tuple[Program, Category, str | None, list[Kind]]:
+    """Return the program, category, axis and object kinds for a draft."""
     kinds = list(dict.fromkeys(kind for view in views for kind in view.kinds))
     questions = [question for view in views for question in view.questions]
     if not kinds:
         moves = sum(len(view.moves) for view in views)
         if not moves:
-            raise DraftRejectedError("the run neither moves the camera nor looks for anything")
+            raise DraftRejectedError("the run neither moves the camera nor calls perception")
         return "action", "single_call" if moves == 1 else "multi_step_command", None, []
     if not (views[-1].kinds or views[-1].questions):
-        raise DraftRejectedError("the run moves on after its last question; a draft ends with one")
+        raise DraftRejectedError("the run moves the camera after its last question, and a draft must end with a question")
     if len(views) == 1 and len(kinds) == 1:
         for program, category, axis, words in _QUESTIONS if questions else ():
             if words.search(questions[0]):
@@ -210,4 +210,4 @@ def _program(instruction: str, views: Sequence[_View]) -> tuple[Program, Categor
         return (
             ("sum", "multi_step_reasoning", None, kinds) if _ASKS_SUM.search(instruction) else ("most", "comparative", None, kinds)
         )
-    raise DraftRejectedError("no draft program looks for different things in different views")
+    raise DraftRejectedError("no draft program asks about different kinds in different views")

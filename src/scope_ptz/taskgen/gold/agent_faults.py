@@ -1,4 +1,4 @@
-"""Faults in the actions of an agent: missing calls, wrong tools, wrong scopes and wrong arguments.
+"""Faults in an agent's actions: missing calls, wrong tools, wrong scopes and wrong arguments.
 
 Each fault function takes a passing run and returns it with the fault, or None if the fault does not apply to the run. The names
 of these functions are stored with gold runs.
@@ -35,8 +35,8 @@ class FaultSetting:
     camera: FrameGeometry
 
 
-def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
-    """Return the run with other calls, and with recomputed poses and observations."""
+def replay(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
+    """Return a run with different calls, and with recomputed poses and observations."""
     position, replayed_calls = episode.start, list[EpisodeCall]()
     for call in calls:
         after = _position_after(call, position, episode, setting)
@@ -65,14 +65,14 @@ def _position_after(call: EpisodeCall, position: CameraPosition, episode: Episod
     return CameraPosition(position.viewpoint, call.after.pose)
 
 
-def with_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
-    """Return a call with some fields of its result changed."""
+def change_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
+    """Return a copy of a call with some result fields changed."""
     return replace(call, result={**(call.result or {}), **changes})
 
 
-def changed(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
-    """Return the run with every call replaced by the result of ``change``, or omitted if that is None."""
-    return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
+def change_calls(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
+    """Return a copy of a run in which ``change`` has replaced every call. Calls for which it returns None are omitted."""
+    return replay(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
 
 # Missing tool calls
@@ -80,21 +80,21 @@ def changed(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCa
 
 def drop_all(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
     """Omit all calls."""
-    return replayed(episode, (), setting)
+    return replay(episode, (), setting)
 
 
 def drop_looks(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
     """Omit all perception calls."""
     if not any(call.name in PERCEPTION_TOOLS for call in episode.calls):
         return None
-    return changed(episode, setting, lambda call: None if call.name in PERCEPTION_TOOLS else call)
+    return change_calls(episode, setting, lambda call: None if call.name in PERCEPTION_TOOLS else call)
 
 
 def drop_pictures(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
     """Omit all calls that take pictures."""
     if not episode.pictures:
         return None
-    return changed(episode, setting, lambda call: None if call.name == "take_image" else call)
+    return change_calls(episode, setting, lambda call: None if call.name == "take_image" else call)
 
 
 # Wrong tool
@@ -120,7 +120,7 @@ def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
         return replace(call, name=other, arguments=arguments, after=CameraPosition(call.before.viewpoint, pose), result=result)
 
-    return changed(episode, setting, swap)
+    return change_calls(episode, setting, swap)
 
 
 def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -133,7 +133,7 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         calls = list(episode.calls)
         calls[position], calls[position + 1] = calls[position + 1], calls[position]
         if missing_in_order(task.behaviour.calls, calls) is not None:
-            return replayed(episode, calls, setting)
+            return replay(episode, calls, setting)
     return None
 
 
@@ -153,14 +153,14 @@ def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.
             return call
         view = "full" if call.arguments.get("view", "current") == "current" else "current"
         result: dict[str, Any] = (
-            {"count": count_of(task.expected, answer, call)} if call.name == "count_objects" else {"answer": answer}
+            {"count": wrong_count(task.expected, answer, call)} if call.name == "count_objects" else {"answer": answer}
         )
-        return with_result(replace(call, arguments={**call.arguments, "view": view}), view=view, message=answer, **result)
+        return change_result(replace(call, arguments={**call.arguments, "view": view}), view=view, message=answer, **result)
 
-    return replace(changed(episode, setting, flip), answer=answer)
+    return replace(change_calls(episode, setting, flip), answer=answer)
 
 
-def count_of(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
+def wrong_count(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
     """Return a wrong count that is consistent with a wrong answer."""
     reading, counted = parse_answer(expected, answer), int((call.result or {}).get("count", 0))
     if isinstance(reading, ParsedValue) and isinstance(reading.value, float):
@@ -182,14 +182,14 @@ def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     def go(call: EpisodeCall) -> EpisodeCall:
         if call.name != "go_to_preset" or call.arguments["name"] != right:
             return call
-        return with_result(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
+        return change_result(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
 
-    return changed(episode, setting, go)
+    return change_calls(episode, setting, go)
 
 
 def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
     """Turn in the opposite direction. The paper's example is "panning left when asked to pan right"."""
-    if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
+    if not any(call.name == "adjust_ptz" and changes_direction(call) for call in episode.calls):
         return None
 
     def turn(call: EpisodeCall) -> EpisodeCall:
@@ -200,10 +200,10 @@ def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: rando
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
         return replace(call, arguments=arguments, after=CameraPosition(call.after.viewpoint, pose))
 
-    return changed(episode, setting, turn)
+    return change_calls(episode, setting, turn)
 
 
-def turns(call: EpisodeCall) -> bool:
+def changes_direction(call: EpisodeCall) -> bool:
     """Return whether an adjustment changes the direction, not only the magnification."""
     return any(call.arguments.get(name) for name in TURN_ARGUMENTS)
 
@@ -218,13 +218,13 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     ):
         return None
 
-    def off_topic(call: EpisodeCall) -> EpisodeCall:
+    def change_topic(call: EpisodeCall) -> EpisodeCall:
         if call.name == "count_objects":
             arguments = {**call.arguments, "description": "clouds"}
-            return with_result(replace(call, arguments=arguments), count=count_of(task.expected, answer, call), message=answer)
+            return change_result(replace(call, arguments=arguments), count=wrong_count(task.expected, answer, call), message=answer)
         if call.name == "query_answer":
             arguments = {**call.arguments, "question": "What is the weather like?"}
-            return with_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
+            return change_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
         return call
 
-    return replace(changed(episode, setting, off_topic), answer=answer)
+    return replace(change_calls(episode, setting, change_topic), answer=answer)

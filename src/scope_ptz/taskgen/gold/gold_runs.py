@@ -1,7 +1,7 @@
-"""Sets of gold runs: create them, score them with the rules for error modes, and read and write them.
+"""Create sets of gold runs, score them with the rules for error modes, and read and write them.
 
-The file is gzipped JSONL: a header with the published result, then one run per line. A run contains the id of its task. Its
-observations are not stored, because they can be computed from the calls.
+The file is gzipped JSONL: a header with the published result, then one run per line. Each run contains its task id. Observations
+are not stored, because they can be computed from the calls.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.agent.records import RecordedPose
-from scope_ptz.bench.program_runner import with_observations
+from scope_ptz.bench.program_runner import add_observations
 from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, SavedPicture
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.scoring.misperceptions import wrong_counts, wrong_reads
+from scope_ptz.bench.scoring.misperceptions import has_wrong_count, has_wrong_reply
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
@@ -29,16 +29,16 @@ from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
 RUNS_PER_MODE = 30  # number of gold runs per error mode: 240 runs for the eight modes
 
 WITHOUT_MODE = ("accepted", "not scored")
-"""Results of a faulty run to which the rules assign no error mode: it is judged correct, or it is not scored."""
+"""Results for a faulty run to which the rules assign no error mode: the run is judged correct, or is not scored."""
 
 
 @dataclass(frozen=True)
 class ConfusionMatrix:
-    """Counts of gold runs by the error mode of their fault and the error mode that the rules assign.
+    """Gold runs, counted by the error mode of their fault and the error mode that the rules assign.
 
     Attributes:
-        cells: Number of runs by the mode of the fault and the assigned mode, which may be one of ``WITHOUT_MODE``.
-        off_diagonal: Task, fault, mode of the fault and assigned mode of every run for which the two modes differ.
+        cells: Number of runs by fault mode and assigned mode, which may be one of ``WITHOUT_MODE``.
+        off_diagonal: Task, fault, fault mode and assigned mode for every run whose two modes differ.
     """
 
     cells: Counter[tuple[str, str]]
@@ -50,7 +50,7 @@ class ConfusionMatrix:
         return self.cells.total()
 
     @property
-    def named(self) -> int:
+    def correct_modes(self) -> int:
         """Number of runs to which the rules assign the correct mode."""
         return sum(number for (mode, assigned), number in self.cells.items() if mode == assigned)
 
@@ -64,16 +64,16 @@ class ConfusionMatrix:
         """Fraction of runs that were judged correct despite their fault."""
         return self.accepted / self.total if self.total else 0.0
 
-    def worse_than(self, published: Mapping[str, int]) -> bool:
-        """Return whether the rules name fewer modes correctly, or accept more runs, than the header of a published file states."""
-        return self.named < published["named"] or self.accepted > published["accepted"]
+    def is_worse_than(self, published: Mapping[str, int]) -> bool:
+        """Return whether the rules assign fewer correct modes, or accept more runs, than a published file's header states."""
+        return self.correct_modes < published["named"] or self.accepted > published["accepted"]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON data."""
         modes = [mode.value for mode in ErrorMode]
         return {
             "runs": self.total,
-            "named": self.named,
+            "named": self.correct_modes,
             "accepted": self.accepted,
             "false_accept_rate": self.false_accept_rate,
             "matrix": {row: {column: n for column in (*modes, *WITHOUT_MODE) if (n := self.cells[row, column])} for row in modes},
@@ -81,7 +81,7 @@ class ConfusionMatrix:
         }
 
 
-def gold_runs(
+def create_gold_runs(
     runs: Sequence[tuple[Task, Episode]], settings: Mapping[str, FaultSetting], seed: int, per_mode: int = RUNS_PER_MODE
 ) -> list[GoldRun]:
     """Insert faults of every error mode into passing runs.
@@ -94,7 +94,7 @@ def gold_runs(
         seed: Seed for every random choice.
         per_mode: Number of runs per error mode, taken from the categories in turn.
     """
-    runs = [(task, run) for task, run in runs if not wrong_counts(task, run, None) and not wrong_reads(task, run)]
+    runs = [(task, run) for task, run in runs if not has_wrong_count(task, run, None) and not has_wrong_reply(task, run)]
     gold = list[GoldRun]()
     for mode in ErrorMode:
         rng = random.Random(f"{seed}:{mode}")
@@ -103,70 +103,70 @@ def gold_runs(
             by_category.setdefault(task.category, []).append((task, episode))
         for rows in by_category.values():
             rng.shuffle(rows)
-        of_mode = list[GoldRun]()
-        while len(of_mode) < per_mode and any(by_category.values()):
+        mode_runs = list[GoldRun]()
+        while len(mode_runs) < per_mode and any(by_category.values()):
             for rows in by_category.values():
-                while rows and len(of_mode) < per_mode:
+                while rows and len(mode_runs) < per_mode:
                     task, episode = rows.pop()
                     faulty = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
                     if faulty is not None:
-                        of_mode.append(faulty)
+                        mode_runs.append(faulty)
                         break
-        gold += of_mode
+        gold += mode_runs
     return gold
 
 
 def confusion_matrix(gold: Iterable[GoldRun]) -> ConfusionMatrix:
     """Score gold runs with the checks and the rules for error modes, and count the results."""
     cells, off_diagonal = Counter[tuple[str, str]](), list[tuple[str, str, str, str]]()
-    for one in gold:
-        assigned = _assigned_mode(one)
-        cells[one.mode.value, assigned] += 1
-        if assigned != one.mode.value:
-            off_diagonal.append((one.task.id, one.fault, one.mode.value, assigned))
+    for run in gold:
+        assigned = _assigned_mode(run)
+        cells[run.mode.value, assigned] += 1
+        if assigned != run.mode.value:
+            off_diagonal.append((run.task.id, run.fault, run.mode.value, assigned))
     return ConfusionMatrix(cells, tuple(off_diagonal))
 
 
-def _assigned_mode(one: GoldRun) -> str:
-    mode = error_mode(one.task, one.episode)
+def _assigned_mode(run: GoldRun) -> str:
+    mode = error_mode(run.task, run.episode)
     if mode is not None:
         return mode.value
-    return WITHOUT_MODE[0] if score_episode(one.task, one.episode).headline == "correct" else WITHOUT_MODE[1]
+    return WITHOUT_MODE[0] if score_episode(run.task, run.episode).headline == "correct" else WITHOUT_MODE[1]
 
 
 def write_gold(gold: Sequence[GoldRun], path: Path) -> None:
     """Write runs to a file, with a header that contains their current result. The same runs always give an identical file."""
     result = confusion_matrix(gold)
-    header = {"gold": 1, "runs": result.total, "named": result.named, "accepted": result.accepted}
-    rows = [header, *({"task": g.task.id, "mode": g.mode.value, "fault": g.fault, "run": _run_data(g.episode)} for g in gold)]
+    header = {"gold": 1, "runs": result.total, "named": result.correct_modes, "accepted": result.accepted}
+    rows = [header, *({"task": g.task.id, "mode": g.mode.value, "fault": g.fault, "run": _episode_data(g.episode)} for g in gold)]
     text = "".join(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows)
     path.write_bytes(gzip.compress(text.encode(), mtime=0))
 
 
 def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[GoldRun]]:
-    """Read a file of gold runs.
+    """Read a gold run file.
 
     Args:
         path: The file.
-        tasks: The tasks of the runs.
+        tasks: The tasks to which the runs belong.
 
     Returns:
         The numbers in the header, and the runs.
 
     Raises:
-        InputError: The file is damaged, or contains runs of other tasks.
+        InputError: The file is damaged, or its runs belong to other tasks.
     """
     by_id = {task.id: task for task in tasks}
     try:
         header, *rows = [json.loads(line) for line in gzip.decompress(path.read_bytes()).decode().splitlines()]
         published = {name: int(header[name]) for name in ("runs", "named", "accepted")}
-        gold = [GoldRun(ErrorMode(row["mode"]), by_id[row["task"]], _episode(row["run"]), row["fault"]) for row in rows]
+        gold = [GoldRun(ErrorMode(row["mode"]), by_id[row["task"]], _parse_episode(row["run"]), row["fault"]) for row in rows]
     except KeyError as error:
         raise InputError(
             f"{path} does not belong to these tasks: {error} is missing. Create it again with `scope bench gold make`."
         ) from error
     except (OSError, EOFError, ValueError, TypeError) as error:
-        raise InputError(f"{path} is not a file of gold runs: {error}.") from error
+        raise InputError(f"{path} is not a gold run file: {error}.") from error
     if len(gold) != published["runs"]:
         raise InputError(
             f"{path} should contain {published['runs']} gold runs, but contains {len(gold)}. "
@@ -175,7 +175,7 @@ def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[G
     return published, gold
 
 
-def _run_data(episode: Episode) -> dict[str, Any]:
+def _episode_data(episode: Episode) -> dict[str, Any]:
     return {
         "instruction": episode.instruction,
         "start": _position_data(episode.start),
@@ -200,7 +200,7 @@ def _position_data(at: CameraPosition) -> list[Any]:
     return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
 
 
-def _episode(row: Mapping[str, Any]) -> Episode:
+def _parse_episode(row: Mapping[str, Any]) -> Episode:
     def position(values: Sequence[Any]) -> CameraPosition:
         viewpoint, *pose = values
         return CameraPosition(viewpoint, RecordedPose(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
@@ -210,7 +210,7 @@ def _episode(row: Mapping[str, Any]) -> Episode:
     for stored in row["calls"]:
         optional = {name: stored.get(name) for name in ("result", "error", "fault")}
         calls.append(
-            with_observations(
+            add_observations(
                 EpisodeCall(
                     stored["name"], stored["arguments"], at, after := position(stored["after"]), time_s=stored["time_s"], **optional
                 ),

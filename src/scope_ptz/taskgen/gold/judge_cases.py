@@ -1,4 +1,4 @@
-"""Test a judge on gold runs: select the runs, request the judgements, and format the result as lines of text."""
+"""Test a judge on gold runs: select the runs, request judgements, and format the result as lines of text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import anyio
 
-from scope_ptz.bench.judging.agreement_text import figures
+from scope_ptz.bench.judging.agreement_text import agreement_text
 from scope_ptz.bench.judging.json_lines import append_line
 from scope_ptz.bench.judging.judge import Judge
 from scope_ptz.bench.judging.judgement_tally import JudgementTally
@@ -55,7 +55,7 @@ async def judge_all(
         server: The judge's server.
         cases: Runs to judge.
         earlier: Verdicts that the file already contains.
-        out: File for verdicts.
+        out: File to which the verdicts are appended.
         repeats: Number of judgements of each run.
         concurrency: Number of concurrent judgements.
         notify: Called with a note before each round of judgements.
@@ -70,7 +70,7 @@ async def judge_all(
 
     judgements: list[Judgement] = []
 
-    def note(verdict: GoldVerdict) -> None:
+    def record(verdict: GoldVerdict) -> None:
         judgements.append(verdict.judgement)
         append_line(out, json.dumps(verdict.model_dump(mode="json"), ensure_ascii=False))
 
@@ -78,31 +78,31 @@ async def judge_all(
         remaining = [case for case in cases if (case.key, repeat) not in judged]
         notify(f"{name}: {len(remaining)} of {len(cases)} runs to judge" + (f", judgement {repeat + 1}" if repeats > 1 else ""))
         judge = Judge(name, server.for_repeat(repeat))
-        await judge_cases(judge, remaining, concurrency=concurrency, repeat=repeat, note=note)
+        await judge_cases(judge, remaining, concurrency=concurrency, repeat=repeat, note=record)
     return JudgementTally.of(judgements)
 
 
-def gold_cases(
+def create_cases(
     gold: Path | None,
     split: str,
     passing: int,
     limit: int | None,
-    worlds_of: Callable[[Iterable[Task]], Mapping[str, Scene]],
+    open_worlds: Callable[[Iterable[Task]], Mapping[str, Scene]],
     ground_truth_tools: Callable[[Mapping[str, Scene]], MakeToolContext],
 ) -> list[GoldCase]:
-    """Return gold runs and passing runs of the same tasks as cases for a judge. Reference programs produce the passing runs.
+    """Return gold runs, and passing runs for the same tasks, as cases for a judge. Reference programs produce the passing runs.
 
     Args:
-        gold: File of gold runs; None for the published one.
-        split: Split or task file with the tasks of the runs.
+        gold: Gold run file; None for the published one.
+        split: Split or task file that contains the tasks of the runs.
         passing: Maximum number of passing runs.
         limit: Maximum number of gold runs; None for all.
-        worlds_of: Opens the scenes and variations of tasks.
+        open_worlds: Opens the scenes and variations that tasks use.
         ground_truth_tools: Returns a function that creates tool contexts with ground-truth perception.
     """
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
     runs = alternating_modes(runs)[:limit]
-    worlds = worlds_of(run.task for run in runs)
+    worlds = open_worlds(run.task for run in runs)
     places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
     make_context = ground_truth_tools(worlds)
     cases = [gold_case(run, places[run.task.world]) for run in runs]
@@ -119,18 +119,18 @@ def gold_cases(
 
 
 def result_lines(result: GoldResult) -> Iterator[str]:
-    """Yield the confusion matrix of a judge on gold runs as lines of text, with its rates of false accepts and rejects."""
+    """Yield a judge's confusion matrix on gold runs, with its false-accept and false-reject rates, as lines of text."""
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *WITHOUT_VERDICT]
     judgements = sum(result.cells.values())
     judgement_count = f", {judgements} judgements" if judgements != result.runs else ""
     runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"
-    yield f"{result.judge}: {runs}{judgement_count}; rows: inserted fault, columns: verdict of the judge"
+    yield f"{result.judge}: {runs}{judgement_count}; rows: inserted fault, columns: the judge's verdict"
     yield f"{'':<20}" + "".join(f"{COLUMN_NAMES.get(name, name):>12}" for name in columns)
     for row in (*modes, PASSES):
         if any(fault == row for fault, _ in result.cells):
             yield f"{row.replace('_', ' '):<20}" + "".join(f"{result.cells.get((row, name), 0) or '.':>12}" for name in columns)
     for name, share in (("false accepts", result.false_accept_rate), ("false rejects", result.false_reject_rate)):
         yield f"{name}: {f'{share:.1%}' if share is not None else 'not measured'}"
-    yield f"correct or not: {figures(result.verdicts)}"
-    yield f"error mode of the faulty runs that it rejected: {figures(result.modes)}"
+    yield f"correct or not: {agreement_text(result.verdicts)}"
+    yield f"error mode of the faulty runs that it rejected: {agreement_text(result.modes)}"

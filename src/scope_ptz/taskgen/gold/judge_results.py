@@ -1,4 +1,4 @@
-"""Accuracy of LLM judges on runs with known faults: false accepts, false rejects, and the error modes that they name."""
+"""Measure the accuracy of LLM judges on runs with known faults: false accepts, false rejects, and reported error modes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, judge
 from scope_ptz.bench.judging.case import JudgeCase, case_of_episode
 from scope_ptz.bench.judging.json_lines import complete_lines
 from scope_ptz.bench.judging.judge import Judge
-from scope_ptz.bench.judging.kappa import KappaResult, cohen
+from scope_ptz.bench.judging.kappa import KappaResult, cohen_agreement
 from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement
@@ -27,7 +27,7 @@ from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import GoldRun
 
 PASSES = "passes"  # used instead of an error mode for runs without a fault
-WITHOUT_VERDICT = ("unparseable", "failed")  # outcomes of judgements that contain no verdict
+WITHOUT_VERDICT = ("unparseable", "failed")  # outcomes of judgements without a verdict
 
 
 class GoldCase(BaseModel):
@@ -36,8 +36,8 @@ class GoldCase(BaseModel):
     Attributes:
         facts: The task, as the judge receives it.
         case: The run, as the judge receives it.
-        fault: The error mode of its fault; None for a passing run.
-        how: Name of the fault function, or "reference" for a passing run.
+        fault: Error mode of the fault; None for a passing run.
+        source: Name of the fault function, or "reference" for a passing run.
     """
 
     model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
@@ -45,16 +45,16 @@ class GoldCase(BaseModel):
     facts: TaskFacts
     case: JudgeCase
     fault: ErrorMode | None
-    how: str
+    source: str
 
     @property
     def key(self) -> str:
-        """A key that identifies the run among gold runs."""
-        return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.how}"
+        """A key that identifies the run among all gold runs."""
+        return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.source}"
 
 
 class GoldVerdict(BaseModel):
-    """The judgement of a gold run, in the form in which it is stored."""
+    """A stored judgement of a gold run."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -66,18 +66,18 @@ class GoldVerdict(BaseModel):
 
 def gold_case(gold: GoldRun, places: PresetViewpoints) -> GoldCase:
     """Return a gold run as a case for a judge. ``places`` are the presets of its scene."""
-    return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
+    return _create_case(gold.task, gold.episode, places, gold.mode, gold.fault)
 
 
 def passing_case(task: Task, episode: Episode, places: PresetViewpoints) -> GoldCase:
     """Return a run that passes all checks as a case for a judge."""
-    return _case(task, episode, places, None, "reference")
+    return _create_case(task, episode, places, None, "reference")
 
 
-def _case(task: Task, episode: Episode, places: PresetViewpoints, fault: ErrorMode | None, how: str) -> GoldCase:
+def _create_case(task: Task, episode: Episode, places: PresetViewpoints, fault: ErrorMode | None, source: str) -> GoldCase:
     facts = facts_of(task, episode.start.viewpoint or "")
     case = case_of_episode(episode, places)
-    return GoldCase(facts=facts, case=case, fault=fault, how=how)
+    return GoldCase(facts=facts, case=case, fault=fault, source=source)
 
 
 async def judge_gold(
@@ -89,7 +89,7 @@ async def judge_gold(
         judge: The judge.
         cases: The runs.
         concurrency: Number of concurrent judgements.
-        repeat: Index of the judgement of each run, from 0.
+        repeat: Index of this round of judgements, from 0.
         note: Called with each verdict as soon as it is available. Its exceptions are raised to the caller.
     """
     limit = anyio.Semaphore(concurrency)
@@ -114,7 +114,7 @@ class GoldResult:
     Attributes:
         judge: Name of the judge.
         runs: Number of runs, each of which may have several judgements.
-        cells: Number of judgements by the mode of the fault ("passes" for none) and by verdict: a mode, "correct", or one of
+        cells: Number of judgements by fault mode ("passes" for none) and by verdict: a mode, "correct", or one of
             ``WITHOUT_VERDICT``.
         verdicts: Agreement on whether a run is correct, over all judgements with a verdict.
         modes: Agreement on the error mode, over faulty runs that were judged incorrect.
@@ -135,13 +135,13 @@ class GoldResult:
 
     @property
     def false_accept_rate(self) -> float | None:
-        """Fraction of the verdicts on faulty runs that are "correct"."""
+        """Fraction of verdicts on faulty runs that are "correct"."""
         judged = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
         return self._count(faulty=True, verdicts=("correct",)) / judged if judged else None
 
     @property
     def false_reject_rate(self) -> float | None:
-        """Fraction of the verdicts on passing runs that are not "correct"."""
+        """Fraction of verdicts on passing runs that are not "correct"."""
         judged = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
         return 1 - self._count(faulty=False, verdicts=("correct",)) / judged if judged else None
 
@@ -166,42 +166,42 @@ class GoldResult:
         }
 
 
-def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
-    """Compare the verdicts of one judge with the known faults.
+def judge_result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
+    """Compare a judge's verdicts with the known faults.
 
     Args:
         judge: Name of the judge.
-        verdicts: Its verdicts.
+        verdicts: The judge's verdicts.
         seed: Seed for the confidence intervals.
     """
-    rows = [(_fault(verdict), _verdict(verdict.judgement), verdict) for verdict in verdicts]
+    rows = [(_fault_label(verdict), _verdict_label(verdict.judgement), verdict) for verdict in verdicts]
     judged_rows = [row for row in rows if row[1] not in WITHOUT_VERDICT]
     rejected = [row for row in judged_rows if row[0] != PASSES and row[1] != "correct"]
     return GoldResult(
         judge=judge,
         runs=len({verdict.key for verdict in verdicts}),
         cells=Counter((fault, verdict) for fault, verdict, _ in rows),
-        verdicts=cohen(
+        verdicts=cohen_agreement(
             ["correct" if fault == PASSES else "incorrect" for fault, _, _ in judged_rows],
             ["correct" if verdict == "correct" else "incorrect" for _, verdict, _ in judged_rows],
             [row.task for _, _, row in judged_rows],
             seed,
         ),
-        modes=cohen([r[0] for r in rejected], [r[1] for r in rejected], [r[2].task for r in rejected], seed),
+        modes=cohen_agreement([r[0] for r in rejected], [r[1] for r in rejected], [r[2].task for r in rejected], seed),
     )
 
 
-def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
-    """Return the result of every judge over all of its judgements. Failed judgements that were repeated later are ignored."""
+def judge_results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
+    """Return the result for every judge, over all of its judgements. Failed judgements that were repeated later are ignored."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     by_judge: dict[str, list[GoldVerdict]] = {}
     for verdict in newest.values():
         by_judge.setdefault(f"{verdict.judgement.judge} ({verdict.judgement.prompt})", []).append(verdict)
-    return [result(judge, rows, seed) for judge, rows in by_judge.items()]
+    return [judge_result(judge, rows, seed) for judge, rows in by_judge.items()]
 
 
 def gold_raters(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
-    """Return the raters whose agreement can be measured: one for the known faults and one for every judge."""
+    """Return one rater for the known faults and one for every judge, so that the agreement between them can be measured."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     known_faults, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
     by_key: dict[str, list[GoldVerdict]] = {}
@@ -217,7 +217,7 @@ def gold_raters(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
 
 
 def alternating_modes(runs: Sequence[GoldRun]) -> list[GoldRun]:
-    """Return the runs ordered so that the error modes take turns. The first few runs then cover all modes."""
+    """Return the runs in an order in which the error modes alternate. The first few runs then cover all modes."""
     by_mode = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
     return [run for row in zip_longest(*by_mode) for run in row if run is not None]
 
@@ -240,9 +240,9 @@ def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
     return tuple(rows)
 
 
-def _fault(verdict: GoldVerdict) -> str:
+def _fault_label(verdict: GoldVerdict) -> str:
     return verdict.fault.value if verdict.fault else PASSES
 
 
-def _verdict(judgement: Judgement) -> str:
+def _verdict_label(judgement: Judgement) -> str:
     return judgement.error_mode.value if judgement.error_mode else judgement.verdict

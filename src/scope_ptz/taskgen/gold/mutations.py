@@ -13,10 +13,10 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.gold import agent_faults, reply_faults
 from scope_ptz.taskgen.gold.agent_faults import FaultSetting
 
-__all__ = ["FaultSetting", "GoldRun", "confusion", "mutate"]
+__all__ = ["FaultSetting", "GoldRun", "count_assigned_modes", "mutate"]
 
 FaultFunction = Callable[[Task, Episode, FaultSetting, random.Random], Episode | None]
-# The fault functions of each error mode.
+# The fault functions for each error mode.
 FAULTS: dict[ErrorMode, tuple[FaultFunction, ...]] = {
     ErrorMode.LACK_OF_TOOL_CALL: (agent_faults.drop_all, agent_faults.drop_looks, agent_faults.drop_pictures),
     ErrorMode.TOOL_ROUTING: (agent_faults.swap_tools, agent_faults.swap_order),
@@ -43,8 +43,8 @@ def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting,
     """Insert one fault of an error mode into a passing run.
 
     Returns:
-        The run with the fault; None if no fault of the mode applies to it. For example, a run without a counting call cannot have
-        a wrong count.
+        The run with the fault; None if no fault of this mode applies. For example, a run without a counting call cannot have a
+        wrong count.
     """
     functions = list(FAULTS[mode])
     rng.shuffle(functions)
@@ -54,6 +54,6 @@ def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting,
     return None
 
 
-def confusion(gold: Iterable[GoldRun]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:
-    """Count runs by the mode of their fault and the mode that the rules assign, which is None for runs not judged incorrect."""
-    return Counter((one.mode, error_mode(one.task, one.episode)) for one in gold)
+def count_assigned_modes(gold: Iterable[GoldRun]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:
+    """Count runs by their fault mode and the mode that the rules assign, which is None for runs that are not judged incorrect."""
+    return Counter((run.mode, error_mode(run.task, run.episode)) for run in gold)

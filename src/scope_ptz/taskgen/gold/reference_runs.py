@@ -9,10 +9,10 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
-from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, gold_runs
+from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, create_gold_runs
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun
 
 
@@ -23,13 +23,13 @@ async def make_gold_runs(
 
     Args:
         tasks: Tasks. Only core tasks with a reference program are used.
-        worlds: The scenes and variations of the tasks, by name.
-        make_context: Creates the tool context of a camera.
+        worlds: The scenes and variations that the tasks use, by name.
+        make_context: Creates the tool context for a camera.
         seed: Seed for the selection of runs and faults.
     """
     runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     settings = {
-        name: FaultSetting({p.name: preset_at(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
+        name: FaultSetting({p.name: preset_position(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
     }
     runs = []
     for task in tasks:
@@ -37,7 +37,7 @@ async def make_gold_runs(
             episode = await runners[task.world].run(task, task.reference, correct_answers(task.expected)[0])
             if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
-    return gold_runs(runs, settings, seed)
+    return create_gold_runs(runs, settings, seed)
 
 
 COLUMN_NAMES = {
@@ -57,6 +57,6 @@ def matrix_lines(gold: Sequence[GoldRun]) -> Iterator[str]:
             f"{result.cells[mode.value, reported] or '.':>11}" for reported in columns
         )
     accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"
-    yield f"{result.named} of {result.total} error modes are correct; {accepted}"
+    yield f"{result.correct_modes} of {result.total} error modes are correct; {accepted}"
     for task, fault, mode_in, reported in result.off_diagonal:
         yield f"  {task}: {fault} ({mode_in}) was assigned the mode {reported}"

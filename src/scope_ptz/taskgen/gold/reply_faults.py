@@ -1,4 +1,4 @@
-"""Faults in replies: wrong results of perception, and wrong final answers.
+"""Faults in replies: wrong perception results, and wrong final answers.
 
 Each fault function takes a passing run and returns it with the fault, or None if the fault does not apply to the run. The names
 of these functions are stored with gold runs.
@@ -15,13 +15,13 @@ from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
-from scope_ptz.taskgen.gold.agent_faults import FaultSetting, changed, count_of, replayed, with_result
+from scope_ptz.taskgen.gold.agent_faults import FaultSetting, change_calls, change_result, replay, wrong_count
 
 _MAX_TRIES = 24  # maximum number of wrong answers to try when looking for one that the run does not support
-_DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
+_DECLINING_ANSWERS = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
 
 
-# Perception is wrong
+# Wrong perception results
 
 
 def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -33,8 +33,8 @@ def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
     for wrong in _miscounts(task.expected, answer, [episode.calls[n] for n in counts]):
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
-            calls[n] = recounted(calls[n], number)
-        faulty = replace(replayed(episode, calls, setting), answer=answer)
+            calls[n] = change_count(calls[n], number)
+        faulty = replace(replay(episode, calls, setting), answer=answer)
         if is_supported_by_tools(task, faulty):
             return faulty
     return None
@@ -47,16 +47,16 @@ def _miscounts(expected: AnyExpected, answer: str, counts: list[EpisodeCall]) ->
         exchanged = list(reversed(numbers)) if isinstance(expected, Relation) else [*numbers[1::-1], *numbers[2:]]
         yield exchanged if exchanged != numbers else [numbers[0] + 2, *numbers[1:]]
         return
-    last = count_of(expected, answer, counts[-1])
+    last = wrong_count(expected, answer, counts[-1])
     error = last - round(expected.value) if isinstance(expected, Number) else 0
     for number in (last, numbers[-1] + error, numbers[-1] - error):
         if number >= 0 and number != numbers[-1]:
             yield [*numbers[:-1], number]
 
 
-def recounted(call: EpisodeCall, number: int) -> EpisodeCall:
+def change_count(call: EpisodeCall, number: int) -> EpisodeCall:
     """Return a counting call with a different count."""
-    return with_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
+    return change_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
 def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -66,9 +66,9 @@ def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
         return None
 
     def change(call: EpisodeCall) -> EpisodeCall:
-        return with_result(call, answer=answer, message=answer) if call.name == "query_answer" else call
+        return change_result(call, answer=answer, message=answer) if call.name == "query_answer" else call
 
-    return replace(changed(episode, setting, change), answer=answer)
+    return replace(change_calls(episode, setting, change), answer=answer)
 
 
 def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -82,10 +82,10 @@ def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
         result = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
         return replace(call, result=result, after=call.before)
 
-    return replace(changed(episode, setting, change), answer="It is not in view.")
+    return replace(change_calls(episode, setting, change), answer="It is not in view.")
 
 
-# The answer is wrong
+# Wrong answers
 
 
 def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -111,4 +111,4 @@ def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: r
     answer = wrong_answer(expected, rng)
     if answer is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, answer=answer)):
         return replace(episode, answer=answer)
-    return replace(episode, answer=rng.choice(_DECLINES))
+    return replace(episode, answer=rng.choice(_DECLINING_ANSWERS))

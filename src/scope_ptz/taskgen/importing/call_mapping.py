@@ -1,4 +1,4 @@
-"""Map the expected tools and arguments of a row to the calls that a run must make."""
+"""Map the expected tools and arguments in a row to the calls that a run must make."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ from scope_ptz.taskgen.importing.paper_names import (
     normalise,
     scope_of,
 )
-from scope_ptz.taskgen.importing.structured_cells import structure
-from scope_ptz.taskgen.importing.tool_steps import belong_to_single_call, cell_excerpt, steps_in, unused_arguments
+from scope_ptz.taskgen.importing.structured_cells import parse_cell
+from scope_ptz.taskgen.importing.tool_steps import cell_excerpt, find_steps, find_unused_arguments, is_single_call
 from scope_ptz.tools.registry import TOOLS as SCOPE_TOOLS
 from scope_ptz.tools.registry import parse_call
 
 DEGREES_TOLERANCE, ZOOM_TOLERANCE, SECONDS_TOLERANCE = 0.5, 0.03, 0.5
-"""Tolerances of expected arguments: in degrees, as a fraction of the zoom factor, and in seconds."""
+"""Tolerances for expected arguments: in degrees, as a fraction of the zoom factor, and in seconds."""
 _UNITS_S = {"": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "min": 60.0, "minute": 60.0, "minutes": 60.0}
 _STOP_WORDS = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
 TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in SCOPE_TOOLS.items()}
 PresetOf = Callable[[str], str | None]
-"""A function that returns the preset of the scene for a name in the file; None if there is none."""
+"""A function that returns the scene's preset for a name in the file; None if there is no such preset."""
 
 
 @dataclass
 class Expectation:
-    """The required calls of a row, and the findings about tools and arguments that could not be mapped."""
+    """A row's required calls, and findings about tools and arguments that could not be mapped."""
 
     calls: list[RequiredCall] = field(default_factory=list)
     findings: list[RowFinding] = field(default_factory=list)
@@ -49,26 +49,26 @@ class Expectation:
 
 
 def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> Expectation:
-    """Map the expected calls of a row.
+    """Map a row's expected calls.
 
     Args:
         order_cell: The cell with the expected tools.
         arguments_cell: The cell with their arguments.
         compare: Whether the arguments of a run must match those in the file.
-        preset_of: Returns the preset of the scene for a name in the file.
+        preset_of: Returns the scene's preset for a name in the file.
 
     Returns:
         The required calls and the findings.
     """
     expectation = Expectation()
     order, given = (
-        _parse(order_cell, "expected_tool_order_json", expectation),
-        _parse(arguments_cell, "expected_tool_args_json", expectation),
+        _parse_cell(order_cell, "expected_tool_order_json", expectation),
+        _parse_cell(arguments_cell, "expected_tool_args_json", expectation),
     )
-    names = list(steps_in(order, lambda detail: expectation.note("unknown-tool", detail)))
+    names = list(find_steps(order, lambda detail: expectation.note("unknown-tool", detail)))
     if not names and isinstance(given, dict) and any(normalise(name) in TOOLS for name in given):
         names = [(name, {}) for name in given]  # the row gives only arguments, by tool
-    for detail in unused_arguments(given, [name for name, _ in names]):
+    for detail in find_unused_arguments(given, [name for name, _ in names]):
         expectation.note("unchecked-argument", detail)
     for index, (name, call_arguments) in enumerate(names):
         tool = TOOLS.get(normalise(name))
@@ -83,9 +83,9 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     return expectation
 
 
-def _parse(cell: str, column: str, expectation: Expectation) -> Any:
+def _parse_cell(cell: str, column: str, expectation: Expectation) -> Any:
     try:
-        return structure(cell)
+        return parse_cell(cell)
     except ValueError as error:
         expectation.note("unreadable-cell", f"{column}: {error}: {cell[:120]}")
         return None
@@ -95,18 +95,18 @@ def _arguments_of(given: Any, name: str, index: int, earlier_calls: int, *, only
     """Return the arguments of one expected call, from a list by position or from an object by tool.
 
     Args:
-        given: The arguments of all calls.
-        name: The name of the tool in the file.
+        given: The arguments for all calls.
+        name: The tool's name in the file.
         index: Position of the call.
         earlier_calls: Number of earlier calls to the same tool.
         only_call: Whether this is the only call. Arguments without a tool name then belong to it.
     """
     if isinstance(given, list):
-        one = given[index] if index < len(given) else None
-        if not isinstance(one, dict):
+        item = given[index] if index < len(given) else None
+        if not isinstance(item, dict):
             return {}
-        inner = next((one[key] for key in ("args", "arguments", "parameters", name) if isinstance(one.get(key), dict)), None)
-        return inner if inner is not None else {key: value for key, value in one.items() if key not in ("tool", "tool_name")}
+        inner = next((item[key] for key in ("args", "arguments", "parameters", name) if isinstance(item.get(key), dict)), None)
+        return inner if inner is not None else {key: value for key, value in item.items() if key not in ("tool", "tool_name")}
     if not isinstance(given, dict):
         return {}
     call_arguments: Any = given.get(name, given.get(str(index)))
@@ -114,8 +114,8 @@ def _arguments_of(given: Any, name: str, index: int, earlier_calls: int, *, only
         call_arguments = call_arguments[min(earlier_calls, len(call_arguments) - 1)] if call_arguments else {}
     if isinstance(call_arguments, dict):
         return dict(call_arguments)
-    flat = not any(isinstance(value, dict | list) for value in given.values())
-    return dict(given) if index == 0 and (flat or (only_call and belong_to_single_call(given, [name]))) else {}
+    is_flat = not any(isinstance(value, dict | list) for value in given.values())
+    return dict(given) if index == 0 and (is_flat or (only_call and is_single_call(given, [name]))) else {}
 
 
 def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:
@@ -123,17 +123,17 @@ def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf
     given = {normalise(name): value for name, value in given.items() if value is not None and value != ""}
     required, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
 
-    def take(name: str, value: Any, argument: Argument | None) -> None:
+    def add_argument(name: str, value: Any, argument: Argument | None) -> None:
         call[name] = value
         if argument is not None:
             required[name] = argument
 
     if tool == "adjust_ptz":
-        _moves(given, take, used, expectation)
+        _map_move(given, add_argument, used, expectation)
     text = next((name for name in TEXT_ARGUMENTS.get(tool, ()) if isinstance(given.get(name), str)), None)
     if text is not None:
         used.add(text)
-        _text(tool, str(given[text]), preset_of, take, expectation)
+        _map_text(tool, str(given[text]), preset_of, add_argument, expectation)
     view = next((name for name in VIEW_ARGUMENTS if name in given), None) if tool in ("count_objects", "query_answer") else None
     if view is not None:
         used.add(view)
@@ -141,53 +141,53 @@ def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf
         if scope is None:
             expectation.note("wrong-arguments", f"{tool}: {view} is {given[view]!r}")
         else:
-            take("view", scope, Argument(equals=scope))
+            add_argument("view", scope, Argument(equals=scope))
     if tool == "track_object":
-        _duration(given, take, used, expectation)
+        _map_duration(given, add_argument, used, expectation)
     texts = set(TEXT_ARGUMENTS.get(tool, ()))
     for name in sorted(texts & set(given) - used):
         if not isinstance(given[name], str):
-            expectation.note("wrong-arguments", f"{tool}: {name} is {cell_excerpt(given[name])}, which is no text")
+            expectation.note("wrong-arguments", f"{tool}: {name} is {cell_excerpt(given[name])}, which is not text")
         elif tool != "query_answer":  # any wording of a question is accepted
-            expectation.note("unchecked-argument", f"{tool}: {name} is {cell_excerpt(given[name])}, and {text} was read")
+            expectation.note("unchecked-argument", f"{tool}: {name} is {cell_excerpt(given[name])}, but {text} is used")
     unused = sorted(set(given) - used - texts)
     if unused:
-        expectation.note("wrong-arguments", f"{tool} takes no {', '.join(unused)}")
-    _validate(tool, call, expectation)
+        expectation.note("wrong-arguments", f"{tool} does not take {', '.join(unused)}")
+    _validate_call(tool, call, expectation)
     return required
 
 
-TakeArgument = Callable[[str, Any, Argument | None], None]
+AddArgument = Callable[[str, Any, Argument | None], None]
 """A function that adds an argument to a call by its name, with its value and its requirement (None for no requirement)."""
 
 
-def _moves(given: Mapping[str, Any], take: TakeArgument, used: set[str], expectation: Expectation) -> None:
+def _map_move(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], expectation: Expectation) -> None:
     for name in ("pan_deg", "tilt_deg"):
         if name in given:
             used.add(name)
-            degrees = _number(given[name])
+            degrees = _parse_number(given[name])
             if degrees is None:
                 expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
-                take(name, degrees, Argument(equals=degrees, within=DEGREES_TOLERANCE))
+                add_argument(name, degrees, Argument(equals=degrees, within=DEGREES_TOLERANCE))
     if "zoom_factor" in given and "zoom_percent" in given:
-        expectation.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; the latter was read")
+        expectation.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; zoom_percent is used")
     for name in ("zoom_factor", "zoom_percent"):
         if name in given:
             used.add(name)
-            amount = _number(given[name])
+            amount = _parse_number(given[name])
             factor = 1 + amount / 100 if amount is not None and name == "zoom_percent" else amount
             if factor is None or factor <= 0:
                 expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
-                take("zoom_factor", factor, Argument(equals=factor, within=factor * ZOOM_TOLERANCE))
+                add_argument("zoom_factor", factor, Argument(equals=factor, within=factor * ZOOM_TOLERANCE))
     full = next((name for name in ("zoom_full", "zoom_limit") if name in given), None)
     if full is not None:
         used.add(full)
         word = "-1" if str(given[full]).strip() == "-1" else normalise(str(given[full]))
         limit = "in" if word in ZOOM_IN else "out" if word in ZOOM_OUT else None
         if limit is not None:
-            take("zoom_limit", limit, Argument(equals=limit))
+            add_argument("zoom_limit", limit, Argument(equals=limit))
         elif given[full] is not False:
             expectation.note("unchecked-argument", f"adjust_ptz: {full} is {given[full]!r}, which does not say whether in or out")
     used.update(
@@ -195,35 +195,35 @@ def _moves(given: Mapping[str, Any], take: TakeArgument, used: set[str], expecta
     )
 
 
-def _text(tool: ToolName, text: str, preset_of: PresetOf, take: TakeArgument, expectation: Expectation) -> None:
+def _map_text(tool: ToolName, text: str, preset_of: PresetOf, add_argument: AddArgument, expectation: Expectation) -> None:
     if tool == "go_to_preset":
         preset = preset_of(text)
         if preset is None:
             expectation.note("wrong-arguments", f"go_to_preset: there is no preset {text!r}")
         else:
-            take("name", preset, Argument(equals=preset))
+            add_argument("name", preset, Argument(equals=preset))
     elif tool == "query_answer":
-        take("question", text, None)  # any wording of a question is accepted
+        add_argument("question", text, None)  # any wording of a question is accepted
     else:
         words = [word for word in plain_words(text) if word not in _STOP_WORDS and any(c.isalpha() or c.isdecimal() for c in word)]
         head = words[-1:]
-        take("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
+        add_argument("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
 
 
-def _duration(given: Mapping[str, Any], take: TakeArgument, used: set[str], expectation: Expectation) -> None:
+def _map_duration(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], expectation: Expectation) -> None:
     name = next((name for name in DURATION_ARGUMENTS if name in given), None)
     used.add("unit")
     if name is None:
         return
     used.add(name)
-    amount, unit = _number(given[name]), _UNITS_S.get(normalise(str(given.get("unit", ""))))
+    amount, unit = _parse_number(given[name]), _UNITS_S.get(normalise(str(given.get("unit", ""))))
     if amount is None or unit is None:
         expectation.note("wrong-arguments", f"track_object: {name} is {given[name]!r} {given.get('unit', '')}".rstrip())
     else:
-        take("duration_s", amount * unit, Argument(equals=amount * unit, within=SECONDS_TOLERANCE))
+        add_argument("duration_s", amount * unit, Argument(equals=amount * unit, within=SECONDS_TOLERANCE))
 
 
-def _validate(tool: ToolName, call: Mapping[str, Any], expectation: Expectation) -> None:
+def _validate_call(tool: ToolName, call: Mapping[str, Any], expectation: Expectation) -> None:
     """Report a call that the tool would reject. Missing texts are ignored, because files often omit them."""
     filled = dict(call)
     for name in ("name", "description", "question"):
@@ -235,7 +235,7 @@ def _validate(tool: ToolName, call: Mapping[str, Any], expectation: Expectation)
         expectation.note("wrong-arguments", str(error))
 
 
-def _number(value: Any) -> float | None:
+def _parse_number(value: Any) -> float | None:
     if isinstance(value, bool):
         return None
     try:

@@ -1,4 +1,4 @@
-"""Find fields of a row that contradict each other, such as a tool for the full view with an argument for the current one."""
+"""Find fields in a row that contradict each other, such as a tool for the full view with an argument for the current one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FULL_VIEW = re.compile(
 _CURRENT_VIEW = re.compile(r"\b(?:current|present) (?:view|frame|image)\b|\bwithout moving the camera\b", re.IGNORECASE)
 _PRESET = re.compile(r"\bpreset[\s:'\"“]+([\w-]+(?: \d+)?)", re.IGNORECASE)
 _STEP_CATEGORIES = frozenset({"single_call", "multi_step_command", "multi_step_reasoning"})
-"""Categories by the number of steps. The other categories are types of questions."""
+"""Categories that state the number of steps. All other categories are question types."""
 _SINGLE_STEP = frozenset({"single", "single_step", "single_call"})
 
 
@@ -37,18 +37,21 @@ def argument_contradictions(tool: ToolName, in_order: Mapping[str, Any], in_argu
         in_order: The arguments in the cell with the expected tools.
         in_arguments: The arguments in the cell with the arguments.
     """
-    order, arguments = _by_meaning(tool, in_order), _by_meaning(tool, in_arguments)
+    order, arguments = _group_by_meaning(tool, in_order), _group_by_meaning(tool, in_arguments)
     for content, source in ((order, "the expected tools"), (arguments, "the arguments")):
         for name, values in content.items():
-            if name in ("view", "duration") and len({_key(name, value) for value in values}) > 1:
-                yield f"{tool}: {source} give {name} as {_listed(values)}"
+            if name in ("view", "duration") and len({_comparison_key(name, value) for value in values}) > 1:
+                yield f"{tool}: {source} give {name} as {_list_values(values)}"
     for name in sorted(order.keys() & arguments.keys()):
-        if {_key(name, value) for value in order[name]}.isdisjoint(_key(name, value) for value in arguments[name]):
-            yield f"{tool}: the expected tools say {name} {_listed(order[name])}, the arguments say {_listed(arguments[name])}"
+        if {_comparison_key(name, value) for value in order[name]}.isdisjoint(
+            _comparison_key(name, value) for value in arguments[name]
+        ):
+            in_tools, in_cell = _list_values(order[name]), _list_values(arguments[name])
+            yield f"{tool}: the expected tools say {name} {in_tools}, the arguments say {in_cell}"
 
 
 def field_contradictions(cells: Mapping[str, str], calls: Sequence[RequiredCall], presets: Collection[str]) -> Iterator[str]:
-    """Yield a sentence for each pair of fields of a row that contradict each other.
+    """Yield a sentence for each pair of fields in a row that contradict each other.
 
     Args:
         cells: The cells of the row.
@@ -57,17 +60,18 @@ def field_contradictions(cells: Mapping[str, str], calls: Sequence[RequiredCall]
     """
     question = cells.get("question", "")
     views = {str(call.arguments["view"].equals) for call in calls if "view" in call.arguments}
-    stated = scope_of(cells.get("answer_view", ""))
-    if stated is not None and views and stated not in views:
-        yield f"answer_view says {stated}, the arguments of the expected calls say {' and '.join(sorted(views))}"
-    asked = _view_in_question(question)
-    if asked is not None and views and asked not in views:
-        yield f"the question asks for the {asked} view, the arguments of the expected calls say {' and '.join(sorted(views))}"
-    elif asked == "full" and stated == "current":
+    answer_view = scope_of(cells.get("answer_view", ""))
+    if answer_view is not None and views and answer_view not in views:
+        yield f"answer_view says {answer_view}, the arguments of the expected calls say {' and '.join(sorted(views))}"
+    question_view = _view_in_question(question)
+    if question_view is not None and views and question_view not in views:
+        listed_views = " and ".join(sorted(views))
+        yield f"the question asks for the {question_view} view, the arguments of the expected calls say {listed_views}"
+    elif question_view == "full" and answer_view == "current":
         yield "the question asks for the full view, answer_view says current"
     columns = ("eval_category", "category", "question_type")
     categories = {column: found for column in columns if (found := category_of(cells.get(column, ""))) is not None}
-    # A question can be of a type, such as counting, and also take one step or several.
+    # A question of any type, such as counting, can take one step or several.
     by_steps = {category in _STEP_CATEGORIES for category in categories.values()}
     if len(set(categories.values())) > 1 and len(by_steps) == 1:
         yield "; ".join(f"{column} says {category}" for column, category in categories.items())
@@ -85,13 +89,13 @@ def _preset_contradictions(question: str, calls: Sequence[RequiredCall], presets
 
 
 def _view_in_question(question: str) -> Scope | None:
-    """Return the view that a question demands in so many words; None if it demands none or both."""
+    """Return the view that a question requests explicitly; None if it requests none or both."""
     full, current = bool(_FULL_VIEW.search(question)), bool(_CURRENT_VIEW.search(question))
     return None if full == current else "full" if full else "current"
 
 
-def _by_meaning(tool: ToolName, given: Mapping[str, Any]) -> dict[str, list[Any]]:
-    """Return the values of arguments by what they mean. Several names can mean the same."""
+def _group_by_meaning(tool: ToolName, given: Mapping[str, Any]) -> dict[str, list[Any]]:
+    """Group the values of arguments by meaning. Several argument names can have the same meaning."""
     found: dict[str, list[Any]] = {}
     for name, value in given.items():
         if value is not None and value != "":
@@ -108,8 +112,8 @@ def _meaning(tool: ToolName, name: str) -> str:
     return "text" if name in TEXT_ARGUMENTS.get(tool, ()) and tool != "query_answer" else name
 
 
-def _key(name: str, value: Any) -> str:
-    """Return a form of a value that is equal for values that mean the same."""
+def _comparison_key(name: str, value: Any) -> str:
+    """Return a key that is equal for equivalent values."""
     if name == "view":
         return scope_of(str(value)) or normalise(str(value))
     try:
@@ -118,5 +122,5 @@ def _key(name: str, value: Any) -> str:
         return normalise(str(value))
 
 
-def _listed(values: Sequence[Any]) -> str:
+def _list_values(values: Sequence[Any]) -> str:
     return " and ".join(repr(value)[:60] for value in values)

@@ -21,19 +21,19 @@ REQUIRED_COLUMNS = ("question", "expected_answer")
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A row of the file.
+    """A row in a CSV file.
 
     Attributes:
-        line: Number of the line on which the row begins.
-        cells: Cells by column, without surrounding white space.
-        extra: Cells after the last column of the header.
-        short: Number of cells that the row lacks.
+        line: Line number at which the row begins.
+        cells: Cells by column, without surrounding whitespace.
+        extra: Cells after the header's last column.
+        missing: Number of missing cells.
     """
 
     line: int
     cells: dict[str, str]
     extra: tuple[str, ...] = ()
-    short: int = 0
+    missing: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +59,14 @@ def read_table(path: Path) -> Table:
     Raises:
         InputError: The file cannot be read, is not CSV, or lacks a required column.
     """
-    text, encoding, notes = _text(path)
-    separator = _separator(text)
-    lines = _lines(text, separator, path)
+    text, encoding, notes = _read_text(path)
+    separator = _find_separator(text)
+    lines = _read_lines(text, separator, path)
     try:
         _, header = next(lines)
     except StopIteration:
         raise InputError(f"{path} is empty. Choose a CSV file with a header and one row for each task.") from None
-    columns = [_plain(name) for name in header]
+    columns = [_normalise_column(name) for name in header]
     missing = [name for name in REQUIRED_COLUMNS if name not in columns]
     if missing:
         raise InputError(
@@ -75,13 +75,13 @@ def read_table(path: Path) -> Table:
         )
     if repeated := sorted({name for name in columns if name and columns.count(name) > 1}):
         notes.append(f"columns that occur more than once (the first one is used): {', '.join(repeated)}")
-    rows = tuple(_row(line, cells, columns) for line, cells in lines)
+    rows = tuple(_parse_row(line, cells, columns) for line, cells in lines)
     if _has_open_quote(text, separator):
         notes.append("a quotation mark is never closed; the rows after it may have been read as one cell")
     return Table(tuple(columns), rows, tuple(notes), encoding)
 
 
-def _text(path: Path) -> tuple[str, str, list[str]]:
+def _read_text(path: Path) -> tuple[str, str, list[str]]:
     try:
         if path.stat().st_size > MAX_FILE_BYTES:
             raise InputError(
@@ -90,14 +90,14 @@ def _text(path: Path) -> tuple[str, str, list[str]]:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from error
-    marked = next((name for mark, name in _ENCODINGS if data.startswith(mark)), None)
-    if marked is None and b"\0" in data[:65536]:
+    bom_encoding = next((name for mark, name in _ENCODINGS if data.startswith(mark)), None)
+    if bom_encoding is None and b"\0" in data[:65536]:
         raise InputError(f"{path} is not a CSV file: it contains null bytes. Save it as CSV in UTF-8.")
     try:
-        name = marked or "utf-8"
+        name = bom_encoding or "utf-8"
         return data.decode(name), name, []
     except UnicodeDecodeError as error:
-        if marked:
+        if bom_encoding:
             raise InputError(
                 f"{path} has the byte order mark of {name}, but is not valid {name}: {error.reason} at byte {error.start}. "
                 "Save it as CSV in UTF-8."
@@ -109,14 +109,14 @@ def _text(path: Path) -> tuple[str, str, list[str]]:
         )
 
 
-def _separator(text: str) -> str:
+def _find_separator(text: str) -> str:
     """Return the separator that splits the header into the most columns."""
     header = next((line for line in text.splitlines() if line.strip()), "")
     return max(_SEPARATORS, key=lambda mark: (header.count(mark), -_SEPARATORS.index(mark)))
 
 
-def _lines(text: str, separator: str, path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield the rows that are not blank, each with the line on which it begins."""
+def _read_lines(text: str, separator: str, path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows that are not blank, each with the line number at which it begins."""
     csv.field_size_limit(_MAX_CELL_CHARS)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     first_line = 1
@@ -142,12 +142,12 @@ def _has_open_quote(text: str, separator: str) -> bool:
     return False
 
 
-def _plain(name: str) -> str:
-    """Return the name of a column in lower case, with underscores instead of spaces, hyphens, slashes and dots."""
+def _normalise_column(name: str) -> str:
+    """Return a column name in lower case, with underscores instead of spaces, hyphens, slashes and dots."""
     return re.sub(r"[\s\-/.]+", "_", name.strip().lower()).strip("_")
 
 
-def _row(line: int, cells: list[str], columns: list[str]) -> Row:
+def _parse_row(line: int, cells: list[str], columns: list[str]) -> Row:
     named: dict[str, str] = {}
     for name, cell in zip(columns, cells, strict=False):
         if name:

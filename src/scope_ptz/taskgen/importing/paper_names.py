@@ -1,4 +1,4 @@
-"""Map the names of tools, arguments, categories and modes in the paper's files to those of SCOPE."""
+"""Map the names of tools, arguments, categories and modes in the paper's files to SCOPE's names."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def scope_of(text: str) -> Scope | None:
 
 
 def policy_of(text: str) -> Policy | None:
-    """Return which of the expected tools are required; None for an unknown word."""
+    """Return the policy for required tools; None for an unknown word."""
     return next((policy for policy, words in _POLICIES.items() if normalise(text) in words), None)
 
 

@@ -21,7 +21,7 @@ _NOW = re.compile(
 _THEN = re.compile(r"\b(?:then|afterwards?|after that|finally|followed by|once (?:there|done))\b", re.IGNORECASE)
 _DONE = r"(?:followed|completed?|executed|performed|finished|done|carried out)"
 _WORK = r"(?:steps?|instructions?|commands?|tasks?|requests?|actions?|operations?|sequence)"
-_ASSERTS_NOTHING = re.compile(
+_EMPTY_ANSWER = re.compile(
     r"\W*(?:(?:ok(?:ay)?|done|ready|sure|complete|completed|finished|success|successful|successfully)"
     rf"|(?:(?:i|we|the agent|the camera|the system)\W?\s?(?:ve|have|has)? )?(?:successfully )?{_DONE} "
     rf"(?:all |of |the |your |these |those |requested |given |specified |required )*{_WORK}"
@@ -34,7 +34,7 @@ _ASSERTS_NOTHING = re.compile(
 
 _QUOTED = re.compile(r"[\"“”'‘]([^\"“”'’]{2,60})[\"“”'’]")
 _NUMBERS = {number_in_words(number): str(number) for number in range(21)}
-_UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905
+_UNINFORMATIVE_WORDS = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905
 _MAX_ANSWER_WORDS = 6
 
 
@@ -54,7 +54,7 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
         yield _finding("now-but-full")
     if _THEN.search(row.question) and row.order == "any" and len(row.calls) > 1:
         yield _finding("then-unordered", ", ".join(call.tool for call in row.calls))
-    if _ASSERTS_NOTHING.fullmatch(row.answer):
+    if _EMPTY_ANSWER.fullmatch(row.answer):
         yield _finding("empty-assertion", row.answer)
     if (part := answer_in_question(row.question, row.answer)) is not None:
         yield _finding("answer-in-question", part)
@@ -63,20 +63,20 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
 
 
 def answer_in_question(question: str, answer: str) -> str | None:
-    """Return the part of the answer that the question already contains; None if there is none.
+    """Return the part of the answer that is already in the question; None if there is none.
 
     The check covers quoted parts of the answer, and whole answers of up to six words. Answers such as "yes" and "no" are ignored,
     and so are questions that offer options.
     """
     if re.search(r"\bor\b", question, re.IGNORECASE):
         return None
-    question_words = comparable(question)
+    question_words = normalised_words(question)
     candidates: list[str] = _QUOTED.findall(answer)
-    words = comparable(answer)
+    words = normalised_words(answer)
     if 0 < len(words) <= _MAX_ANSWER_WORDS:
         candidates.append(answer)
     for candidate in candidates:
-        words = [word for word in comparable(candidate) if word not in _UNINFORMATIVE]
+        words = [word for word in normalised_words(candidate) if word not in _UNINFORMATIVE_WORDS]
         if words and any(
             question_words[index : index + len(words)] == words for index in range(len(question_words) - len(words) + 1)
         ):
@@ -89,22 +89,22 @@ def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFin
     by_question: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
         if row.question:
-            by_question[tuple(comparable(row.question))].append(row)
+            by_question[tuple(normalised_words(row.question))].append(row)
     for same_question in by_question.values():
         by_view: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
         for row in same_question:
             by_view[row.view].append(row)
         for same_rows in by_view.values():
-            yield from _same_view(same_rows)
+            yield from _same_view_findings(same_rows)
         if len(by_view) > 1 and len({_answer_key(row.answer) for row in same_question}) == 1:
             lines = _line_list(same_question)
             yield from ((row.line, _finding("same-at-every-preset", lines)) for row in same_question)
-    for name, same_rows in _by_id(rows).items():
+    for name, same_rows in _group_by_id(rows).items():
         if len(same_rows) > 1:
             yield from ((row.line, _finding("id-repeated", f"{name}: {_line_list(same_rows)}")) for row in same_rows)
 
 
-def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
+def _same_view_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
     by_answer: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
         by_answer[_answer_key(row.answer)].append(row)
@@ -116,7 +116,7 @@ def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
         yield from ((row.line, _finding("contradiction", answers)) for row in rows)
 
 
-def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
+def _group_by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
     by_id: dict[str, list[ParsedRow]] = defaultdict(list)
     for row in rows:
         if row.row.cells.get("question_id"):
@@ -126,12 +126,12 @@ def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
 
 def _answer_key(answer: str) -> tuple[str, ...]:
     """Return a key for comparing answers: the numbers in the answer, or its words if it contains no number."""
-    words = comparable(answer)
+    words = normalised_words(answer)
     numbers = tuple(sorted(word for word in words if word.replace(".", "", 1).isdigit()))
     return numbers or tuple(words)
 
 
-def comparable(text: str) -> list[str]:
+def normalised_words(text: str) -> list[str]:
     """Return the words of a text with normalised case, spelling and punctuation, and with numbers as digits."""
     return [_NUMBERS.get(word, word) for word in plain_words(text)]
 

@@ -34,9 +34,9 @@ Note = Callable[[FindingKind, str], None]
 class ParsedRow:
     """A row with its cells converted to SCOPE's types and names.
 
-    ``scene`` and ``preset`` are the names in SCOPE, or None if there is no match. ``place`` contains the location and the preset as
-    written in the file. ``view`` identifies the view that the file means: if two presets of the file are mapped to the same preset
-    in SCOPE, their keys still differ.
+    ``scene`` and ``preset`` are SCOPE's names, or None if there is no match. ``place`` contains the location and the preset as
+    written in the file. ``view`` is a key for the view that the file refers to. Two presets in the file have different keys even if
+    they are mapped to the same preset in SCOPE.
     """
 
     row: Row
@@ -56,7 +56,7 @@ class ParsedRow:
 
     @property
     def line(self) -> int:
-        """The line on which the row begins."""
+        """The line number at which the row begins."""
         return self.row.line
 
     @property
@@ -70,7 +70,7 @@ class ParsedRow:
         return any(call.tool in MOVING_TOOLS for call in self.calls)
 
     def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[RowFinding, ...]) -> ImportedTask | None:
-        """Return the task of the row; None if it cannot be run.
+        """Create a task from the row. Return None if the row cannot be run.
 
         Args:
             dataset: Name of the dataset.
@@ -107,7 +107,7 @@ class ParsedRow:
         )
 
 
-def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
+def parse_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     """Convert the cells of a row, and add a finding for everything that is missing, unknown or unusual."""
     cells, findings = row.cells, list[RowFinding]()
 
@@ -118,9 +118,9 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     place = cells.get("file_location", ""), cells.get("preset_start", "")
     if not question:
         note("empty-question", "")
-    category = _category(cells, note)
-    scene, preset = _place(cells, scene_names, note)
-    policy, order, compare = _modes(cells, note)
+    category = _parse_category(cells, note)
+    scene, preset = _find_place(cells, scene_names, note)
+    policy, order, compare = _parse_modes(cells, note)
     expectation = expected_calls(
         cells.get("expected_tool_order_json", cells.get("expected_tool_order", "")),
         cells.get("expected_tool_args_json", cells.get("expected_tool_args", "")),
@@ -130,11 +130,11 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     findings += expectation.findings
     if not answer and not expectation.calls:
         note("nothing-expected", "")
-    scope = _scope(cells, expectation, note)
+    scope = _parse_scope(cells, expectation, note)
     for detail in field_contradictions(cells, expectation.calls, scene_names.scenes[scene].presets if scene is not None else ()):
         note("fields-disagree", detail)
-    if row.extra or row.short:
-        note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.short} cells too few")
+    if row.extra or row.missing:
+        note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.missing} cells too few")
     return ParsedRow(
         row=row,
         question=question,
@@ -148,16 +148,16 @@ def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         calls=tuple(expectation.calls),
         policy=policy,
         order=order,
-        difficulty=_difficulty(cells.get("difficulty", ""), note),
+        difficulty=_parse_difficulty(cells.get("difficulty", ""), note),
         findings=tuple(findings),
     )
 
 
-def ids_of(rows: list[Row], dataset: str) -> list[str]:
-    """Return a unique task id for every row. It contains the row's own id, or its line number if it has none."""
-    named = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
+def unique_ids(rows: list[Row], dataset: str) -> list[str]:
+    """Return a unique task id for every row, which contains the row's own id or, if it has none, its line number."""
+    base_ids = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
     uses, ids = Counter[str](), list[str]()
-    for name in named:
+    for name in base_ids:
         uses[name] += 1
         unique = name if uses[name] == 1 else f"{name}-x{uses[name]}"
         while unique in ids:
@@ -170,7 +170,7 @@ def _slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:80]
 
 
-def _category(cells: Mapping[str, str], note: Note) -> Category | None:
+def _parse_category(cells: Mapping[str, str], note: Note) -> Category | None:
     columns = ("eval_category", "category", "question_type")
     filled = {column: cells[column] for column in columns if cells.get(column)}
     match = next(((name, category) for name, text in filled.items() if (category := category_of(text)) is not None), None)
@@ -184,7 +184,7 @@ def _category(cells: Mapping[str, str], note: Note) -> Category | None:
     return category
 
 
-def _place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tuple[str | None, str | None]:
+def _find_place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tuple[str | None, str | None]:
     location, start = cells.get("file_location", ""), cells.get("preset_start", "")
     scene = scene_names.scene(location)
     if scene is None:
@@ -196,21 +196,21 @@ def _place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tup
     return scene, preset
 
 
-def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["ordered", "any"], bool]:
+def _parse_modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["ordered", "any"], bool]:
     policy_cell, order_cell = cells.get("required_tools_policy", ""), cells.get("multi_step_mode", "")
     check_cell = cells.get("args_check", "")
     policy, order, compare = policy_of(policy_cell), order_of(order_cell), compares_arguments(check_cell)
-    for column, cell, read in (
+    for column, cell, parsed in (
         ("required_tools_policy", policy_cell, policy),
         ("multi_step_mode", order_cell, order),
         ("args_check", check_cell, compare),
     ):
-        if read is None:
+        if parsed is None:
             note("unknown-value", f"{column}: {cell}")
     return policy or "all", order or "any", compare if compare is not None else True
 
 
-def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
+def _parse_scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
     """Return the scope in the cell ``answer_view``. Without one, return "full" if an expected call does, otherwise "current"."""
     cell = cells.get("answer_view", "")
     scope = scope_of(cell)
@@ -222,7 +222,7 @@ def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Sc
     return "full" if "full" in views else "current"
 
 
-def _difficulty(cell: str, note: Note) -> Literal["easy", "medium", "hard"]:
+def _parse_difficulty(cell: str, note: Note) -> Literal["easy", "medium", "hard"]:
     difficulty = _DIFFICULTIES.get(normalise(cell))
     if difficulty is None and cell:
         note("unknown-value", f"difficulty: {cell}")

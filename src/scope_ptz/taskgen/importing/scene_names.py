@@ -1,4 +1,4 @@
-"""Find the scenes and presets of imported tasks by their names in the file."""
+"""Find the scenes and presets for imported tasks by their names in the file."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ ANY_NAME = "*"
 
 
 class SceneNameMap(BaseModel):
-    """The content of a mapping file for scenes and presets. The name "*" matches every name that is not listed.
+    """The contents of a mapping file for scenes and presets. The name "*" matches every name that is not listed.
 
     Attributes:
-        scenes: Scene by file location, or by the location's file name with or without its suffix.
-        presets: For each scene, the preset by its name in the file.
+        scenes: Scenes by file location, or by the location's file name with or without its suffix.
+        presets: For each scene, its presets by their names in the file.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -32,10 +32,10 @@ class SceneNameMap(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class ScenePresets:
-    """The presets of a scene.
+    """A scene's presets.
 
     Attributes:
-        presets: Viewpoint by preset.
+        presets: The viewpoint of each preset.
         home: The preset at which a run starts if the file names none.
         start_s: Scene time at the start, in seconds.
     """
@@ -53,7 +53,7 @@ class SceneNames:
     mapping: SceneNameMap = field(default_factory=SceneNameMap)
 
     def scene(self, location: str) -> str | None:
-        """Return the scene for a file location; None if it is not found.
+        """Return the scene for a file location; None if no scene is found.
 
         The mapping takes precedence. Otherwise the name of the file without its suffix, or of its folder, must match a scene. If
         neither does, the mapping's entry "*" is used.
@@ -64,14 +64,14 @@ class SceneNames:
         for name in (location, path.name, stem):
             if name in mapped:
                 return mapped[name] if mapped[name] in self.scenes else None
-        by_name = {_normalised(name): name for name in self.scenes}
+        by_name = {_normalise(name): name for name in self.scenes}
         for name in (stem, folder):
-            if name and _normalised(name) in by_name:
-                return by_name[_normalised(name)]
+            if name and _normalise(name) in by_name:
+                return by_name[_normalise(name)]
         return mapped[ANY_NAME] if mapped.get(ANY_NAME) in self.scenes else None
 
     def preset(self, scene: str, name: str) -> str | None:
-        """Return the preset of a scene by its name in the file; None if it is not found. An empty name is the home preset."""
+        """Return a scene's preset by its name in the file; None if it is not found. An empty name means the home preset."""
         scene_presets, mapped = self.scenes[scene], self.mapping.presets.get(scene, {})
         if name in mapped:
             return mapped[name] if mapped[name] in scene_presets.presets else None
@@ -79,21 +79,21 @@ class SceneNames:
         return match or (mapped[ANY_NAME] if mapped.get(ANY_NAME) in scene_presets.presets else None)
 
     def source_view(self, location: str, preset_name: str) -> tuple[str, str]:
-        """Return a key for the view that a row of the file means, before scenes and presets of the file are mapped to others.
+        """Return a key for the view that a row refers to, independent of the mapping.
 
-        Different names of one scene or preset have the same key. Different presets that are mapped to one have different keys.
+        Different spellings of one scene or preset have the same key. Different presets that are mapped to one have different keys.
         """
         scene = self.scene(location)
         if scene is None:
             return location, preset_name
-        names = (_normalised(name) for name in _scene_spellings(location))
-        scene_key = scene if _normalised(scene) in names else _normalised(location)
+        names = (_normalise(name) for name in _scene_spellings(location))
+        scene_key = scene if _normalise(scene) in names else _normalise(location)
         preset = self.preset(scene, preset_name)
         is_own_name = preset is not None and preset == self._preset_by_name(scene, preset_name)
-        return scene_key, preset if is_own_name and preset is not None else f"~{_normalised(preset_name)}"
+        return scene_key, preset if is_own_name and preset is not None else f"~{_normalise(preset_name)}"
 
     def merged_presets(self, views: Iterable[tuple[str, str]]) -> dict[tuple[str, str], list[str]]:
-        """Return the presets of the scenes to which several presets of a file are mapped, each with the names in the file.
+        """Return the scene presets to which several presets in a file are mapped, each with its names in the file.
 
         Args:
             views: File location and preset name of each row.
@@ -107,13 +107,13 @@ class SceneNames:
         return {preset: list(names.values()) for preset, names in by_preset.items() if len(names) > 1}
 
     def _preset_by_name(self, scene: str, name: str) -> str | None:
-        """Return the preset with a name, without the mapping. An empty name is the home preset."""
+        """Return the preset with a given name, ignoring the mapping. An empty name means the home preset."""
         scene_presets = self.scenes[scene]
-        if not name.strip() or _normalised(name) == "home":
+        if not name.strip() or _normalise(name) == "home":
             return scene_presets.home
-        by_name = {_normalised(preset): preset for preset in scene_presets.presets}
-        return by_name.get(_normalised(name)) or by_name.get(
-            _normalised(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
+        by_name = {_normalise(preset): preset for preset in scene_presets.presets}
+        return by_name.get(_normalise(name)) or by_name.get(
+            _normalise(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
         )
 
     def viewpoint(self, scene: str, preset: str) -> str:
@@ -135,17 +135,17 @@ def read_scene_names(path: Path) -> SceneNameMap:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}: {where or 'as a whole'}: {first['msg']}. Known: scenes, presets.") from error
+        raise InputError(f"{path}: {where or 'as a whole'}: {first['msg']}. The valid keys are scenes and presets.") from error
     except (ValueError, yaml.YAMLError) as error:
         raise InputError(f"{path} is not a mapping: {str(error)[:200]}.") from error
 
 
 def _scene_spellings(location: str) -> tuple[str, str]:
-    """Return the two parts of a file location that may name a scene: the file name without its suffix, and the folder."""
+    """Return the parts of a file location that may be a scene's name: the file name without its suffix, and the folder."""
     path = PurePosixPath(location.replace("\\", "/"))
     return path.stem if path.suffix else path.name, path.parent.name
 
 
-def _normalised(name: str) -> str:
+def _normalise(name: str) -> str:
     """Return a name in lower case without separators, so that "Parking_Lot 2", "parkingLot2" and "parking-lot-2" are equal."""
     return re.sub(r"[^a-z0-9]+", "", name.lower())

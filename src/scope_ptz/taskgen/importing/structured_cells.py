@@ -13,8 +13,8 @@ _MAX_CHARS = 100_000
 _EMPTY_VALUES = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{}"})
 
 
-def structure(text: str) -> Any:
-    """Parse a cell. An empty cell becomes None, and words without brackets become a list.
+def parse_cell(text: str) -> Any:
+    """Parse a cell. An empty cell gives None, and words without brackets give a list.
 
     Raises:
         ValueError: The cell begins like JSON or a Python literal, but cannot be parsed.
@@ -26,33 +26,33 @@ def structure(text: str) -> Any:
         return [word for word in _LIST.split(text) if word]
     if len(text) > _MAX_CHARS:
         raise ValueError(f"it is longer than {_MAX_CHARS} characters")
-    for parse in (_json, _literal):
+    for parse in (_parse_json, _parse_literal):
         try:
             content = parse(text)
         except (ValueError, SyntaxError, RecursionError, MemoryError):
             continue
-        return structure(content) if isinstance(content, str) and content.strip()[:1] in ("[", "{") else content
+        return parse_cell(content) if isinstance(content, str) and content.strip()[:1] in ("[", "{") else content
     raise ValueError("it is neither JSON nor a list")
 
 
-def _json(text: str) -> Any:
-    return json.loads(text, parse_constant=_no_number)
+def _parse_json(text: str) -> Any:
+    return json.loads(text, parse_constant=_reject_constant)
 
 
-def _literal(text: str) -> Any:
+def _parse_literal(text: str) -> Any:
     """Parse a Python literal that only contains types that JSON supports."""
-    return _plain(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
+    return _to_json_value(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
 
 
 def _python_word(word: re.Match[str]) -> str:
     return {"true": "True", "false": "False", "null": "None"}[word[0]]
 
 
-def _plain(value: Any) -> Any:
+def _to_json_value(value: Any) -> Any:
     if isinstance(value, list | tuple | set | frozenset):
-        return [_plain(item) for item in value]
+        return [_to_json_value(item) for item in value]
     if isinstance(value, dict):
-        return {str(name): _plain(item) for name, item in value.items()}
+        return {str(name): _to_json_value(item) for name, item in value.items()}
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError("a number that is not finite")
     if value is None or isinstance(value, str | int | float | bool):
@@ -60,5 +60,5 @@ def _plain(value: Any) -> Any:
     raise ValueError(f"{type(value).__name__} is not a JSON value")
 
 
-def _no_number(name: str) -> Any:
+def _reject_constant(name: str) -> Any:
     raise ValueError(f"{name} is not a number")

@@ -1,4 +1,4 @@
-"""Find the tool steps in a cell of an imported table, and the arguments that belong to no step."""
+"""Find the tool steps in a cell of an imported table, and arguments that do not belong to any step."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _TOOL_KEYS = ("tool", "name", "tool_name", "function")
 
 
 def cell_excerpt(value: Any) -> str:
-    """Return a part of a cell as JSON text for a finding, truncated to 120 characters."""
+    """Return part of a cell as JSON text for a finding, truncated to 120 characters."""
     return json.dumps(value, ensure_ascii=False, default=str)[:120]
 
 
-def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield the tools in a cell, each with the arguments given with it. Lists and objects may be nested.
+def find_steps(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield the tools in a cell, each with its arguments. Lists and objects may be nested.
 
     Args:
         content: The parsed content of the cell.
@@ -39,18 +39,18 @@ def steps_in(content: Any, note: Callable[[str], None]) -> Iterator[tuple[str, M
                 if normalise(key) in TOOLS:
                     yield key, value if isinstance(value, dict) else {}
                 else:
-                    yield from steps_in(value, note)
+                    yield from find_steps(value, note)
     elif isinstance(content, list):
         for step in content:
             if step is None:
                 note("null names no tool")
-            yield from steps_in(step, note)
+            yield from find_steps(step, note)
     elif content is not None:
         note(f"{cell_excerpt(content)} names no tool")
 
 
-def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
-    """Yield a line of text for every argument that belongs to no expected call.
+def find_unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
+    """Yield a line of text for every argument that does not belong to an expected call.
 
     Arguments can be grouped by the name or the number of a call. Ungrouped arguments belong to the first call; if any of their
     values is a list or an object, they are accepted only if a single call is expected.
@@ -65,17 +65,17 @@ def unused_arguments(given: Any, names: Sequence[str]) -> Iterator[str]:
                 yield f"{cell_excerpt(arguments)} (number {index + 1}) does not match an expected call"
     elif not isinstance(given, dict):
         yield f"{cell_excerpt(given)} is not a set of arguments"
-    elif any(isinstance(value, dict | list) for value in given.values()) and not belong_to_single_call(given, names):
+    elif any(isinstance(value, dict | list) for value in given.values()) and not is_single_call(given, names):
         for name, value in given.items():
-            yield from _unused_arguments_of(name, value, names)
+            yield from _find_unused_of(name, value, names)
 
 
-def belong_to_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
-    """Return whether these are the arguments of a single call, not arguments grouped by the name or number of a call."""
+def is_single_call(given: dict[str, Any], names: Sequence[str]) -> bool:
+    """Return whether these are the arguments of a single call, rather than arguments grouped by call name or number."""
     return len(names) == 1 and not any(name in names or name == "0" or normalise(name) in TOOLS for name in given)
 
 
-def _unused_arguments_of(name: str, value: Any, names: Sequence[str]) -> Iterator[str]:
+def _find_unused_of(name: str, value: Any, names: Sequence[str]) -> Iterator[str]:
     numbered = name.isdecimal() and int(name) < len(names)
     if name not in names and not numbered:
         yield f"{name}: {cell_excerpt(value)} does not match an expected call"

@@ -29,7 +29,7 @@ class Attempt:
         name: Name of the attempt in the report.
         program: The calls.
         text: The final answer.
-        outcome: The outcome of the run.
+        outcome: The run's outcome.
     """
 
     name: str
@@ -45,8 +45,8 @@ def correct_attempts(task: Task) -> Iterator[Attempt]:
     yield Attempt("reference", task.reference, texts[0], outcome)
     if outcome != "answered":
         return
-    yield Attempt("detour", with_detour(task), texts[1], outcome)
-    yield Attempt("twice", tuple(with_doubled_calls(task.reference)), texts[2], outcome)
+    yield Attempt("detour", add_detour(task), texts[1], outcome)
+    yield Attempt("twice", tuple(double_calls(task.reference)), texts[2], outcome)
 
 
 def other_correct_wordings(task: Task) -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def other_correct_wordings(task: Task) -> tuple[str, ...]:
     return correct_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
 
 
-def with_detour(task: Task) -> tuple[ProgramCall, ...]:
+def add_detour(task: Task) -> tuple[ProgramCall, ...]:
     """Return the reference program with additional calls before it.
 
     They list the presets and, if the program begins by going to a preset, turn the camera.
@@ -66,8 +66,8 @@ def with_detour(task: Task) -> tuple[ProgramCall, ...]:
     return (*before, ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -7.0, "tilt_deg": -2.0}), *task.reference)
 
 
-def with_doubled_calls(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """Yield a program with every perception call made twice, and with every move split into two equal moves."""
+def double_calls(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
+    """Yield a program's calls, with every perception call made twice and every move split into two equal moves."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:
             yield from (call, call)
@@ -82,7 +82,7 @@ def with_doubled_calls(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
 
 
 def common_answers(tasks: Sequence[Task], *, exclude_pairs: bool = False) -> dict[str, str]:
-    """Return the most common answer of each category as text.
+    """Return the most common answer in each category as text.
 
     Args:
         tasks: The tasks.
@@ -106,19 +106,19 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
 
     Args:
         task: The task.
-        common: The most common answer of its category.
+        common: The most common answer in the task's category.
         sibling: The correct answer to a similar task, which is wrong for this one; None if there is no such task.
         rng: Random generator for the wrong answer.
     """
-    blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
+    blind_program = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
     correct = correct_answers(task.expected)[0]
     yield Attempt("nothing", (), "")
     for text in ("None.", "0", "Yes.", common):
         yield Attempt("guess", (), text)
     if any(view.must_look for view in task.evidence):
-        yield Attempt("blind", blind, correct)
+        yield Attempt("blind", blind_program, correct)
     if task.needs and task.behaviour.outcomes == ("answered",):
-        yield Attempt("stay", tuple(without_moves(task.reference)), correct)
+        yield Attempt("stay", tuple(remove_moves(task.reference)), correct)
     wrong = wrong_answer(task.expected, rng)
     if wrong is not None and task.behaviour.outcomes == ("answered",):
         yield Attempt("wrong-answer", task.reference, wrong)
@@ -131,11 +131,11 @@ def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: rand
 
 
 def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
-    """Yield attempts that make the perception calls of the reference program, and then give a fixed answer.
+    """Yield attempts that make the perception calls in the reference program and then give a fixed answer.
 
-    They pass only if the answer happens to be correct.
+    They pass only if that answer happens to be correct.
     """
-    program = looking_program(task)
+    program = perception_program(task)
     if not program or isinstance(task.expected, ActionOnly):
         return
     names = offered_answers(task.expected, task.instruction)
@@ -147,16 +147,16 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
             yield Attempt(f"looked-and-guessed: {name}", program, text)
 
 
-def looking_program(task: Task) -> tuple[ProgramCall, ...]:
-    """Return the reference program up to its last perception call; empty if it has none."""
-    perceiving = [
+def perception_program(task: Task) -> tuple[ProgramCall, ...]:
+    """Return the reference program up to its last perception call; empty if there is no such call."""
+    perception_indices = [
         index for index, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"
     ]
-    return task.reference[: perceiving[-1] + 1] if perceiving else ()
+    return task.reference[: perception_indices[-1] + 1] if perception_indices else ()
 
 
-def without_moves(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """Yield a program without its moves, so that all perception calls are made at the start view."""
+def remove_moves(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
+    """Yield a program's calls without its moves, so that all perception calls are made at the start view."""
     for call in program:
         if call.tool in PERCEPTION_TOOLS:
             yield ProgramCall(tool=call.tool, arguments={**call.arguments, "view": "current"})

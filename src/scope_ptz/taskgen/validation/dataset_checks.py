@@ -1,4 +1,4 @@
-"""Checks that compare the tasks of a dataset: unique texts, pairs, paraphrases, and fixed answers."""
+"""Checks across a whole dataset: unique texts, pairs, paraphrases, and fixed answers."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 MAX_GUESSED_SHARE = 0.03
-"""Maximum fraction of the core tasks that a fixed answer may pass. A task of a pair counts only if both tasks of the pair pass."""
+"""Maximum fraction of the core tasks that a fixed answer may pass. A task in a pair counts only if both tasks in the pair pass."""
 
 MAX_ADAPTIVE_SHARE = 0.05
-"""Maximum fraction of the core tasks that an agent may pass that adapts a constant answer to the form of the question."""
+"""Maximum fraction of the core tasks that an adaptive agent (see ``adaptive``) may pass."""
 
 MEASURED_ADAPTIVE_SHARES = {"scope1": 0.08}
-"""Limits for datasets that were published before ``MAX_ADAPTIVE_SHARE``: their measured fractions, rounded up.
+"""Limits for datasets published before ``MAX_ADAPTIVE_SHARE`` was introduced: their measured fractions, rounded up.
 
-In scope1, the agents that give the first or the last offered option win 7%, because many questions offer two to four options.
+In scope1, the agents that give the first or the last offered option pass 7%, because many questions offer two to four options.
 """
 
-_MIN_TASKS_FOR_SHARE = 300  # minimum number of core tasks for the checks of these fractions
+_MIN_TASKS_FOR_SHARE = 300  # the fractions are checked only if there are at least this many core tasks
 
 
 def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> list[ValidationFault]:
-    """Check that instructions are unique, twins refer to each other, and paraphrases have the expected answer of their task.
+    """Check that instructions are unique, that twins refer to each other, and that paraphrases have the same expected answer.
 
     Args:
         tasks: The tasks to check.
@@ -51,7 +51,7 @@ def structural_faults(tasks: Sequence[Task], dataset: Sequence[Task] = ()) -> li
 
 
 def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
-    """Return, by task id, the correct answer to a similar task: the twin, or the next task of the category.
+    """Return, by task id, the correct answer to a similar task: the twin, or the next task in the category.
 
     Only answers that are wrong for the task itself are included.
     """

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
-MAX_LISTED = 40  # maximum number of faults that are listed of each kind
-_PAIRS_WHOLE = "right-hand numbers: paired tasks count only if both tasks of the pair pass"
+MAX_LISTED = 40  # maximum number of faults to list for each kind
+_PAIRS_NOTE = "right-hand numbers: paired tasks count only if both tasks of the pair pass"
 
 
 def report_lines(report: ValidationReport) -> Iterator[str]:
@@ -25,22 +25,22 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     for name, row in content["cheats"].items():
         yield f"  {name:<22}{row['passed']:>5} of {row['of']}  ({row['share_of_all']:.1%} of all tasks)"
     if content["looked_and_guessed"]:
-        yield f"core tasks that fixed answers pass ({_PAIRS_WHOLE})"
+        yield f"core tasks that fixed answers pass ({_PAIRS_NOTE})"
     for name, row in content["looked_and_guessed"].items():
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     if report.adaptive:
-        yield f"core tasks that answers adapted to the form of the question pass ({_PAIRS_WHOLE})"
+        yield f"core tasks that answers adapted to the form of the question pass ({_PAIRS_NOTE})"
     for name, row in report.adaptive_as_dict().items():
         agent = name.removeprefix("adaptive: ")
         yield f"  {agent:<28}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
-    yield from _listed("correct attempts and checks that failed", report.faults)
-    yield from _listed("adversarial attempts that passed", report.adversarial_passes)
-    yield from _listed("differences between ground-truth perception and the evidence", report.disagreements)
+    yield from _fault_lines("correct attempts and checks that failed", report.faults)
+    yield from _fault_lines("adversarial attempts that passed", report.adversarial_passes)
+    yield from _fault_lines("differences between ground-truth perception and the evidence", report.disagreements)
     yield "sound" if report.sound else "NOT SOUND"
 
 
-def _listed(title: str, faults: Sequence[ValidationFault]) -> Iterator[str]:
+def _fault_lines(title: str, faults: Sequence[ValidationFault]) -> Iterator[str]:
     if faults:
         yield f"{title}: {len(faults)}"
     for fault in faults[:MAX_LISTED]:

@@ -8,14 +8,14 @@ from dataclasses import replace
 
 from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
 from scope_ptz.bench.scoring.episode import Episode
-from scope_ptz.bench.scoring.misperceptions import wrong_reads
+from scope_ptz.bench.scoring.misperceptions import has_wrong_reply
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import NoneThere, Number
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
-from scope_ptz.taskgen.validation.adaptive import Form, adaptive_attempts, common_by_form
+from scope_ptz.taskgen.validation.adaptive import Form, adaptive_attempts, common_answers_by_form
 from scope_ptz.taskgen.validation.adversarial import (
     Attempt,
     adversarial_attempts,
@@ -24,14 +24,14 @@ from scope_ptz.taskgen.validation.adversarial import (
     guess_attempts,
     other_correct_wordings,
 )
-from scope_ptz.taskgen.validation.consistency import TruthReader, inconsistencies
+from scope_ptz.taskgen.validation.consistency import TruthReader, find_inconsistencies
 from scope_ptz.taskgen.validation.dataset_checks import check_adaptive, check_guesses, sibling_answers, structural_faults
 from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 Progress = Callable[[int, int], None]
 """A function that receives the number of validated tasks and the total."""
 
-_FALLBACK_GUESS = "2"  # used as the most common answer of a category that has none
+_FALLBACK_GUESS = "2"  # used for a category that has no most common answer
 
 
 async def validate(
@@ -48,8 +48,8 @@ async def validate(
 
     Args:
         tasks: The tasks.
-        scenes: The scenes and variations of the tasks, by name.
-        make_context: Creates the tool context of a camera.
+        scenes: The scenes and variations that the tasks use, by name.
+        make_context: Creates the tool context for a camera.
         seed: Seed for the wrong answers.
         read_truth: Reads the ground truth of a view. A function with a cache makes validation much faster.
         progress: Called after every task with the number of validated tasks and the total.
@@ -58,7 +58,7 @@ async def validate(
     Returns:
         The report.
     """
-    common_forms = common_by_form(tasks)
+    common_forms = common_answers_by_form(tasks)
     report, common, common_unpaired = ValidationReport(), common_answers(tasks), common_answers(tasks, exclude_pairs=True)
     siblings = sibling_answers(tasks)
     runners = {name: ProgramRunner(scene, make_context, TASK_CAMERA) for name, scene in scenes.items()}
@@ -68,8 +68,8 @@ async def validate(
         if world and world != task.world:
             scenes[world].release()
         world = task.world
-        _count(report, task)
-        reasons = inconsistencies(task, scenes[task.world], read_truth)
+        _count_task(report, task)
+        reasons = find_inconsistencies(task, scenes[task.world], read_truth)
         report.faults += [ValidationFault(task.id, "truth", reason) for reason in reasons]
         if task.preset not in {preset.name for preset in scenes[task.world].file.presets}:
             continue  # programs cannot start without their preset
@@ -86,7 +86,7 @@ async def validate(
     return report
 
 
-def _count(report: ValidationReport, task: Task) -> None:
+def _count_task(report: ValidationReport, task: Task) -> None:
     report.tasks += 1
     report.by_stratum[task.stratum] += 1
     if task.stratum == "core":
@@ -96,7 +96,7 @@ def _count(report: ValidationReport, task: Task) -> None:
 
 
 class _TaskValidation:
-    """The validation of one task, which runs all attempts. A program that several attempts share is run only once."""
+    """Validates one task. Attempts with the same program share its run."""
 
     def __init__(self, report: ValidationReport, task: Task, runner: ProgramRunner) -> None:
         self.report, self.task, self.runner = report, task, runner
@@ -117,11 +117,11 @@ class _TaskValidation:
             await self._check(attempt, attempt.name, passes=False, counted=counted)
 
     async def guess(self, common: str) -> None:
-        """Record which fixed answers happen to be correct."""
+        """Record which fixed answers pass the task by chance."""
         await self._record_passed(self.report.guessed, guess_attempts(self.task, common))
 
     async def adapt(self, common: Mapping[Form, str]) -> None:
-        """Record which answers that only fit the form of the question happen to be correct."""
+        """Record which adaptive agents pass the task by chance."""
         await self._record_passed(self.report.adaptive, adaptive_attempts(self.task, common))
 
     async def _record_passed(self, passed_by: dict[str, set[str]], attempts: Iterable[Attempt]) -> None:
@@ -141,9 +141,9 @@ class _TaskValidation:
 
         Args:
             attempt: The attempt.
-            name: Its name in the report.
-            passes: Whether it must pass.
-            counted: Whether an attempt of this name has already been counted for the task.
+            name: The attempt's name in the report.
+            passes: Whether the attempt must pass.
+            counted: Whether an attempt with this name has already been counted for the task.
         """
         verdict = score_episode(self.task, await self._episode(attempt))
         passed = verdict.headline == "correct"
@@ -155,7 +155,7 @@ class _TaskValidation:
 
     def _compare_with_evidence(self, episode: Episode) -> None:
         """Record the counts and answers of perception that differ from the evidence."""
-        if wrong_reads(self.task, episode):
+        if has_wrong_reply(self.task, episode):
             answers = "; ".join(str(call.result["answer"]) for call in episode.calls if call.result and "answer" in call.result)
             reason = f"the evidence does not agree with the answers: {answers}"
             self.report.disagreements.append(ValidationFault(self.task.id, "query", reason))

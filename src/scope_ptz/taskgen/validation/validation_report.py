@@ -1,4 +1,4 @@
-"""The report of a validation. Datasets store the data that ``as_dict`` returns."""
+"""The validation report. Datasets store the data that ``as_dict`` returns."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ class ValidationFault:
 
 @dataclass
 class ValidationReport:
-    """Counts and faults of a validation.
+    """The counts and faults from a validation.
 
     Attributes:
         tasks: Number of tasks.
         by_category: Number of core tasks per category.
         by_stratum: Number of tasks per stratum.
-        passed: How often each attempt passed.
-        tried: Number of tasks at which each attempt was made.
+        passed: Number of tasks that each attempt passed.
+        tried: Number of tasks for which each attempt was run.
         absences: Number of core tasks with the answer "there is none", each of which has a twin.
         from_start: Number of core tasks that can be answered from the start view.
-        guessed: Ids of the core tasks that a fixed answer passes, by the name of the guess.
-        pairs_passed: Number of tasks in ``guessed``, where a task of a pair counts only if both tasks of the pair pass.
-        adaptive: Ids of the core tasks that each agent passes that adapts a constant answer to the form of the question.
-        adaptive_pairs: Number of tasks in ``adaptive``, with pairs counted whole.
+        guessed: Ids of the core tasks that each fixed answer passes, by the answer's name.
+        pairs_passed: Number of tasks in ``guessed``, where a task in a pair counts only if both tasks in the pair pass.
+        adaptive: Ids of the core tasks that each adaptive agent passes, by the agent's name.
+        adaptive_pairs: Number of tasks in ``adaptive``, counted as in ``pairs_passed``.
         faults: Correct attempts that failed, and failed checks.
         adversarial_passes: Adversarial attempts that passed.
-        disagreements: Counts and answers of ground-truth perception that differ from the evidence. They do not make a dataset
+        disagreements: Counts and answers from ground-truth perception that differ from the evidence. They do not make a dataset
             unsound.
     """
 
@@ -73,7 +73,7 @@ class ValidationReport:
         return bool(self.tasks) and not self.faults and not self.adversarial_passes
 
     def adaptive_as_dict(self) -> dict[str, dict[str, float]]:
-        """Return what each adaptive agent passes as JSON data. Published datasets do not store it."""
+        """Return the results of the adaptive agents as JSON data. Published datasets do not store them."""
         return _shares(self.adaptive, self.adaptive_pairs, max(1, self.by_stratum["core"]))
 
     def as_dict(self) -> dict[str, Any]:
@@ -100,7 +100,7 @@ class ValidationReport:
 
 
 def _shares(passed: dict[str, set[str]], whole: dict[str, int], core: int) -> dict[str, dict[str, float]]:
-    """Return how many of the core tasks each agent passes, and how many with pairs counted whole."""
+    """Return the number and the fraction of core tasks that each agent passes, for single tasks and for whole pairs."""
     return {
         name: {
             "passed": len(ids),

@@ -1,1 +1,1 @@
-"""The HTTP server of virtual cameras: sign-in, faults, pictures and streams. Each camera has its own port."""
+"""The HTTP server for virtual cameras: authentication, faults, pictures and streams. Each camera has its own port."""

@@ -1,4 +1,4 @@
-"""Access control: digest authentication, and the roles of accounts."""
+"""Access control: digest authentication and account roles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Handler = Callable[[Request, Client], Awaitable[Response]]
 
 
 class AccessControl:
-    """Admits the clients of one camera. Plain-text passwords (Basic) are neither requested nor accepted.
+    """Authenticates and authorizes a camera's clients. Plain-text passwords (Basic) are neither requested nor accepted.
 
     Args:
         accounts: The accounts that may use the camera.
@@ -28,7 +28,7 @@ class AccessControl:
         self._digest = DigestAuthenticator(accounts, realm)
 
     def for_role(self, role: Role, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        """Return an endpoint that calls a handler for accounts with at least the given role, and refuses others."""
+        """Return an endpoint that calls a handler for accounts with at least the given role, and rejects others."""
 
         async def endpoint(request: Request) -> Response:
             client = self._client(request)
@@ -41,14 +41,14 @@ class AccessControl:
         return endpoint
 
     def refusal(self, *, stale: bool = False) -> Response:
-        """Return the 401 reply, which asks the client to authenticate."""
+        """Return a 401 reply, which asks the client to authenticate."""
         response = PlainTextResponse("Unauthorized\n", 401)
         for challenge in self._digest.challenges(stale=stale):
             response.headers.append("WWW-Authenticate", challenge)
         return response
 
     def _client(self, request: Request) -> Client | Response:
-        if self._accounts.open_to_all:
+        if self._accounts.is_open:
             return Client(client_address(request), Role.ADMINISTRATOR)
         target = request.scope["raw_path"].decode("latin-1")
         if query := request.scope["query_string"].decode("latin-1"):
@@ -60,12 +60,12 @@ class AccessControl:
 
 
 def client_address(connection: HTTPConnection) -> str:
-    """Return the address of a client."""
+    """Return a client's address; empty if it is unknown."""
     return connection.client.host if connection.client else ""
 
 
 def is_local(connection: HTTPConnection) -> bool:
-    """Return whether a client runs on this machine."""
+    """Return whether a client is running on this machine."""
     try:
         address = ip_address(client_address(connection))
     except ValueError:
@@ -74,7 +74,7 @@ def is_local(connection: HTTPConnection) -> bool:
     return (mapped or address).is_loopback
 
 
-def is_foreign_page(request: Request) -> bool:
-    """Return whether a browser sent a request for a web page of another site, according to the ``Origin`` header."""
+def is_cross_origin(request: Request) -> bool:
+    """Return whether a web page from another site made this request, according to the ``Origin`` header."""
     origin = request.headers.get("origin")
     return origin is not None and origin.partition("://")[2] != request.headers.get("host")

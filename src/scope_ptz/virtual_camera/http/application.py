@@ -1,4 +1,4 @@
-"""The web application of one virtual camera."""
+"""The web application for a virtual camera."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ from scope_ptz.virtual_camera.truth import TruthLog
 from scope_ptz.virtual_camera.vapix.replies import Client
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
-# The start page of a camera.
+# A camera's home page.
 PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title>
 <h1>{name}</h1><img src="/axis-cgi/mjpg/video.cgi" alt="Live picture" style="max-width:100%">"""
 
 
 class CameraApplication:
-    """The web application of a camera.
+    """The web application for a camera.
 
     Args:
-        unit: The VAPIX state of the camera.
-        source: Its live picture.
-        truth: The ground truth of its frames; None to keep it from clients.
-        onvif: An application for the paths below ``/onvif/``, which authenticates its own clients; None if there is none.
+        unit: The camera's VAPIX state.
+        source: The camera's live picture.
+        truth: The ground truth for its frames; None to withhold it from clients.
+        onvif: An application for the paths below ``/onvif/``, which authenticates its own clients; None for no ONVIF services.
 
     Attributes:
         app: The ASGI application.
-        closing: Set when the server shuts down, which ends all streams.
-        jpegs: The JPEG encoder that all clients share.
+        closing: An event that is set when the server shuts down, which ends all streams.
+        jpegs: The JPEG encoder, which all clients share.
     """
 
     def __init__(self, unit: VapixUnit, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:

@@ -1,4 +1,4 @@
-"""Self-signed certificates of virtual cameras, like those that real cameras create at their first start."""
+"""Self-signed certificates for virtual cameras, like those that real cameras create when they are first started."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ VALID_DAYS = 365
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """A certificate with its private key. The key does not appear in ``repr``.
+    """A certificate with its private key, which is hidden from ``repr``.
 
     Attributes:
-        pem: The certificate, as PEM.
-        key_pem: The private key, as PEM.
+        pem: The certificate in PEM format.
+        key_pem: The private key in PEM format.
     """
 
     pem: str
@@ -29,15 +29,15 @@ class Certificate:
 
     @property
     def fingerprint(self) -> str:
-        """SHA-256 of the certificate, in hexadecimal with colons."""
+        """SHA-256 fingerprint of the certificate in hexadecimal, with colons."""
         digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(self.pem)).hexdigest().upper()
         return ":".join(digest[k : k + 2] for k in range(0, len(digest), 2))
 
     def server_context(self) -> ssl.SSLContext:
-        """Return a TLS context for a server that presents this certificate."""
+        """Return a server-side TLS context that presents this certificate."""
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.minimum_version = ssl.TLSVersion.TLSv1_2
-        # Python reads certificates from files only. Only the current user can read the folder, which is deleted afterwards.
+        # Python can load certificates only from files. Only the current user can read the folder, which is deleted afterwards.
         with TemporaryDirectory(prefix="scope-certificate-") as folder:
             path = Path(folder) / "certificate.pem"
             path.write_text(self.pem + self.key_pem, encoding="ascii")
@@ -49,11 +49,11 @@ def create_certificate(name: str, hosts: tuple[str, ...]) -> Certificate:
     """Create a new key and a self-signed certificate.
 
     Args:
-        name: Name of the device; at most its first 64 characters are used.
+        name: Device name; only its first 64 characters are used.
         hosts: Host names and addresses for which the certificate is valid.
 
     Raises:
-        ConfigError: The package ``cryptography`` is missing.
+        ConfigError: The package ``cryptography`` is not installed.
     """
     try:
         from cryptography import x509
@@ -61,7 +61,7 @@ def create_certificate(name: str, hosts: tuple[str, ...]) -> Certificate:
         from cryptography.hazmat.primitives.asymmetric import ec
         from cryptography.x509.oid import NameOID
     except ModuleNotFoundError as error:
-        raise ConfigError("HTTPS needs the package cryptography. Install it with: pip install 'scope-ptz[serve]'") from error
+        raise ConfigError("HTTPS requires the package cryptography. Install it with: pip install 'scope-ptz[serve]'") from error
     key = ec.generate_private_key(ec.SECP256R1())
     subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name[:64] or "camera")])
     alternatives: list[x509.GeneralName] = []

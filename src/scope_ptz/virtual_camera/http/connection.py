@@ -1,4 +1,4 @@
-"""HTTP connections that an application can abort in the middle of a reply."""
+"""HTTP connections that the application can abort in the middle of a reply."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class AbortableProtocol(H11Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         super().connection_lost(exc)
-        # uvicorn does not cancel the keep-alive timer of a reset connection, which would keep the connection in memory.
+        # uvicorn does not cancel the keep-alive timer of a reset connection, so the timer would keep the connection in memory.
         self._unset_keepalive_if_required()
 
 
 async def abort_connection(scope: Scope, receive: Receive) -> None:
-    """Close the connection of a request immediately, without sending any more data."""
+    """Close a request's connection immediately, without sending any more data."""
     scope["extensions"][_ABORT]()
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""Apply a camera's faults to HTTP requests, except those below ``/virtual/``, which can switch the faults off."""
+"""Apply a camera's faults to HTTP requests, except those below ``/virtual/``, which can turn faults off."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from scope_ptz.virtual_camera.http.access import AccessControl
 from scope_ptz.virtual_camera.http.connection import abort_connection
 
 CONTROL_PATH = "/virtual/"
-"""Path prefix of requests that are exempt from faults, so that faults can be switched off."""
+"""Path prefix of requests that are exempt from faults, so that faults can always be turned off."""
 
 GARBAGE = b"\x00\xff<<<%%garbage}{"
-"""The content that replaces reply bodies while the fault ``garbage`` is set."""
+"""The content that replaces reply bodies while the fault ``garbage`` is on."""
 
 
 class _ConnectionAbortedError(Exception):
@@ -23,13 +23,13 @@ class _ConnectionAbortedError(Exception):
 
 
 class FaultMiddleware:
-    """Drops, delays, refuses or corrupts the replies to requests according to the device's faults.
+    """Middleware that drops, delays, rejects or corrupts replies according to the device's faults.
 
     Args:
         app: The application that handles the requests.
         device: The camera.
-        access: Creates the reply for a refused account.
-        closing: Set when the server shuts down, which ends all delays.
+        access: The access control, which creates the reply for rejected accounts.
+        closing: An event that is set when the server shuts down, which ends all delays.
     """
 
     def __init__(self, app: ASGIApp, device: VirtualDevice, access: AccessControl, closing: anyio.Event) -> None:
@@ -52,20 +52,20 @@ class FaultMiddleware:
             await self._answer(scope, receive, send)
 
     async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
-        async def faulty(message: Message) -> None:
+        async def send_faulty(message: Message) -> None:
             if self._device.down:
                 raise _ConnectionAbortedError
             await send(_corrupt(message) if self._device.faults.garbage else message)
 
         try:
-            await self._app(scope, receive, faulty)
+            await self._app(scope, receive, send_faulty)
         except* _ConnectionAbortedError:
             await abort_connection(scope, receive)
 
 
 def _corrupt(message: Message) -> Message:
-    """Return a message with its body replaced by garbage."""
+    """Return a message with its body replaced with garbage."""
     if message["type"] == "http.response.start":
-        kept = [(name, value) for name, value in message["headers"] if name.lower() != b"content-length"]
-        return {**message, "status": 200 if message["status"] == 204 else message["status"], "headers": kept}
+        headers = [(name, value) for name, value in message["headers"] if name.lower() != b"content-length"]
+        return {**message, "status": 200 if message["status"] == 204 else message["status"], "headers": headers}
     return {**message, "body": GARBAGE}

@@ -1,4 +1,4 @@
-"""Encode exposures as JPEG. Clients that request the same size and compression share one encoding."""
+"""Encode exposures as JPEGs. Clients that request the same size and compression share one encoding."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
 from scope_ptz.virtual_camera.picture_size import crop_and_scale, parse_resolution
 
 DEFAULT_COMPRESSION = 30
-"""The default compression of AXIS cameras, on a scale from 0 (best quality) to 100."""
+"""The default compression on AXIS cameras, on a scale from 0 (best quality) to 100."""
 
 MAX_SHARED = 8  # maximum number of formats whose newest encoding is cached
 
 
 @dataclass(frozen=True, slots=True)
 class PictureFormat:
-    """Size in pixels and compression (0 to 100) of a JPEG."""
+    """The size in pixels and the compression (0 to 100) of a JPEG."""
 
     width: int
     height: int
@@ -31,11 +31,11 @@ class PictureFormat:
 
 
 def picture_format(device: VirtualDevice, resolution: str, compression: str) -> PictureFormat:
-    """Return the format that a client requests. Empty strings mean the defaults.
+    """Parse the format that a client requests. Empty strings mean the defaults.
 
     Raises:
-        InputError: The resolution does not have the form WIDTHxHEIGHT, or is too small or larger than the camera's; or the
-            compression is not an integer from 0 to 100.
+        InputError: The resolution does not have the form WIDTHxHEIGHT or is out of range, or the compression is not an integer
+            from 0 to 100.
     """
     width, height = parse_resolution(device, resolution)
     if compression and not (compression.isdecimal() and int(compression[:6]) <= 100):
@@ -44,26 +44,26 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
 
 
 def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
-    """Encode an RGB image as a JPEG. If the aspect ratio differs, the image is cropped, never stretched."""
+    """Encode an RGB image as a JPEG. If the aspect ratio differs, the image is cropped rather than stretched."""
     image = crop_and_scale(image, requested.width, requested.height)
     quality = round(98 - 0.85 * requested.compression)
-    done, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
-    if not done:
+    encoded, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
+    if not encoded:
         raise CameraError("The picture cannot be encoded.")
     return bytes(content)
 
 
 def with_comment(jpeg: bytes, text: str) -> bytes:
-    """Return a JPEG with a comment segment inserted after its start marker."""
+    """Return the JPEG with a comment segment inserted after its start marker."""
     content = text.encode()[:65_000]
     return jpeg[:2] + b"\xff\xfe" + (len(content) + 2).to_bytes(2, "big") + content + jpeg[2:]
 
 
 class SharedJpegs:
-    """Encodes each exposure at most once for each format.
+    """Encodes each exposure at most once per format.
 
     Args:
-        device: The camera, whose faults apply to its pictures.
+        device: The camera, whose faults are applied to the pictures.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -78,15 +78,15 @@ class SharedJpegs:
         return exposure, await self.jpeg(exposure, requested)
 
     async def jpeg(self, exposure: Exposure, requested: PictureFormat) -> bytes:
-        """Return the JPEG of an exposure."""
-        known = self._newest.get(requested)
-        if known is None or known[0] is not exposure:
-            known = exposure, asyncio.create_task(self._encode(exposure, requested))
-            self._newest[requested] = known
+        """Return an exposure as a JPEG, reusing the last encoding if possible."""
+        cached = self._newest.get(requested)
+        if cached is None or cached[0] is not exposure:
+            cached = exposure, asyncio.create_task(self._encode(exposure, requested))
+            self._newest[requested] = cached
             self._newest.move_to_end(requested)
             if len(self._newest) > MAX_SHARED:
                 self._newest.popitem(last=False)
-        content = await asyncio.shield(known[1])
+        content = await asyncio.shield(cached[1])
         return content[: len(content) // 2] if self._device.faults.picture == "truncated" else content
 
     async def _encode(self, exposure: Exposure, requested: PictureFormat) -> bytes:

@@ -24,9 +24,9 @@ from scope_ptz.virtual_camera.truth import TruthLog
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 SHUTDOWN_S = 3
-"""Seconds that open replies have to finish when the server shuts down."""
+"""Maximum time in seconds to wait for open replies when the server shuts down."""
 
-RETRY_S = 1.0  # seconds between a failure of the live picture and its restart
+RETRY_S = 1.0  # seconds to wait before restarting a live picture that failed
 
 logger = logging.getLogger(__name__)
 
@@ -37,12 +37,12 @@ class ServedCamera:
 
     Attributes:
         device: The camera.
-        unit: Its VAPIX state.
-        source: Its live picture, which other servers of the same camera, such as the RTSP server, also use.
-        application: The web application that answers requests.
-        host: Address that the camera listens on.
+        unit: The camera's VAPIX state.
+        source: The camera's live picture, which its other servers, such as the RTSP server, also use.
+        application: The web application that handles requests.
+        host: Address on which the camera listens.
         port: Port of the HTTP server, or of the HTTPS server if there is a certificate.
-        certificate: Its certificate for HTTPS; None for HTTP.
+        certificate: The certificate for HTTPS; None for HTTP.
     """
 
     device: VirtualDevice
@@ -56,16 +56,16 @@ class ServedCamera:
     @property
     def url(self) -> str:
         """The base URL for a client on this machine, such as ``http://127.0.0.1:8080``."""
-        return f"{'http' if self.certificate is None else 'https'}://{self._reachable}:{self.port}"
+        return f"{'http' if self.certificate is None else 'https'}://{self._client_host}:{self.port}"
 
     @property
     def rtsp_url(self) -> str | None:
         """The URL of the H.264 stream for a client on this machine; None if there is no RTSP server."""
         port = self.unit.rtsp_port
-        return None if port is None else f"rtsp://{self._reachable}:{port}/axis-media/media.amp"
+        return None if port is None else f"rtsp://{self._client_host}:{port}/axis-media/media.amp"
 
     @property
-    def _reachable(self) -> str:
+    def _client_host(self) -> str:
         host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)  # noqa: S104 - compared, not bound to
         return f"[{host}]" if ":" in host else host
 
@@ -82,15 +82,15 @@ async def serve(
     latency_s: float = 0.0,
     certificates: Sequence[Certificate] = (),
 ) -> AsyncIterator[tuple[ServedCamera, ...]]:
-    """Serve cameras while the context is open.
+    """Return a context manager that serves cameras.
 
     Args:
         devices: The cameras.
         host: Address to listen on. Unless it is a loopback address, all cameras must have accounts.
-        ports: A port for each camera; 0 for any free one. If the list is empty, the system chooses all ports.
-        truth: Whether clients on this machine get the ground truth of frames.
-        onvif: A function that creates the application for the paths below ``/onvif/`` of a camera; None for no ONVIF services.
-        rate_hz: Frames per second of live pictures.
+        ports: A port for each camera; 0 for any free port. If the list is empty, the system chooses all ports.
+        truth: Whether clients on this machine receive the ground truth for frames.
+        onvif: A function that creates a camera's application for the paths below ``/onvif/``; None for no ONVIF services.
+        rate_hz: Frame rate of live pictures in frames per second.
         latency_s: Simulated delay in seconds from the exposure of a live frame to its delivery.
         certificates: A certificate for each camera, to serve HTTPS instead of HTTP; empty for HTTP.
 
@@ -100,19 +100,19 @@ async def serve(
     """
     ports = ports or [0] * len(devices)
     if len(ports) != len(devices):
-        raise ConfigError(f"There are {len(devices)} cameras and {len(ports)} ports. Give one port for each camera.")
+        raise ConfigError(f"There are {len(devices)} cameras but {len(ports)} ports. Specify one port for each camera.")
     if certificates and len(certificates) != len(devices):
-        raise ConfigError(f"There are {len(devices)} cameras and {len(certificates)} certificates. Give one for each camera.")
-    if not _is_loopback(host) and any(device.accounts.open_to_all for device in devices):
-        raise ConfigError(f"A camera without accounts would be open to the network at {host}. Give it an account.")
+        raise ConfigError(f"There are {len(devices)} cameras but {len(certificates)} certificates. Specify one for each camera.")
+    if not _is_loopback(host) and any(device.accounts.is_open for device in devices):
+        raise ConfigError(f"A camera without accounts would be open to the network at {host}. Add an account to it.")
     logs = [TruthLog(device) if truth else None for device in devices]
     sockets = listen(host, ports)
-    shown: Sequence[Certificate | None] = certificates or [None] * len(devices)
+    camera_certificates: Sequence[Certificate | None] = certificates or [None] * len(devices)
     cameras = tuple(
-        _camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s), certificate)
-        for device, listener, log, certificate in zip(devices, sockets, logs, shown, strict=True)
+        _create_camera(device, listener, log, onvif, LiveSource(device, rate_hz=rate_hz, latency_s=latency_s), certificate)
+        for device, listener, log, certificate in zip(devices, sockets, logs, camera_certificates, strict=True)
     )
-    servers = [_Server(_configuration(camera)) for camera in cameras]
+    servers = [_Server(_uvicorn_config(camera)) for camera in cameras]
     running = [asyncio.create_task(server.serve([listener])) for server, listener in zip(servers, sockets, strict=True)]
     sources = [asyncio.create_task(_keep_running(camera.source)) for camera in cameras]
     try:
@@ -132,10 +132,12 @@ async def serve(
             for log in logs:
                 if log is not None:
                     log.close()
+            for device in devices:
+                device.scene.end_threads()
 
 
 class _Server(uvicorn.Server):
-    """A server that sets ``ready`` once it listens, and leaves the handling of process signals to the surrounding program."""
+    """A server that sets ``ready`` once it is listening, and leaves signal handling to the surrounding program."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -150,7 +152,7 @@ class _Server(uvicorn.Server):
         yield
 
 
-def _camera(
+def _create_camera(
     device: VirtualDevice,
     listener: socket.socket,
     log: TruthLog | None,
@@ -164,7 +166,7 @@ def _camera(
     return ServedCamera(device, unit, source, application, host, port, certificate)
 
 
-def _configuration(camera: ServedCamera) -> uvicorn.Config:
+def _uvicorn_config(camera: ServedCamera) -> uvicorn.Config:
     certificate = camera.certificate
     return uvicorn.Config(
         camera.application.app,
@@ -182,7 +184,7 @@ def _configuration(camera: ServedCamera) -> uvicorn.Config:
 
 
 def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
-    """Return a listening socket for each port. If one port cannot be used, close the sockets that are already open.
+    """Return a listening socket for each port. If a port cannot be used, the sockets that are already open are closed.
 
     Raises:
         ConfigError: A port is in use or not permitted.
@@ -191,13 +193,15 @@ def listen(host: str, ports: Sequence[int]) -> list[socket.socket]:
     try:
         for port in ports:
             sockets.append(socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET))
-            # asyncio sets TCP_NODELAY only for sockets with an explicit protocol. Without it, replies wait up to 40 ms for an ACK.
+            # asyncio sets TCP_NODELAY only on sockets with an explicit protocol. Without it, replies wait up to 40 ms for an ACK.
             sockets[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     except (OSError, OverflowError) as error:
         for opened in sockets:
             opened.close()
         reason = getattr(error, "strerror", None) or str(error)
-        raise ConfigError(f"Port {port} at {host} cannot be used: {reason}. Choose another port, or 0 for any.") from error
+        raise ConfigError(
+            f"Port {port} on {host} cannot be used: {reason}. Choose another port, or 0 for any free port."
+        ) from error
     return sockets
 
 
@@ -209,7 +213,7 @@ def _is_loopback(host: str) -> bool:
 
 
 async def _keep_running(source: LiveSource) -> None:
-    """Run a live picture, and restart it after each failure. Clients get no new frames in between."""
+    """Run a live picture, and restart it after each failure. Clients receive no new frames in the meantime."""
     while True:
         try:
             await source.run()

@@ -1,4 +1,4 @@
-"""Motion JPEG: an endless reply with one part for each frame."""
+"""Motion JPEG: an endless multipart reply with one part per frame."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from scope_ptz.virtual_camera.pace import Pace
 
 BOUNDARY = "myboundary"
 SEND_TIMEOUT_S = 20.0
-"""Seconds for which sending a frame may block before the client is disconnected, because it does not read."""
+"""Timeout in seconds for sending a frame. Clients that stop reading are disconnected."""
 
 
 @dataclass(frozen=True, slots=True)
 class StreamOptions:
-    """The options of a stream. ``fps``, ``frames`` and ``duration_s`` are 0 for no limit.
+    """The options for a stream. ``fps``, ``frames`` and ``duration_s`` are 0 for no limit.
 
     Attributes:
         picture: Size and compression.
         fps: Maximum number of frames per second.
         frames: Number of frames after which the stream ends.
         duration_s: Seconds after which the stream ends.
-        truth: A function that returns the ground truth of a frame, as headers for its part and as a comment for its JPEG; None to
-            send no ground truth.
+        truth: A function that returns the ground truth for a frame as headers for its part and a comment for its JPEG; None to send
+            no ground truth.
     """
 
     picture: PictureFormat
@@ -59,8 +59,8 @@ class MotionJpeg(Response):
         complete = False
         async with anyio.create_task_group() as group:
 
-            async def cancel_after(ended: Callable[[], object]) -> None:
-                await ended()  # type: ignore[misc]
+            async def cancel_after(wait: Callable[[], object]) -> None:
+                await wait()  # type: ignore[misc]
                 group.cancel_scope.cancel()
 
             group.start_soon(cancel_after, self._closing.wait)
@@ -73,20 +73,20 @@ class MotionJpeg(Response):
             await abort_connection(scope, receive)
 
     async def _send_parts(self, send: Send) -> bool:
-        """Send frames until a limit is reached. Return False if the client has stopped reading."""
-        options, sent, pace = self._options, 0, Pace(self._source.rate_hz, self._options.fps)
+        """Send frames until a limit is reached. Return False if the client stopped reading."""
+        options, sent_count, pace = self._options, 0, Pace(self._source.rate_hz, self._options.fps)
         started_s = anyio.current_time()
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
                 if not pace.accepts(exposure.taken_s):
                     continue
                 part = await self._part(exposure)
-                with anyio.move_on_after(SEND_TIMEOUT_S) as patience:
+                with anyio.move_on_after(SEND_TIMEOUT_S) as timeout_scope:
                     await send({"type": "http.response.body", "body": part, "more_body": True})
-                if patience.cancelled_caught:
+                if timeout_scope.cancelled_caught:
                     return False
-                sent += 1
-                if sent == options.frames or (options.duration_s and anyio.current_time() - started_s >= options.duration_s):
+                sent_count += 1
+                if sent_count == options.frames or (options.duration_s and anyio.current_time() - started_s >= options.duration_s):
                     return True
         return True
 

@@ -1,4 +1,4 @@
-"""The ground truth sent with a picture: headers of the HTTP response, or of each part of a multipart stream, and a JPEG comment."""
+"""The ground truth sent with a picture, as headers of the HTTP response or the multipart part, and as a JPEG comment."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.virtual_camera.truth import TruthLog, origin_fields, unix_s
 
 
 class TruthHeaders:
-    """Builds the headers and JPEG comments with the ground truth of pictures. Only clients on this machine get them.
+    """Builds headers and JPEG comments with the ground truth for pictures. Only clients on this machine receive them.
 
     Args:
         log: The log of the camera's exposures.
@@ -20,7 +20,7 @@ class TruthHeaders:
         self.log = log
 
     def of(self, exposure: Exposure) -> tuple[Mapping[str, str], str]:
-        """Return the headers for an exposure, and the same data as JSON text for a JPEG comment.
+        """Return the headers for an exposure, and the same data as JSON for a JPEG comment.
 
         ``X-Scope-Time`` is the scene time and ``X-Scope-Taken`` the Unix time of the exposure, both in seconds.
         """

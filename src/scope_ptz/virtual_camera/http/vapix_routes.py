@@ -1,4 +1,4 @@
-"""Routes that serve VAPIX over HTTP."""
+"""HTTP routes for VAPIX."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from scope_ptz.virtual_camera.vapix.replies import Client, Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 MAX_BODY_BYTES = 64 * 1024  # maximum size of a request body
-MAX_ARGUMENTS = 200  # maximum number of arguments in the query, and in the body
+MAX_ARGUMENTS = 200  # maximum number of arguments in the query and in the body, each
 
 METHODS = ["GET", "POST"]
 
@@ -36,14 +36,14 @@ GROUPS = {Role.VIEWER: "viewer", Role.OPERATOR: "operator viewer ptz", Role.ADMI
 
 
 class VapixRoutes:
-    """The routes below ``/axis-cgi/`` of one camera.
+    """A camera's routes below ``/axis-cgi/``.
 
     Args:
-        unit: The VAPIX state of the camera.
-        source: Its live picture.
-        access: Authenticates clients.
-        truth: Builds the ground truth that is sent with pictures to clients on this machine; None if it is not sent.
-        closing: Set when the server shuts down.
+        unit: The camera's VAPIX state.
+        source: The camera's live picture.
+        access: The access control, which authenticates clients.
+        truth: Builds the ground truth that is sent with pictures to clients on this machine; None to send none.
+        closing: An event that is set when the server shuts down.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class VapixRoutes:
 
 
 async def read_body(request: Request) -> bytes:
-    """Return the body of a request.
+    """Read the body of a request.
 
     Raises:
         HTTPException: The body is too large, or the client disconnected.
@@ -124,9 +124,9 @@ async def read_body(request: Request) -> bytes:
 
 
 async def read_arguments(request: Request) -> Arguments:
-    """Return the arguments of a request, which may be in the query and in the body.
+    """Read the arguments of a request from the query and the body.
 
-    The body is parsed as a form, whatever its media type. If a name is repeated, its first value applies.
+    The body is parsed as a form regardless of its media type. If a name is repeated, its first value is used.
 
     Raises:
         HTTPException: The body is too large, there are too many arguments, or the client disconnected.

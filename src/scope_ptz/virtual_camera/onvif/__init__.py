@@ -1,1 +1,1 @@
-"""The ONVIF interface of a virtual camera: Device, Media, Media2, Imaging and PTZ services, and WS-Discovery."""
+"""A virtual camera's ONVIF interface: the device, media, media2, imaging and PTZ services, and WS-Discovery."""

@@ -30,7 +30,7 @@ from scope_ptz.virtual_camera.onvif.soap import (
     as_bytes,
     parse_envelope,
 )  # fmt: skip
-from scope_ptz.virtual_camera.onvif.username_tokens import Stamp, UsernameTokens, creation_time, not_authorized
+from scope_ptz.virtual_camera.onvif.username_tokens import CreationTime, UsernameTokens, creation_time, not_authorized
 from scope_ptz.virtual_camera.onvif.wsdl import DEVICE, IMAGING, MEDIA, MEDIA2, PTZ, load_document, load_operations
 
 CONTENT_TYPE = "application/soap+xml; charset=utf-8"
@@ -45,11 +45,11 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 @dataclass(frozen=True, slots=True)
 class RequestTarget:
-    """The address at which a client reached the device, and the result of its HTTP authentication.
+    """The address at which a client reached the device, and the result of HTTP authentication.
 
     Attributes:
-        host: The host name or address of the device, in the form used in URLs.
-        origin: The scheme, host and port of the device.
+        host: The device's host name or address, in the form used in URLs.
+        origin: The device's scheme, host and port.
         verdict: The result of HTTP digest authentication; None if the client did not use it.
     """
 
@@ -59,11 +59,11 @@ class RequestTarget:
 
 
 class OnvifApp:
-    """The ONVIF services of one camera. Clients sign in with a WS-UsernameToken or with HTTP digest authentication.
+    """A camera's ONVIF services. Clients authenticate with a WS-UsernameToken or with HTTP digest authentication.
 
     Args:
         device: The camera.
-        rtsp_port: Port of its RTSP server, to be stated in replies.
+        rtsp_port: Port of its RTSP server, for the URLs in replies.
 
     Raises:
         ConfigError: The WSDL files are not installed.
@@ -89,7 +89,7 @@ class OnvifApp:
         }
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request (ASGI)."""
+        """Handle a request (ASGI)."""
         if scope["path"].rstrip("/") not in PATHS.values():
             return await _send(send, 404, b"")
         if scope["method"] != "POST":
@@ -111,48 +111,48 @@ class OnvifApp:
         """Return the reply to a request.
 
         Raises:
-            SoapFault: The request is refused.
+            SoapFault: The request is invalid or is rejected.
         """
         envelope = parse_envelope(data)
         namespace, _, name = envelope.body.tag.removeprefix("{").rpartition("}")
         operation = self._operations.get(namespace, {}).get(name)
         if operation is None:
             known = (namespace, name) in self._messages
-            what = "does not offer" if known else "does not know"
-            raise SoapFault(f"The device {what} the operation {name[:64]}.", "ActionNotSupported", receiver=known)
-        stamp = None if operation.role is None else self._authorize(envelope, target, operation.role)
+            verb = "does not support" if known else "does not know"
+            raise SoapFault(f"The device {verb} the operation {name[:64]}.", "ActionNotSupported", receiver=known)
+        created_at = None if operation.role is None else self._authorize(envelope, target, operation.role)
         try:
             arguments = self._messages[namespace, name].input.body.parse(envelope.body, self._types)
         except (ZeepError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             _LOG.debug("Arguments of %s: %s", name, error)
             raise SoapFault(f"The arguments of {name} do not match the types in its WSDL.", "InvalidArgs") from error
-        reply = operation.run(Request(arguments, target.host, target.origin, stamp))
+        reply = operation.run(Request(arguments, target.host, target.origin, created_at))
         return as_bytes(self._serialize(namespace, name, reply))
 
-    def _authorize(self, envelope: Envelope, target: RequestTarget, role: Role) -> Stamp | None:
-        """Check that the sender has the role that a request requires.
+    def _authorize(self, envelope: Envelope, target: RequestTarget, role: Role) -> CreationTime | None:
+        """Check that the sender of a request has the required role.
 
         Returns:
-            The time at which the request was created; None if the request does not state it.
+            The time at which the request was created; None if it does not include one.
 
         Raises:
-            SoapFault: The sender is not permitted to make this request.
+            SoapFault: The sender is not authenticated, or does not have the role.
         """
         if self._device.faults.unauthorized:
             raise not_authorized("The user name or the password is wrong.")
-        if self._device.accounts.open_to_all:
+        if self._device.accounts.is_open:
             return creation_time(envelope.header)
         sender = self._tokens.sender(envelope.header)
         account = sender.account if sender else target.verdict.account if target.verdict else None
         if account is None:
-            raise not_authorized("The operation needs a login.", status=401)
+            raise not_authorized("The operation requires authentication.", status=401)
         if account.role < role:
             raise not_authorized(f"The operation requires the role {role.name.lower()}.")
-        return sender.stamp if sender else None
+        return sender.created_at if sender else None
 
     def _request_target(self, scope: Scope) -> RequestTarget:
         headers = dict(scope["headers"])
-        host, origin = _address(scope, headers.get(b"host", b"").decode("latin-1"))
+        host, origin = _server_address(scope, headers.get(b"host", b"").decode("latin-1"))
         if (answer := headers.get(b"authorization")) is None:
             return RequestTarget(host, origin)
         query = scope["query_string"].decode("latin-1")
@@ -163,28 +163,28 @@ class OnvifApp:
         return self._messages[namespace, name].output.serialize(**reply).content
 
     def _capabilities(self, namespace: str) -> Any:
-        """Return the capabilities of a service, by its namespace, as an XML element."""
+        """Return the capabilities of the service with a namespace, as an XML element."""
         reply = self._operations[namespace]["GetServiceCapabilities"].run(Request(None, "", ""))
         return self._serialize(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
 
 
-def _address(scope: Scope, stated: str) -> tuple[str, str]:
+def _server_address(scope: Scope, host_header: str) -> tuple[str, str]:
     """Return the host and the origin (scheme, host and port) at which the client reached the server.
 
     Args:
-        scope: The ASGI scope, which contains the address to use if the header is invalid.
-        stated: The value of the ``Host`` header.
+        scope: The ASGI scope, which provides the address if the header is invalid.
+        host_header: The value of the ``Host`` header.
     """
-    found = _HOST.fullmatch(stated)
-    if found is None:
+    match = _HOST.fullmatch(host_header)
+    if match is None:
         host, port = scope.get("server") or ("localhost", None)
         host = f"[{host}]" if ":" in host else host
         return host, f"{scope['scheme']}://{host}" + (f":{port}" if port else "")
-    return found[1], f"{scope['scheme']}://{stated}"
+    return match[1], f"{scope['scheme']}://{host_header}"
 
 
 async def _read(receive: Receive) -> bytes | None:
-    """Return the body of a request; None if the client has disconnected.
+    """Read the body of a request. Return None if the client has disconnected.
 
     Raises:
         SoapFault: The body is too large.
@@ -203,7 +203,7 @@ async def _read(receive: Receive) -> bytes | None:
 
 
 async def _send(send: Send, status: int, body: bytes, headers: Iterable[tuple[bytes, bytes]] = ()) -> None:
-    kind = [(b"content-type", CONTENT_TYPE.encode())] if body else []
+    content_type = [(b"content-type", CONTENT_TYPE.encode())] if body else []
     length = (b"content-length", str(len(body)).encode())
-    await send({"type": "http.response.start", "status": status, "headers": [*kind, length, *headers]})
+    await send({"type": "http.response.start", "status": status, "headers": [*content_type, length, *headers]})
     await send({"type": "http.response.body", "body": body})

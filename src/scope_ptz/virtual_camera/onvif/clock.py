@@ -1,4 +1,4 @@
-"""The clock of a virtual camera, which may be wrong."""
+"""A virtual camera's clock, which may be wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Device service: the list of services, the time, and information about the device."""
+"""The ONVIF device service: the list of services, the time, and information about the device."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ PATHS = {
     PTZ: "/onvif/ptz_service",
     IMAGING: "/onvif/imaging_service",
 }
-"""The path of each service, by its namespace."""
+"""The path of each service, by namespace."""
 
 VERSION = {"Major": 19, "Minor": 12}
-"""Version of the ONVIF specifications that the services implement."""
+"""The version of the ONVIF specifications that the services implement."""
 
-# Categories of ``GetCapabilities``: the namespaces of those that this device implements, and those that it does not.
+# Categories in ``GetCapabilities``: those that this device implements, with their namespaces, and those that it does not.
 _CATEGORIES = {"Device": DEVICE, "Media": MEDIA, "PTZ": PTZ, "Imaging": IMAGING}
-_ABSENT = {"Analytics", "Events"}
+_MISSING_SERVICES = {"Analytics", "Events"}
 
 
 def scopes(device: VirtualDevice) -> list[str]:
-    """Return the scopes by which WS-Discovery clients select devices."""
+    """Return the WS-Discovery scopes, by which clients select devices."""
     items = ("type/ptz", "type/video_encoder", "type/Network_Video_Transmitter", "Profile/Streaming")
     named = (f"hardware/{quote(PRODUCT)}", f"name/{quote(device.name)}", f"location/{quote(device.scene.name)}")
     return [f"onvif://www.onvif.org/{item}" for item in (*items, *named)]
 
 
 class DeviceService:
-    """The Device service.
+    """The ONVIF device service.
 
     Args:
         device: The camera.
-        capabilities: A function that returns the capabilities of a service, by its namespace, as an XML element.
+        capabilities: A function that returns the capabilities of the service with a namespace, as an XML element.
         rtsp_port: Port of its RTSP server.
     """
 
@@ -51,7 +51,7 @@ class DeviceService:
         self._device, self._capabilities_of, self._rtsp_port = device, capabilities, rtsp_port
 
     def operations(self) -> Operations:
-        """Return the operations by name. Operations that a client needs before it can sign in require no login."""
+        """Return the operations by name. Those that a client needs before it can authenticate require no authentication."""
         return {
             "GetServices": Operation(self._services, None),
             "GetServiceCapabilities": Operation(self._service_capabilities, None),
@@ -73,13 +73,13 @@ class DeviceService:
         }
 
     def _services(self, request: Request) -> Reply:
-        found = []
+        services = []
         for namespace, path in PATHS.items():
             service = {"Namespace": namespace, "XAddr": request.origin + path, "Version": VERSION}
             if request.IncludeCapability:
                 service["Capabilities"] = {"_value_1": self._capabilities_of(namespace)}
-            found.append(service)
-        return {"Service": found}
+            services.append(service)
+        return {"Service": services}
 
     def _service_capabilities(self, _: Request) -> Reply:
         security = {"UsernameToken": True, "HttpDigest": True, "TLS1.2": False, "RELToken": False, "MaxUsers": 0}
@@ -89,17 +89,17 @@ class DeviceService:
 
     def _capabilities(self, request: Request) -> Reply:
         requested = set(request.Category or ()) or {"All"}
-        if missing := requested & _ABSENT:
+        if missing := requested & _MISSING_SERVICES:
             raise SoapFault(f"The device has no {min(missing)} service.", "ActionNotSupported", "NoSuchService", receiver=True)
-        found: dict[str, Any] = {}
+        capabilities: dict[str, Any] = {}
         for category, namespace in _CATEGORIES.items():
             if requested & {"All", category}:
-                found[category] = {"XAddr": request.origin + PATHS[namespace]}
-        if "Media" in found:
-            found["Media"]["StreamingCapabilities"] = {"RTPMulticast": False, "RTP_TCP": True, "RTP_RTSP_TCP": True}
-        if "Device" in found:
-            found["Device"] |= _DEVICE_DETAILS
-        return {"Capabilities": found}
+                capabilities[category] = {"XAddr": request.origin + PATHS[namespace]}
+        if "Media" in capabilities:
+            capabilities["Media"]["StreamingCapabilities"] = {"RTPMulticast": False, "RTP_TCP": True, "RTP_RTSP_TCP": True}
+        if "Device" in capabilities:
+            capabilities["Device"] |= _DEVICE_DETAILS
+        return {"Capabilities": capabilities}
 
     def _time(self, _: Request) -> Reply:
         now = device_datetime(self._device)
@@ -150,7 +150,7 @@ class DeviceService:
 
     def _reboot(self, _: Request) -> Reply:
         self._device.reboot(REBOOT_S, after_s=REPLY_S)
-        return {"Message": f"The device is back in about {REBOOT_S:g} seconds."}
+        return {"Message": f"The device will be back in about {REBOOT_S:g} seconds."}
 
     def _users(self, _: Request) -> Reply:
         levels = {Role.VIEWER: "User", Role.OPERATOR: "Operator", Role.ADMINISTRATOR: "Administrator"}
@@ -171,10 +171,10 @@ _DEVICE_DETAILS: Mapping[str, Any] = {
 
 
 def require_token(name: str, token: str | None, known: str, subcode: str) -> None:
-    """Raise a fault if a token differs from the only valid one.
+    """Check that a token is the only valid one.
 
     Args:
-        name: What the token identifies, for the message.
+        name: The type of object that the token identifies, used in the message.
         token: The token in the request.
         known: The valid token.
         subcode: The ONVIF subcode of the fault.

@@ -1,4 +1,4 @@
-"""WS-Discovery: devices announce themselves and answer probes by UDP multicast."""
+"""WS-Discovery: devices announce themselves and respond to probes over UDP multicast."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PORT = 3702
 """The multicast address and port of WS-Discovery."""
 
 MAX_DATAGRAM_BYTES = 8192
-"""Maximum size of a datagram in bytes. Larger ones are ignored."""
+"""Maximum size of a datagram in bytes. Larger datagrams are ignored."""
 
 logger = logging.getLogger(__name__)
 
@@ -34,12 +34,12 @@ Address = tuple[str, int]
 
 @dataclass(frozen=True, slots=True)
 class DiscoverableCamera:
-    """A device that WS-Discovery announces, with the address of its web server.
+    """A device to announce, with the port of its web server.
 
     Attributes:
         device: The device.
-        http_port: The port of its web server.
-        tls: Whether the port serves HTTPS instead of HTTP.
+        http_port: Port of its web server.
+        tls: Whether the web server uses HTTPS.
     """
 
     device: VirtualDevice
@@ -51,25 +51,25 @@ class _Responder(asyncio.DatagramProtocol):
     def __init__(self, cameras: Sequence[DiscoverableCamera], host: str) -> None:
         instance = int(time())
         self._messages = [(camera, DiscoveryMessages(_target(camera, host), instance)) for camera in cameras]
-        self._own_machine_only = ip_address(host).is_loopback
+        self._local_only = ip_address(host).is_loopback
         self._transport: asyncio.DatagramTransport | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self._transport = cast("asyncio.DatagramTransport", transport)
 
     def announce(self, group: Address, *, leaving: bool = False) -> None:
-        """Announce that the devices have appeared, or that they are leaving."""
+        """Announce that the devices have joined the network, or that they are leaving it."""
         for camera, messages in self._messages:
             if not camera.device.down:
                 self._send(messages.bye() if leaving else messages.hello(), group)
 
     def datagram_received(self, data: bytes, address: Address) -> None:
-        if len(data) > MAX_DATAGRAM_BYTES or (self._own_machine_only and not _is_own(address)):
+        if len(data) > MAX_DATAGRAM_BYTES or (self._local_only and not _is_on_this_machine(address)):
             return
         query = parse_query(data)
         for camera, messages in self._messages:
             if query is not None and not camera.device.down and query.matches(messages.target):
-                with suppress(OSError):  # there is no route to the client
+                with suppress(OSError):  # there may be no route to the client
                     xaddr = messages.target.xaddr or _xaddr(source_address(address), camera)
                     self._send(messages.match(query, xaddr), address)
 
@@ -85,15 +85,15 @@ class _Responder(asyncio.DatagramProtocol):
 async def serve_discovery(
     cameras: Sequence[DiscoverableCamera], *, host: str = "127.0.0.1", port: int = PORT
 ) -> AsyncIterator[int]:
-    """Announce cameras and answer probes while the context is open, and yield the UDP port.
+    """Return a context manager that announces cameras, responds to probes, and provides the UDP port.
 
-    Cameras on the loopback interface answer probes of programs on this machine. Many clients cannot choose the interface, so probes
-    that such a program sends through another interface are answered too. Other machines get no answer.
+    Cameras on the loopback interface respond only to probes from programs on this machine. Many clients cannot choose the
+    interface, so probes that such programs send through another interface are accepted too.
 
     Args:
         cameras: The cameras.
-        host: Address of the network interface on which the HTTP servers also listen; ``0.0.0.0`` for the default interface.
-        port: The UDP port. With 0, the system chooses a port, which clients must then know.
+        host: Address of the network interface on which the HTTP servers listen; ``0.0.0.0`` for the default interface.
+        port: The UDP port; 0 for any free port, which clients must then know.
 
     Raises:
         ConfigError: The interface cannot be used for multicast.
@@ -103,7 +103,7 @@ async def serve_discovery(
         listener = _listen(interface, port)
     except OSError as error:
         reason = error.strerror or str(error)
-        raise ConfigError(f"WS-Discovery cannot use UDP port {port} at {host}: {reason}. Serve without discovery.") from error
+        raise ConfigError(f"WS-Discovery cannot use UDP port {port} on {host}: {reason}. Turn discovery off.") from error
     group = (GROUP, listener.getsockname()[1])
     loop = asyncio.get_running_loop()
     transport, responder = await loop.create_datagram_endpoint(lambda: _Responder(cameras, interface), sock=listener)
@@ -118,9 +118,9 @@ async def serve_discovery(
 def _listen(interface: str, port: int) -> socket.socket:
     listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        # Other programs on this machine may share the port, because multicast reaches all of its sockets.
+        # Other programs on this machine may share the port, because multicast datagrams reach all of its sockets.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Bind to the multicast address where the system allows it (Windows does not), so that only multicast packets arrive.
+        # Bind to the multicast address if the system allows it (Windows does not), so that only multicast packets arrive.
         try:
             listener.bind((GROUP, port))
         except OSError:
@@ -134,7 +134,7 @@ def _listen(interface: str, port: int) -> socket.socket:
         raise
     if ip_address(interface).is_loopback or ip_address(interface).is_unspecified:
         for other in local_addresses():
-            with suppress(OSError):  # the interface has no multicast, or the group has been joined on it
+            with suppress(OSError):  # the interface may not support multicast, or may already have joined the group
                 _join(listener, other)
     return listener
 
@@ -143,8 +143,8 @@ def _join(listener: socket.socket, interface: str) -> None:
     listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + socket.inet_aton(interface))
 
 
-def _is_own(client: Address) -> bool:
-    """Return whether a client is on this machine: the route to an own address starts at the same address."""
+def _is_on_this_machine(client: Address) -> bool:
+    """Return whether a client is on this machine, in which case the route to its address starts at that address."""
     try:
         return source_address(client) == client[0]
     except OSError:

@@ -1,4 +1,4 @@
-"""Parse WS-Discovery queries, and build the messages of a device. ONVIF uses the version of WS-Discovery of April 2005."""
+"""Parse WS-Discovery queries, and build a device's messages. ONVIF uses the April 2005 version of WS-Discovery."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
 
 DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
 NETWORK = "http://www.onvif.org/ver10/network/wsdl"
-EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"  # the destination of messages to all clients
+EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"  # the destination for messages to all clients
 
 TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
-"""The types of the device, as pairs of namespace and name."""
+"""The device's types, as pairs of namespace and name."""
 
 _ANONYMOUS = "http://schemas.xmlsoap.org/ws/2004/08/addressing/role/anonymous"
 _NAMESPACES = {"env": ENVELOPE, "wsa": SUBMISSION_ADDRESSING, "d": DISCOVERY, "dn": NETWORK, "tds": DEVICE}
@@ -34,9 +34,9 @@ class Target:
     """A discoverable device.
 
     Attributes:
-        uuid: The UUID that identifies the device.
-        scopes: The scopes that describe the device.
-        xaddr: The URL of its Device service; empty if it depends on the network through which a client asks.
+        uuid: The device's UUID.
+        scopes: The device's scopes.
+        xaddr: URL of its device service; empty if it depends on the client's network.
     """
 
     uuid: UUID
@@ -45,7 +45,7 @@ class Target:
 
     @property
     def address(self) -> str:
-        """The UUID as a URN, which serves as the address of the device in WS-Discovery."""
+        """The UUID as a URN, which is the device's address in WS-Discovery."""
         return f"urn:uuid:{self.uuid}"
 
 
@@ -54,11 +54,11 @@ class Query:
     """A Probe or Resolve message.
 
     Attributes:
-        message_id: The id of the message, to which the answer refers.
-        resolves: The address of the device that a Resolve looks for; None for a Probe.
+        message_id: The message id, to which the response refers.
+        resolves: The address of the device to resolve; None for a Probe.
         types: The types that a device must have to match a Probe.
         scopes: The scopes that a device must have to match a Probe.
-        match_by: The URI of the rule for comparing scopes; empty for the default, which compares prefixes.
+        match_by: The URI of the rule for matching scopes; empty for the default, which matches prefixes.
     """
 
     message_id: str
@@ -75,7 +75,7 @@ class Query:
             return False
         rule = self.match_by.removeprefix(DISCOVERY)
         if rule in ("", "/rfc3986"):
-            return all(any(_has_prefix(scope, wanted) for scope in target.scopes) for wanted in self.scopes)
+            return all(any(_has_prefix(scope, prefix) for scope in target.scopes) for prefix in self.scopes)
         return rule == "/strcmp0" and set(self.scopes) <= set(target.scopes)
 
 
@@ -108,34 +108,34 @@ def parse_query(data: bytes) -> Query | None:
 
 
 class DiscoveryMessages:
-    """Builds the messages of one device, numbered so that clients can put them in order.
+    """Builds a device's messages, which are numbered so that clients can order them.
 
     Args:
         target: The device.
-        instance: A number that is higher after each start of the device. Message numbers begin again at each start.
+        instance: A number that increases each time the device starts. Message numbers then start again.
     """
 
     def __init__(self, target: Target, instance: int) -> None:
         self.target, self._instance, self._number = target, instance, 0
 
     def hello(self) -> bytes:
-        """Return the Hello message."""
+        """Return a Hello message."""
         return self._message("Hello", EVERYONE, None, _D.Hello(*self._description(self.target.xaddr)))
 
     def bye(self) -> bytes:
-        """Return the Bye message."""
+        """Return a Bye message."""
         return self._message("Bye", EVERYONE, None, _D.Bye(self._reference()))
 
     def match(self, query: Query, xaddr: str) -> bytes:
-        """Return the answer to a query that matches the device.
+        """Return the response to a query that matches the device.
 
         Args:
             query: The query.
-            xaddr: The URL at which the client can reach the Device service.
+            xaddr: The URL at which the client can reach the device service.
         """
         kind = "Probe" if query.resolves is None else "Resolve"
-        found = _D(f"{kind}Match", *self._description(xaddr))
-        return self._message(f"{kind}Matches", _ANONYMOUS, query.message_id, _D(f"{kind}Matches", found))
+        match_element = _D(f"{kind}Match", *self._description(xaddr))
+        return self._message(f"{kind}Matches", _ANONYMOUS, query.message_id, _D(f"{kind}Matches", match_element))
 
     def _reference(self) -> Any:
         return _A.EndpointReference(_A.Address(self.target.address))
@@ -162,9 +162,9 @@ def _qname(element: etree._Element, name: str) -> tuple[str, str]:
 
 
 def _has_prefix(scope: str, prefix: str) -> bool:
-    """Return whether a scope matches a prefix: equal scheme and host, and a path that begins with the segments of the prefix."""
-    ours, theirs = urlsplit(scope), urlsplit(prefix)
-    if (ours.scheme.lower(), ours.netloc.lower()) != (theirs.scheme.lower(), theirs.netloc.lower()):
+    """Return whether a scope has a prefix: the same scheme and host, and a path that starts with the prefix's segments."""
+    scope_url, prefix_url = urlsplit(scope), urlsplit(prefix)
+    if (scope_url.scheme.lower(), scope_url.netloc.lower()) != (prefix_url.scheme.lower(), prefix_url.netloc.lower()):
         return False
-    segments = theirs.path.strip("/").split("/") if theirs.path.strip("/") else []
-    return ours.path.strip("/").split("/")[: len(segments)] == segments
+    segments = prefix_url.path.strip("/").split("/") if prefix_url.path.strip("/") else []
+    return scope_url.path.strip("/").split("/")[: len(segments)] == segments

@@ -1,4 +1,4 @@
-"""The Imaging service: focus and iris."""
+"""The ONVIF imaging service: focus and iris."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Rep
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
 DARKEST_DB = 20.0
-"""Attenuation of the closed iris in dB, the unit of ONVIF iris values. The open iris has 0 dB."""
+"""Attenuation of the closed iris in dB, the unit of ONVIF iris values. The open iris has an attenuation of 0 dB."""
 
 _MODES = ["AUTO", "MANUAL"]
 _POSITIONS = {"Min": 0.0, "Max": 1.0}
 _DISTANCES = {"Min": -1.0, "Max": 1.0}
 _IRIS = {"Min": 0.0, "Max": DARKEST_DB}
-_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed the end of a range
+_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed a range
 
 
 class ImagingService:
-    """The Imaging service.
+    """The ONVIF imaging service.
 
     Args:
         device: The camera.
@@ -66,11 +66,11 @@ class ImagingService:
     def _status(self, request: Request) -> Reply:
         _require_source(request)
         lens = self._device.lens
-        focus = {"Position": lens.focus, "MoveStatus": "MOVING" if lens.focusing else "IDLE", "Error": ""}
+        focus = {"Position": lens.focus, "MoveStatus": "MOVING" if lens.is_focusing else "IDLE", "Error": ""}
         return {"Status": {"FocusStatus20": focus}}
 
     def _set(self, request: Request) -> Reply:
-        """Apply the settings in a request. All of them are checked before the first is applied."""
+        """Apply the settings in a request, after validating all of them."""
         _require_source(request)
         lens, settings = self._device.lens, request.ImagingSettings
         focus, exposure = settings.Focus, settings.Exposure
@@ -100,7 +100,7 @@ class ImagingService:
 
     def _stop(self, request: Request) -> Reply:
         _require_source(request)
-        if self._device.lens.focusing:
+        if self._device.lens.is_focusing:
             self._device.lens.stop_focus()
         return {}
 
@@ -111,10 +111,10 @@ def _require_source(request: Request) -> None:
 
 
 def _validate_range(value: Any, low: float, high: float) -> float:
-    """Return a number in a request after checking its range.
+    """Validate a number in a request, and return it clamped to its range.
 
     Raises:
-        SoapFault: The number is outside the range.
+        SoapFault: The number is missing or outside the range.
     """
     if value is None or not math.isfinite(value) or not low - _TOLERANCE <= value <= high + _TOLERANCE:
         raise invalid_argument(f"The value must be from {low:g} to {high:g}; got {value}.", "SettingsInvalid")

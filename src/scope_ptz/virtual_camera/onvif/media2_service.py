@@ -1,4 +1,4 @@
-"""The Media2 service: the profiles of the Media service, in the types of Media2."""
+"""The ONVIF media2 service, which provides the same profiles as the media service, with the types of media2."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Rep
 from scope_ptz.virtual_camera.onvif.ptz_configuration import PtzConfiguration
 from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 
-_PROTOCOLS = {"RtspUnicast", "RTSP", "RtspOverHttp"}  # RTSP: interleaved over TCP
+_PROTOCOLS = {"RtspUnicast", "RTSP", "RtspOverHttp"}  # "RTSP" means interleaved over TCP
 
 
 class Media2Service:
-    """The Media2 service.
+    """The ONVIF media2 service.
 
     Args:
         device: The camera.
@@ -59,23 +59,23 @@ class Media2Service:
         }  # fmt: skip
 
     def _profiles(self, request: Request) -> Reply:
-        found = profiles.media_profiles(self._device)
+        selected = profiles.media_profiles(self._device)
         if request.Token:
-            found = (profiles.find_profile(self._device, request.Token),)
+            selected = (profiles.find_profile(self._device, request.Token),)
         requested = set(request.Type or ())
-        return {"Profiles": [self._profile(profile, requested) for profile in found]}
+        return {"Profiles": [self._profile(profile, requested) for profile in selected]}
 
     def _profile(self, profile: profiles.MediaProfile, requested: set[str]) -> dict[str, Any]:
-        kinds = {
+        sources = {
             "VideoSource": lambda: profiles.source_configuration(self._device),
             "VideoEncoder": lambda: _encoder(profile),
             "PTZ": self._ptz.values,
         }
-        configurations = {kind: values() for kind, values in kinds.items() if requested & {"All", kind}}
-        described: dict[str, Any] = {"token": profile.token, "fixed": True, "Name": profile.name}
+        configurations = {kind: values() for kind, values in sources.items() if requested & {"All", kind}}
+        result: dict[str, Any] = {"token": profile.token, "fixed": True, "Name": profile.name}
         if configurations:
-            described["Configurations"] = configurations
-        return described
+            result["Configurations"] = configurations
+        return result
 
     def _source_configurations(self, request: Request) -> Reply:
         self._check_source(request)
@@ -113,7 +113,7 @@ class Media2Service:
     def _stream_uri(self, request: Request) -> Reply:
         profile = profiles.find_profile(self._device, request.ProfileToken)
         if request.Protocol not in _PROTOCOLS:
-            raise invalid_argument("The stream is offered over RTSP, by unicast.", "InvalidStreamSetup")
+            raise invalid_argument("The stream is available only over unicast RTSP.", "InvalidStreamSetup")
         over_http = request.Protocol == "RtspOverHttp"
         return {"Uri": profiles.stream_uri(request, profile, self._rtsp_port, over_http=over_http)}
 
@@ -126,7 +126,7 @@ class Media2Service:
         return {}
 
     def _check_source(self, request: Request) -> None:
-        """Raise a fault if a request names a video source configuration or a profile that does not exist."""
+        """Check that the video source configuration and the profile that a request names exist."""
         if request.ConfigurationToken:
             profiles.require_configuration(request.ConfigurationToken, profiles.SOURCE_CONFIGURATION)
         if request.ProfileToken:

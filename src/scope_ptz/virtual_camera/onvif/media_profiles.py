@@ -1,4 +1,4 @@
-"""The media profiles and their configurations, which the Media and Media2 services share."""
+"""The media profiles and their configurations, which the media and media2 services share."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ SOURCE = "video-source"
 SOURCE_CONFIGURATION = "video-source-configuration"
 
 FRAME_RATE = 25
-"""Frames per second of the stream."""
+"""Frame rate of the stream in frames per second."""
 
 GOP_FRAMES = 25  # frames from one keyframe to the next
-QUALITY = 70.0  # a fixed value, which clients cannot change
+QUALITY = 70.0  # the reported quality, which clients cannot change
 
 STREAM_PATH = "/axis-media/media.amp"
 SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
 
 MULTICAST = {"Address": {"Type": "IPv4", "IPv4Address": "0.0.0.0"}, "Port": 0, "TTL": 1, "AutoStart": False}  # noqa: S104
-"""A placeholder for the multicast address, which the types require although there is no multicast stream."""
+"""A placeholder multicast address, which the types require although there is no multicast stream."""
 
 
 @dataclass(frozen=True, slots=True)
 class MediaProfile:
-    """A media profile: a stream of one size, with its encoder configuration.
+    """A media profile: a stream size with its encoder configuration.
 
     Attributes:
-        token: The token of the profile.
-        encoder_token: The token of the encoder configuration.
+        token: Token of the profile.
+        encoder_token: Token of the encoder configuration.
         name: The name that clients show.
         width: Width in pixels.
         height: Height in pixels.
-        bitrate_kbps: The maximum bit rate in kbit/s, as stated in replies.
-        query: The query of the stream's URL; empty for full size.
+        bitrate_kbps: The reported maximum bit rate in kbit/s.
+        query: The query in the stream's URL; empty for full size.
     """
 
     token: str
@@ -50,22 +50,22 @@ class MediaProfile:
 
     @property
     def resolution(self) -> dict[str, int]:
-        """The size, as it appears in replies."""
+        """The size in the form used in replies."""
         return {"Width": self.width, "Height": self.height}
 
 
 def media_profiles(device: VirtualDevice) -> tuple[MediaProfile, ...]:
-    """Return the profiles: one at full size, and one at half the width and height for programs that analyse the video."""
+    """Return the profiles: one at full size, and one at half the width and height for video analysis."""
     width, height = device.width, device.height
     main = MediaProfile("profile-1", "h264-configuration-1", "Main", width, height, 4096, "")
-    if width % 4 or height % 4:  # H.264 needs even sizes
+    if width % 4 or height % 4:  # half of it would be odd, but H.264 requires even sizes
         return (main,)
     width, height = width // 2, height // 2
     return main, MediaProfile("profile-2", "h264-configuration-2", "Small", width, height, 1024, f"?resolution={width}x{height}")
 
 
 def find_profile(device: VirtualDevice, token: str | None) -> MediaProfile:
-    """Return a profile by its token.
+    """Return a profile by token.
 
     Raises:
         SoapFault: There is no such profile.
@@ -77,7 +77,7 @@ def find_profile(device: VirtualDevice, token: str | None) -> MediaProfile:
 
 
 def find_encoder(device: VirtualDevice, token: str | None) -> MediaProfile:
-    """Return the profile of an encoder configuration, by the configuration's token.
+    """Return the profile with an encoder configuration, given the configuration's token.
 
     Raises:
         SoapFault: There is no such configuration.
@@ -89,27 +89,27 @@ def find_encoder(device: VirtualDevice, token: str | None) -> MediaProfile:
 
 
 def selected_encoders(device: VirtualDevice, request: Request) -> tuple[MediaProfile, ...]:
-    """Return the profiles whose encoders a request selects: by configuration, by profile, or all.
+    """Return the profiles whose encoders a request selects by configuration or profile; all of them if it names neither.
 
     Raises:
         SoapFault: The request names an unknown configuration or profile.
     """
-    found = media_profiles(device)
+    selected = media_profiles(device)
     if request.ConfigurationToken:
-        found = (find_encoder(device, request.ConfigurationToken),)
+        selected = (find_encoder(device, request.ConfigurationToken),)
     if request.ProfileToken:
-        wanted = find_profile(device, request.ProfileToken)
-        found = (wanted,) if wanted in found else ()
-    return found
+        profile = find_profile(device, request.ProfileToken)
+        selected = (profile,) if profile in selected else ()
+    return selected
 
 
 def require_configuration(token: str | None, known: str) -> None:
-    """Raise a fault if the token of a configuration differs from ``known``, the only valid one."""
+    """Check that a configuration token is ``known``, the only valid one."""
     require_token("configuration", token, known, "NoConfig")
 
 
 def source_configuration(device: VirtualDevice) -> dict[str, Any]:
-    """Return the configuration of the video source."""
+    """Return the video source configuration."""
     return {
         "token": SOURCE_CONFIGURATION,
         "Name": "Video source",
@@ -120,7 +120,7 @@ def source_configuration(device: VirtualDevice) -> dict[str, Any]:
 
 
 def source_options(device: VirtualDevice) -> dict[str, Any]:
-    """Return the options of the video source's configuration, which allow only the full image."""
+    """Return the options for the video source configuration, which allow only the full image."""
     zero = {"Min": 0, "Max": 0}
     return {
         "BoundsRange": {
@@ -134,7 +134,7 @@ def source_options(device: VirtualDevice) -> dict[str, Any]:
 
 
 def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int, *, over_http: bool = False) -> str:
-    """Return the URL of a stream, at the host at which the client reached the device.
+    """Return a stream URL with the host at which the client reached the device.
 
     Args:
         request: The client's request.
@@ -148,5 +148,5 @@ def stream_uri(request: Request, profile: MediaProfile, rtsp_port: int, *, over_
 
 
 def snapshot_uri(request: Request, profile: MediaProfile) -> str:
-    """Return the URL of the current image, at the host at which the client reached the device."""
+    """Return a snapshot URL with the host at which the client reached the device."""
     return f"{request.origin}{SNAPSHOT_PATH}?resolution={profile.width}x{profile.height}"

@@ -1,4 +1,4 @@
-"""The Media service (version 1): profiles, each with an H.264 stream."""
+"""The ONVIF media service (version 1): profiles, each with an H.264 stream."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.virtual_camera.onvif.soap import invalid_argument
 
 
 class MediaService:
-    """The Media service.
+    """The ONVIF media service.
 
     Args:
         device: The camera.
@@ -29,7 +29,7 @@ class MediaService:
         return {
             "GetServiceCapabilities": Operation(self._capabilities, None),
             "GetProfiles": Operation(
-                lambda _: {"Profiles": [self._profile(each) for each in profiles.media_profiles(self._device)]}
+                lambda _: {"Profiles": [self._profile(profile) for profile in profiles.media_profiles(self._device)]}
             ),
             "GetProfile": Operation(self._get_profile),
             "GetVideoSources": Operation(self._sources),

@@ -1,4 +1,4 @@
-"""Types that the services share: operations with the roles that they require, requests and replies."""
+"""Types shared by the services: operations with their required roles, requests and replies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.onvif.username_tokens import Stamp
+from scope_ptz.virtual_camera.onvif.username_tokens import CreationTime
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,16 +15,16 @@ class Request:
     """A request with parsed arguments.
 
     Attributes:
-        arguments: The arguments by name, parsed by zeep with the types of the WSDL.
-        host: The host at which the client reached the device, in the form used in URLs (with brackets for IPv6).
+        arguments: The arguments by name, parsed by zeep according to the WSDL.
+        host: The host at which the client reached the device, in the form used in URLs (bracketed for IPv6).
         origin: The scheme, host and port at which the client reached the device.
-        stamp: The time at which the client created the request; None if the request does not state it.
+        created_at: The time at which the client created the request; None if the request does not include it.
     """
 
     arguments: Any
     host: str
     origin: str
-    stamp: Stamp | None = None
+    created_at: CreationTime | None = None
 
     def __getattr__(self, name: str) -> Any:
         """Return an argument; None if the request does not contain it."""
@@ -32,7 +32,7 @@ class Request:
 
 
 Reply = Mapping[str, Any]
-"""The values of a reply by the names in the WSDL."""
+"""The values in a reply, keyed by their names in the WSDL."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,8 @@ class Operation:
     """An operation of a service.
 
     Attributes:
-        run: The function that carries out a request and returns the values of the reply.
-        role: The role that the sender must have; None if the operation requires no login.
+        run: A function that handles a request and returns the values in the reply.
+        role: The minimum role of the sender; None if the operation requires no authentication.
     """
 
     run: Callable[[Request], Reply]

@@ -7,7 +7,7 @@ from typing import Any
 
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import MAX_PRESETS, VirtualDevice
-from scope_ptz.virtual_camera.onvif import spaces as s
+from scope_ptz.virtual_camera.onvif import spaces
 from scope_ptz.virtual_camera.onvif.device_service import require_token
 from scope_ptz.virtual_camera.onvif.media_profiles import media_profiles
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
@@ -20,8 +20,8 @@ MIN_TIMEOUT_S, MAX_TIMEOUT_S = 0.1, 60.0
 
 
 def duration_s(value: Any) -> float | None:
-    """Return a duration given in a request, in seconds; None if it is invalid or outside the limits."""
-    seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate has a separate type for months and years
+    """Return a duration from a request in seconds; None if it is invalid or outside the limits."""
+    seconds = value.total_seconds() if isinstance(value, timedelta) else None  # isodate uses another type for months and years
     return seconds if seconds is not None and MIN_TIMEOUT_S <= seconds <= MAX_TIMEOUT_S else None
 
 
@@ -29,20 +29,20 @@ class PtzConfiguration:
     """The PTZ configuration. Clients can change its name and its defaults.
 
     Attributes:
-        spaces: The coordinate spaces of the camera.
-        name: The name of the configuration.
-        position: URI of the space in which status and presets report positions. It is also the default space of absolute moves.
-        translation: URI of the default space of relative moves.
-        timeout_s: The default duration of a continuous move in seconds.
-        speed: The default speed of pan and tilt, as a fraction of the top speed.
-        zoom_speed: The default speed of the zoom, as a fraction of the top speed.
+        spaces: The camera's coordinate spaces.
+        name: Name of the configuration.
+        position: URI of the space in which positions are reported, which is also the default space for absolute moves.
+        translation: URI of the default space for relative moves.
+        timeout_s: Default duration of a continuous move in seconds.
+        speed: Default pan and tilt speed as a fraction of the top speed.
+        zoom_speed: Default zoom speed as a fraction of the top speed.
     """
 
     def __init__(self, device: VirtualDevice) -> None:
-        self.spaces = s.Spaces(device.limits, device.optics, device.width / device.height)
+        self.spaces = spaces.Spaces(device.limits, device.optics, device.width / device.height)
         self._use_count = len(media_profiles(device))
         self.name = "PTZ"
-        self.position, self.translation = s.POSITION, s.TRANSLATION
+        self.position, self.translation = spaces.POSITION, spaces.TRANSLATION
         self.timeout_s, self.speed, self.zoom_speed = 5.0, 1.0, 1.0
 
     def operations(self) -> Operations:
@@ -58,7 +58,7 @@ class PtzConfiguration:
         }
 
     def values(self) -> dict[str, Any]:
-        """Return the configuration as it appears in replies."""
+        """Return the configuration in the form used in replies."""
         pan_tilt = self.spaces.positions[0]
         return {
             "token": CONFIGURATION,
@@ -66,18 +66,18 @@ class PtzConfiguration:
             "UseCount": self._use_count,
             "NodeToken": NODE,
             "DefaultAbsolutePantTiltPositionSpace": self.position,
-            "DefaultAbsoluteZoomPositionSpace": s.ZOOM_POSITION,
+            "DefaultAbsoluteZoomPositionSpace": spaces.ZOOM_POSITION,
             "DefaultRelativePanTiltTranslationSpace": self.translation,
-            "DefaultRelativeZoomTranslationSpace": s.ZOOM_TRANSLATION,
-            "DefaultContinuousPanTiltVelocitySpace": s.VELOCITY,
-            "DefaultContinuousZoomVelocitySpace": s.ZOOM_VELOCITY,
+            "DefaultRelativeZoomTranslationSpace": spaces.ZOOM_TRANSLATION,
+            "DefaultContinuousPanTiltVelocitySpace": spaces.VELOCITY,
+            "DefaultContinuousZoomVelocitySpace": spaces.ZOOM_VELOCITY,
             "DefaultPTZSpeed": {
-                "PanTilt": {"x": self.speed, "y": self.speed, "space": s.SPEED},
-                "Zoom": {"x": self.zoom_speed, "space": s.ZOOM_SPEED},
+                "PanTilt": {"x": self.speed, "y": self.speed, "space": spaces.SPEED},
+                "Zoom": {"x": self.zoom_speed, "space": spaces.ZOOM_SPEED},
             },
             "DefaultPTZTimeout": timedelta(seconds=self.timeout_s),
-            "PanTiltLimits": {"Range": _describe(pan_tilt)},
-            "ZoomLimits": {"Range": _describe(self.spaces.zoom_positions[0])},
+            "PanTiltLimits": {"Range": _space_fields(pan_tilt)},
+            "ZoomLimits": {"Range": _space_fields(self.spaces.zoom_positions[0])},
         }
 
     def _node(self) -> dict[str, Any]:
@@ -101,7 +101,7 @@ class PtzConfiguration:
             "PanTiltSpeedSpace": self.spaces.speeds,
             "ZoomSpeedSpace": self.spaces.zoom_speeds,
         }
-        return {name: [_describe(space) for space in group] for name, group in groups.items()}
+        return {name: [_space_fields(space) for space in group] for name, group in groups.items()}
 
     def _get_node(self, request: Request) -> Reply:
         require_token("PTZ node", request.NodeToken, NODE, "NoEntity")
@@ -119,39 +119,39 @@ class PtzConfiguration:
     def _set(self, request: Request) -> Reply:
         requested = request.PTZConfiguration
         self._require(requested.token)
-        position = _known(self.spaces.positions, requested.DefaultAbsolutePantTiltPositionSpace, self.position)
-        translation = _known(self.spaces.translations, requested.DefaultRelativePanTiltTranslationSpace, self.translation)
-        _known(self.spaces.zoom_positions, requested.DefaultAbsoluteZoomPositionSpace, s.ZOOM_POSITION)
-        _known(self.spaces.zoom_translations, requested.DefaultRelativeZoomTranslationSpace, s.ZOOM_TRANSLATION)
-        _known(self.spaces.velocities, requested.DefaultContinuousPanTiltVelocitySpace, s.VELOCITY)
-        _known(self.spaces.zoom_velocities, requested.DefaultContinuousZoomVelocitySpace, s.ZOOM_VELOCITY)
+        position = _require_space(self.spaces.positions, requested.DefaultAbsolutePantTiltPositionSpace, self.position)
+        translation = _require_space(self.spaces.translations, requested.DefaultRelativePanTiltTranslationSpace, self.translation)
+        _require_space(self.spaces.zoom_positions, requested.DefaultAbsoluteZoomPositionSpace, spaces.ZOOM_POSITION)
+        _require_space(self.spaces.zoom_translations, requested.DefaultRelativeZoomTranslationSpace, spaces.ZOOM_TRANSLATION)
+        _require_space(self.spaces.velocities, requested.DefaultContinuousPanTiltVelocitySpace, spaces.VELOCITY)
+        _require_space(self.spaces.zoom_velocities, requested.DefaultContinuousZoomVelocitySpace, spaces.ZOOM_VELOCITY)
         speed, zoom_speed = self.speed_fractions(requested.DefaultPTZSpeed, "ConfigModify")
         timeout_s: float | None = self.timeout_s
         if requested.DefaultPTZTimeout is not None:
             timeout_s = duration_s(requested.DefaultPTZTimeout)
         if requested.NodeToken != NODE or timeout_s is None:
-            raise invalid_argument("The node or the default timeout is not one of the options.", "ConfigModify")
+            raise invalid_argument("The node is unknown, or the default timeout is not one of the options.", "ConfigModify")
         self.name = (requested.Name or self.name)[:64]
         self.position, self.translation, self.timeout_s = position, translation, timeout_s
         self.speed, self.zoom_speed = speed, zoom_speed
         return {}
 
     def speed_fractions(self, speed: Any, subcode: str = "InvalidSpeed") -> tuple[float, float]:
-        """Return the requested speeds of pan and tilt, and of the zoom, as fractions of their top speeds.
+        """Return the requested pan/tilt speed and zoom speed as fractions of the top speeds.
 
         Missing values and 0 mean the default.
 
         Raises:
-            SoapFault: A number is not between 0 and 1, or the space is unknown.
+            SoapFault: A number is not from 0 to 1, or a space is not supported.
         """
         pan_tilt, zoom = getattr(speed, "PanTilt", None), getattr(speed, "Zoom", None)
         fraction, zoom_fraction = self.speed, self.zoom_speed
         if pan_tilt is not None:
-            space = s.requested_space(self.spaces.speeds, pan_tilt, s.SPEED)
-            s.Space(space.uri, space.x, space.x).check(pan_tilt, subcode)
+            space = spaces.requested_space(self.spaces.speeds, pan_tilt, spaces.SPEED)
+            spaces.Space(space.uri, space.x, space.x).check(pan_tilt, subcode)
             fraction = min(max(pan_tilt.x, pan_tilt.y) or self.speed, 1.0)
         if zoom is not None:
-            s.requested_space(self.spaces.zoom_speeds, zoom, s.ZOOM_SPEED).check(zoom, subcode)
+            spaces.requested_space(self.spaces.zoom_speeds, zoom, spaces.ZOOM_SPEED).check(zoom, subcode)
             zoom_fraction = min(zoom.x or self.zoom_speed, 1.0)
         return fraction, zoom_fraction
 
@@ -159,14 +159,14 @@ class PtzConfiguration:
         require_token("PTZ configuration", token, CONFIGURATION, "NoConfig")
 
 
-def _describe(space: s.Space) -> dict[str, Any]:
-    described: dict[str, Any] = {"URI": space.uri, "XRange": {"Min": space.x[0], "Max": space.x[1]}}
+def _space_fields(space: spaces.Space) -> dict[str, Any]:
+    fields: dict[str, Any] = {"URI": space.uri, "XRange": {"Min": space.x[0], "Max": space.x[1]}}
     if space.y is not None:
-        described["YRange"] = {"Min": space.y[0], "Max": space.y[1]}
-    return described
+        fields["YRange"] = {"Min": space.y[0], "Max": space.y[1]}
+    return fields
 
 
-def _known(group: tuple[s.Space, ...], uri: str | None, default: str) -> str:
+def _require_space(group: tuple[spaces.Space, ...], uri: str | None, default: str) -> str:
     if uri is not None and uri not in {space.uri for space in group}:
         raise invalid_argument("A default space is not one of the options.", "ConfigModify")
     return uri or default

@@ -1,4 +1,4 @@
-"""The PTZ service: presets and the home position."""
+"""The preset and home operations of the ONVIF PTZ service."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
 
 class PresetOperations:
-    """Presets and home. The token of a preset is its number.
+    """The operations for presets and the home position. A preset's token is its number.
 
     Args:
         device: The camera.
@@ -46,10 +46,10 @@ class PresetOperations:
 
     def _set(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
-        if self._device.moving():
-            raise SoapFault("A preset cannot be saved while the camera moves.", "Action", "MovingPTZ", receiver=True)
+        if self._device.is_moving():
+            raise SoapFault("A preset cannot be saved while the camera is moving.", "Action", "MovingPTZ", receiver=True)
         old = None if not request.PresetToken else self._preset(request.PresetToken)
-        name = request.PresetName or (old.name if old else self._free_name())
+        name = request.PresetName or (old.name if old else self._unused_name())
         same = next((preset for preset in self._device.presets() if preset.name == name), None)
         if same is not None and same != old:
             raise invalid_argument("Another preset has this name.", "PresetExist")
@@ -89,6 +89,6 @@ class PresetOperations:
         except (ValueError, UnknownNameError) as error:
             raise invalid_argument(f"There is no preset '{str(token)[:64]}'.", "NoToken") from error
 
-    def _free_name(self) -> str:
+    def _unused_name(self) -> str:
         names = {preset.name for preset in self._device.presets()}
         return next(name for k in range(1, len(names) + 2) if (name := f"Preset {k}") not in names)

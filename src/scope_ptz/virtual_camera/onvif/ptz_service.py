@@ -1,4 +1,4 @@
-"""The PTZ service: moves and status."""
+"""The move and status operations of the ONVIF PTZ service."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.camera.motion import top_speed
 from scope_ptz.geometry import Pose
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.onvif import spaces as s
+from scope_ptz.virtual_camera.onvif import spaces
 from scope_ptz.virtual_camera.onvif.clock import device_datetime, device_time_s
 from scope_ptz.virtual_camera.onvif.media_profiles import find_profile
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
@@ -19,7 +19,7 @@ from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
 
 class PtzService:
-    """Moves and status.
+    """The operations for moves and status.
 
     Args:
         device: The camera.
@@ -41,18 +41,20 @@ class PtzService:
         }
 
     def position(self, pose: Pose) -> dict[str, Any]:
-        """Return a pose as an ONVIF vector in the default position spaces."""
+        """Convert a pose to an ONVIF position in the default spaces."""
         x, y = self._spaces.position(pose, self._configuration.position)
         return {
             "PanTilt": {"x": x, "y": y, "space": self._configuration.position},
-            "Zoom": {"x": self._spaces.zoom_position(pose), "space": s.ZOOM_POSITION},
+            "Zoom": {"x": self._spaces.zoom_position(pose), "space": spaces.ZOOM_POSITION},
         }
 
     def _capabilities(self, _: Request) -> Reply:
-        # The attributes in ``more`` are newer than the WSDL files of onvif-zeep-async, so they are passed as additional attributes.
+        # These attributes are newer than the WSDL files in onvif-zeep-async, so they are passed as additional attributes.
         reports = self._device.reported_moving() is not None
-        more = {"MoveStatus": "true" if reports else "false", "StatusPosition": "true"}
-        return {"Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": more}}
+        extra_attributes = {"MoveStatus": "true" if reports else "false", "StatusPosition": "true"}
+        return {
+            "Capabilities": {"EFlip": False, "Reverse": False, "GetCompatibleConfigurations": True, "_attr_1": extra_attributes}
+        }
 
     def _status(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
@@ -67,11 +69,11 @@ class PtzService:
         pan_tilt, zoom = _axes(request.Position)
         pose = self._device.destination
         if pan_tilt is not None:
-            space = s.requested_space(self._spaces.positions, pan_tilt, self._configuration.position)
+            space = spaces.requested_space(self._spaces.positions, pan_tilt, self._configuration.position)
             space.check(pan_tilt, "InvalidPosition")
             pose = self._spaces.at_position(pose, space, pan_tilt.x, pan_tilt.y)
         if zoom is not None:
-            s.requested_space(self._spaces.zoom_positions, zoom, s.ZOOM_POSITION).check(zoom, "InvalidPosition")
+            spaces.requested_space(self._spaces.zoom_positions, zoom, spaces.ZOOM_POSITION).check(zoom, "InvalidPosition")
             pose = self._spaces.at_zoom_position(pose, zoom.x)
         self._move(pose, request.Speed)
         return {}
@@ -79,15 +81,15 @@ class PtzService:
     def _relative(self, request: Request) -> Reply:
         find_profile(self._device, request.ProfileToken)
         pan_tilt, zoom = _axes(request.Translation)
-        here, pose = self._device.pose(), self._device.destination
+        current, pose = self._device.pose(), self._device.destination
         if pan_tilt is not None:
-            space = s.requested_space(self._spaces.translations, pan_tilt, self._configuration.translation)
+            space = spaces.requested_space(self._spaces.translations, pan_tilt, self._configuration.translation)
             space.check(pan_tilt, "InvalidTranslation")
-            there = self._spaces.turn(here, space, pan_tilt.x, pan_tilt.y)
-            pose = replace(there, zoom=pose.zoom)
+            turned = self._spaces.turn(current, space, pan_tilt.x, pan_tilt.y)
+            pose = replace(turned, zoom=pose.zoom)
         if zoom is not None:
-            s.requested_space(self._spaces.zoom_translations, zoom, s.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
-            pose = replace(pose, zoom=self._spaces.change_zoom(here, zoom.x).zoom)
+            spaces.requested_space(self._spaces.zoom_translations, zoom, spaces.ZOOM_TRANSLATION).check(zoom, "InvalidTranslation")
+            pose = replace(pose, zoom=self._spaces.change_zoom(current, zoom.x).zoom)
         self._move(pose, request.Speed)
         return {}
 
@@ -96,18 +98,18 @@ class PtzService:
         pan_tilt, zoom = _axes(request.Velocity)
         velocity, top = self._device.commanded_velocity, top_speed(self._device.head)
         if pan_tilt is not None:
-            s.requested_space(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
+            spaces.requested_space(self._spaces.velocities, pan_tilt, spaces.VELOCITY).check(pan_tilt, "InvalidVelocity")
             velocity = replace(velocity, pan_dps=pan_tilt.x * top.pan_dps, tilt_dps=pan_tilt.y * top.tilt_dps)
         if zoom is not None:
-            s.requested_space(self._spaces.zoom_velocities, zoom, s.ZOOM_VELOCITY).check(zoom, "InvalidVelocity")
+            spaces.requested_space(self._spaces.zoom_velocities, zoom, spaces.ZOOM_VELOCITY).check(zoom, "InvalidVelocity")
             velocity = replace(velocity, zoom_rate=zoom.x * top.zoom_rate)
         timeout_s: float | None = self._configuration.timeout_s
         if request.Timeout is not None and (timeout_s := duration_s(request.Timeout)) is None:
-            raise invalid_argument("The timeout is outside the range of the options.", "TimeoutNotSupported")
+            raise invalid_argument("The timeout is outside the supported range.", "TimeoutNotSupported")
         if velocity == Velocity():
             self._device.stop(sent_s=self._sent_s(request, latest=False))
             return {}
-        # The device drops a move that was sent before a stop but arrives after that stop. The reply is that of a successful move.
+        # The device drops a move that was sent before a stop but arrives after it. The reply is the same as for a successful move.
         self._device.drive(velocity, timeout_s=timeout_s, sent_s=self._sent_s(request, latest=True))
         return {}
 
@@ -121,19 +123,19 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return the time at which a request was created, in Unix seconds; None if the request does not state it.
+        """Return the time at which a request was created in Unix seconds; None if the request does not include it.
 
-        A time in the future is replaced with the current time. Otherwise, a stop from a client whose clock is ahead would block the
-        moves of other clients.
+        A time in the future is replaced with the current time. Otherwise, a stop from a client whose clock is fast would block
+        other clients' moves.
 
         Args:
             request: The request.
-            latest: Whether to return the latest possible time (for a move) instead of the earliest (for a stop). If it is not clear
-                which of the two was sent first, the move is therefore carried out.
+            latest: Whether to return the latest possible time (for a move) or the earliest (for a stop). If it is unclear which of
+                the two was sent first, the move is therefore carried out.
         """
-        if request.stamp is None:
+        if request.created_at is None:
             return None
-        created_s = request.stamp.latest_s if latest else request.stamp.earliest_s
+        created_s = request.created_at.latest_s if latest else request.created_at.earliest_s
         return min(created_s, device_time_s(self._device)) - self._device.faults.clock_skew_s
 
     def _move(self, pose: Pose, speed: Any) -> None:
@@ -142,10 +144,10 @@ class PtzService:
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:
-    """Return the pan/tilt part and the zoom part of a vector. Either may be None.
+    """Return the pan/tilt part and the zoom part of a vector; one of them may be None.
 
     Raises:
-        SoapFault: Both are missing.
+        SoapFault: Both parts are missing.
     """
     pan_tilt, zoom = getattr(vector, "PanTilt", None), getattr(vector, "Zoom", None)
     if pan_tilt is None and zoom is None:

@@ -1,4 +1,4 @@
-"""Parse SOAP 1.2 requests of limited size, and build replies and faults."""
+"""Parse SOAP 1.2 requests, and build replies and faults."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ ENVELOPE = "http://www.w3.org/2003/05/soap-envelope"
 ERRORS = "http://www.onvif.org/ver10/error"
 SECURITY = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-secext-1.0.xsd"
 ADDRESSING = "http://www.w3.org/2005/08/addressing"
-SUBMISSION_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"  # W3C Member Submission, which WS-Discovery uses
+SUBMISSION_ADDRESSING = "http://schemas.xmlsoap.org/ws/2004/08/addressing"  # the W3C Member Submission, used by WS-Discovery
 
 MAX_REQUEST_BYTES = 65536
 """Maximum size of a request in bytes. The largest common request (SetConfiguration) is about 4 kB."""
 
-_UNDERSTOOD = {SECURITY, ADDRESSING, SUBMISSION_ADDRESSING}  # namespaces of the headers that a request may mark as mandatory
+_UNDERSTOOD = {SECURITY, ADDRESSING, SUBMISSION_ADDRESSING}  # namespaces of headers that a request may mark as mandatory
 _E = ElementMaker(namespace=ENVELOPE, nsmap={"env": ENVELOPE, "ter": ERRORS})
 _LANGUAGE = "{http://www.w3.org/XML/1998/namespace}lang"
 
 
 class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
-    """Raised to refuse a request. The fault is sent as the reply.
+    """Raised to reject a request. The fault is sent as the reply.
 
     Args:
         reason: A human-readable message.
-        subcodes: The subcodes in the namespace of ONVIF errors, from general to specific.
-        receiver: Whether the device rather than the request caused the fault (Receiver instead of Sender in SOAP).
-        status: Status of the HTTP response; the default is 400 for a sender's fault, 500 for a receiver's.
+        subcodes: The subcodes in the ONVIF error namespace, from general to specific.
+        receiver: Whether the device rather than the request is at fault (Receiver instead of Sender in SOAP).
+        status: HTTP status code of the response; by default, 400 for a Sender fault and 500 for a Receiver fault.
     """
 
     def __init__(self, reason: str, *subcodes: str, receiver: bool = False, status: int | None = None) -> None:
@@ -38,7 +38,7 @@ class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
         self.status = status or (500 if receiver else 400)
 
     code: str | None = None
-    """The top-level code of the fault, if it is neither Sender nor Receiver."""
+    """The fault's top-level code if it is neither Sender nor Receiver."""
 
     def envelope(self) -> bytes:
         """Return the fault as a SOAP message."""
@@ -55,31 +55,31 @@ class SoapFault(Exception):  # noqa: N818 - the term of the SOAP specification
 
 
 class NotUnderstood(SoapFault):
-    """The fault for a mandatory header that the device does not support."""
+    """The fault for an unsupported mandatory header."""
 
     code = "MustUnderstand"
 
 
 def invalid_argument(reason: str, *subcodes: str) -> SoapFault:
-    """Return the fault for an invalid argument. ``subcodes`` follow ``InvalidArgVal``, for example ``NoProfile``."""
+    """Return a fault for an invalid argument. ``subcodes``, such as ``NoProfile``, follow ``InvalidArgVal``."""
     return SoapFault(reason, "InvalidArgVal", *subcodes)
 
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """A parsed request: its header blocks, and the element in its body."""
+    """A parsed request: its header, and the element in its body."""
 
     header: Any
     body: Any
 
 
 def parse_xml(data: bytes) -> Any:
-    """Parse untrusted XML without document types, entities or network access, and with lxml's limits on depth and size.
+    """Parse untrusted XML without document types, entities or network access, and with lxml's default limits on depth and size.
 
     Raises:
-        SoapFault: The document is not well-formed, or has a document type.
+        SoapFault: The document is not well-formed, or has a document type declaration.
     """
-    # Create a new parser for each document, because a parser that failed must not be used in another thread.
+    # Create a parser for each document, because a parser that failed must not be reused in another thread.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False, huge_tree=False, remove_comments=True,
         remove_pis=True,
@@ -89,7 +89,7 @@ def parse_xml(data: bytes) -> Any:
     except (etree.XMLSyntaxError, ValueError) as error:
         raise SoapFault("The request is not well-formed XML.", "WellFormed") from error
     if root.getroottree().docinfo.doctype:
-        raise SoapFault("A request must not have a document type.", "WellFormed")
+        raise SoapFault("A request must not have a document type declaration.", "WellFormed")
     return root
 
 
@@ -97,7 +97,7 @@ def parse_envelope(data: bytes) -> Envelope:
     """Parse a SOAP 1.2 request.
 
     Raises:
-        SoapFault: The request is not a SOAP 1.2 envelope with one element in its body.
+        SoapFault: The request is not a SOAP 1.2 envelope with one element in its body, or has an unsupported mandatory header.
     """
     root = parse_xml(data)
     name = etree.QName(root)

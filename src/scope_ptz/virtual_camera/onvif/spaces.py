@@ -1,6 +1,6 @@
-"""Convert between poses and the coordinate spaces in which ONVIF states positions, translations and speeds.
+"""Convert between poses and the ONVIF coordinate spaces for positions, translations and speeds.
 
-Positive x is right and positive y is up in all of them.
+In all spaces, positive x is right and positive y is up.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ZOOM_TRANSLATION = _ZOOM + "TranslationGenericSpace"
 ZOOM_VELOCITY = _ZOOM + "VelocityGenericSpace"
 ZOOM_SPEED = _ZOOM + "ZoomGenericSpeedSpace"
 
-_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed the end of a range
+_TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed a range
 
 Range = tuple[float, float]
 SIGNED_UNIT: Range = (-1.0, 1.0)
@@ -36,14 +36,14 @@ FRACTION: Range = (0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """A coordinate space: its URI, and the range of each coordinate. ``y`` is None if the space is one-dimensional."""
+    """A coordinate space: its URI and the range of each coordinate. ``y`` is None for a one-dimensional space."""
 
     uri: str
     x: Range
     y: Range | None = None
 
     def check(self, vector: Any, subcode: str) -> None:
-        """Raise a ``SoapFault`` if a coordinate of a vector is missing, not finite, or out of range."""
+        """Raise a ``SoapFault`` if a coordinate of a vector is missing or out of range."""
         for axis, limits in (("x", self.x), ("y", self.y)):
             if limits is None:
                 continue
@@ -53,7 +53,7 @@ class Space:
 
 
 def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Space:
-    """Return the space that a vector names or, if it names none, the space with the URI ``default``.
+    """Return the space that a vector names, or the space with the URI ``default`` if it names none.
 
     Raises:
         SoapFault: The device does not support the space.
@@ -67,12 +67,12 @@ def requested_space(spaces: tuple[Space, ...], vector: Any, default: str) -> Spa
 
 @dataclass(frozen=True, slots=True)
 class Spaces:
-    """All coordinate spaces of a camera.
+    """The coordinate spaces of a camera.
 
     Attributes:
         limits: The limits of the camera's poses.
-        optics: The fields of view by zoom.
-        aspect: Width of the image divided by its height.
+        optics: The optics, which relate zoom to field of view.
+        aspect: Aspect ratio of the image (width divided by height).
     """
 
     limits: Limits
@@ -108,18 +108,18 @@ class Spaces:
     zoom_speeds = (Space(ZOOM_SPEED, FRACTION),)
 
     def at_position(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
-        """Return the pose at a position ``x``, ``y`` of pan and tilt in a space, with the zoom of ``pose``."""
+        """Return ``pose`` with its pan and tilt changed to the position ``x``, ``y`` in a space."""
         if space.uri == POSITION:
             x, y = _from_unit(x, self._pan), _from_unit(y, self._tilt)
         return replace(pose, pan_deg=x, tilt_deg=y)
 
     def at_zoom_position(self, pose: Pose, x: float) -> Pose:
-        """Return ``pose`` with its zoom changed to the position ``x``, a fraction of the zoom range."""
+        """Return ``pose`` with its zoom changed to the position ``x``, as a fraction of the zoom range."""
         low, high = self._zoom
         return replace(pose, zoom=low + x * (high - low))
 
     def turn(self, pose: Pose, space: Space, x: float, y: float) -> Pose:
-        """Return the pose after a translation of pan and tilt in a space. The pose may lie beyond the limits."""
+        """Return the pose after a pan and tilt translation in a space. The result may be beyond the limits."""
         if space.uri == TRANSLATION_FOV:
             return self._centre(pose, x, y)
         if space.uri == TRANSLATION:
@@ -127,12 +127,12 @@ class Spaces:
         return pose.turned(x, y)
 
     def change_zoom(self, pose: Pose, x: float) -> Pose:
-        """Return the pose after a translation of the zoom by ``x``, a signed fraction of its range, clamped to the range."""
+        """Return the pose after a zoom translation by ``x``, a signed fraction of the zoom range, clamped to the range."""
         low, high = self._zoom
         return replace(pose, zoom=min(max(pose.zoom + x * (high - low), low), high))
 
     def position(self, pose: Pose, uri: str) -> tuple[float, float]:
-        """Return the pan and tilt of a pose as a position in the space with a URI."""
+        """Return the pan and tilt of a pose as a position in the space with the given URI."""
         if uri == POSITION:
             return _to_unit(pose.pan_deg, self._pan), _to_unit(pose.tilt_deg, self._tilt)
         return pose.pan_deg, pose.tilt_deg
@@ -143,7 +143,7 @@ class Spaces:
         return min(max((pose.zoom - low) / (high - low), 0.0), 1.0)
 
     def _centre(self, pose: Pose, x: float, y: float) -> Pose:
-        """Return the pose that centres the point ``x``, ``y`` of the image, whose edges are at -1 and 1."""
+        """Return the pose that centres the point ``x``, ``y`` of the image, where the image edges are at -1 and 1."""
         size = 1000
         view = Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), size, round(size / self.aspect))
         pan_deg, tilt_deg = pan_tilt_deg(view.directions([0.5 + x / 2, 0.5 - y / 2]))

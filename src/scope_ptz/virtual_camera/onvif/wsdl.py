@@ -1,4 +1,4 @@
-"""The message types of all services, read from their WSDL documents once per process."""
+"""The message types of all services, loaded from their WSDL files once per process."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ _PREFIXES = {
     "tptz": PTZ,
     "timg": IMAGING,
     "tt": SCHEMA,
-}  # the namespace prefixes that the ONVIF specifications use
+}  # the namespace prefixes used in the ONVIF specifications
 _OWN_FOLDER = Path(__file__).parent / "wsdl"
 _INSTALL = "Install them with: pip install 'scope-ptz[serve]'"
 
 
 @cache
 def load_document() -> Document:
-    """Return the WSDL document of all services. The first call takes about 0.3 s.
+    """Load the WSDL document for all services. The first call takes about 0.3 s.
 
-    Device, Media, PTZ and Imaging come from files of onvif-zeep-async, and Media2 from a file of this package.
+    The WSDL files for device, media, PTZ and imaging are from onvif-zeep-async; the file for media2 is in this package.
 
     Raises:
         ConfigError: The WSDL files are not installed.
     """
-    folders = (_OWN_FOLDER, _shipped_folder())
+    folders = (_OWN_FOLDER, _library_folder())
 
     class LocalFiles(Transport):
-        """Loads documents by file name from the two folders, and never from the network."""
+        """Loads documents by file name from the two folders, never from the network."""
 
         def load(self, url: str) -> bytes:
             name = Path(url).name
@@ -62,19 +62,19 @@ def load_document() -> Document:
 
 @cache
 def load_operations() -> dict[tuple[str, str], Any]:
-    """Return the operations of all services by the namespace of their service and their name."""
-    found = {}
+    """Return the operations of all services, keyed by service namespace and operation name."""
+    operations = {}
     for service in load_document().services.values():
         for port in service.ports.values():
             for name, operation in port.binding.all().items():
-                found[port.binding.name.namespace, name] = operation
-    return found
+                operations[port.binding.name.namespace, name] = operation
+    return operations
 
 
-def _shipped_folder() -> Path:
-    # The package is located without importing it, because an import would load its client with all dependencies.
+def _library_folder() -> Path:
+    # Locate the package without importing it, because an import would load its client and all dependencies.
     spec = find_spec("onvif")
-    for place in (spec.submodule_search_locations if spec else None) or ():
-        if (folder := Path(place) / "wsdl") and (folder / "ptz.wsdl").is_file():
+    for location in (spec.submodule_search_locations if spec else None) or ():
+        if (folder := Path(location) / "wsdl") and (folder / "ptz.wsdl").is_file():
             return folder
-    raise ConfigError(f"The ONVIF services of a virtual camera need the WSDL files of onvif-zeep-async. {_INSTALL}")
+    raise ConfigError(f"The ONVIF services of a virtual camera require the WSDL files in onvif-zeep-async. {_INSTALL}")

@@ -1,1 +1,1 @@
-"""The RTSP server of virtual cameras: H.264 over RTP, interleaved in TCP or by UDP."""
+"""The RTSP server for virtual cameras: H.264 over RTP, interleaved in TCP or over UDP."""

@@ -1,4 +1,4 @@
-"""One RTSP connection, which reads and answers requests one after the other."""
+"""RTSP connections, which read and handle requests one at a time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
 from scope_ptz.virtual_camera.rtsp.messages import (
     REASONS,
-    Interleaved,
+    InterleavedPacket,
     MalformedError,
     RefusedError,
     Reply,
@@ -37,7 +37,7 @@ IDLE_TIMEOUT_S = 60.0
 """Seconds after which a connection without sessions is closed."""
 
 IO_TIMEOUT_S = 10.0  # maximum time in seconds to receive the rest of a message, or to send a reply
-GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"  # sent instead of each reply while the fault ``garbage`` is set
+GARBAGE = b"\x00\xff<<<%%garbage}{\r\n\r\n"  # sent in place of each reply while the fault ``garbage`` is on
 SERVER = "scope-ptz"
 
 logger = logging.getLogger(__name__)
@@ -46,17 +46,17 @@ Handler = Callable[[Request], Awaitable[Reply]]
 
 
 class RtspConnection:
-    """One client's connection.
+    """A client's connection.
 
     Args:
         device: The camera.
-        source: Its live picture.
-        sessions: The sessions of the camera, which all its connections share.
-        tunnels: The tunnels of RTSP over HTTP, which all its connections share.
-        digest: Authenticates the client.
-        rng: Random number generator that decides which requests are dropped.
-        reader: The incoming data of the connection.
-        writer: The outgoing data of the connection.
+        source: The camera's live picture.
+        sessions: The camera's sessions, which all of its connections share.
+        tunnels: The camera's RTSP-over-HTTP tunnels, which all of its connections share.
+        digest: The authenticator.
+        rng: Random number generator that decides which requests to drop.
+        reader: The connection's incoming data.
+        writer: The connection's outgoing data.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class RtspConnection:
         self._local_address: str = writer.get_extra_info("sockname")[0]
         self._peer: str = writer.get_extra_info("peername")[0]
         self._account = ""
-        self._own: dict[str, Session] = {}
+        self._own_sessions: dict[str, Session] = {}
         self._handlers: dict[str, Handler] = {
             "OPTIONS": self._options,
             "DESCRIBE": self._describe,
@@ -94,7 +94,7 @@ class RtspConnection:
         self._writer.transport.abort()
 
     async def run(self) -> None:
-        """Answer requests until either side closes the connection."""
+        """Handle requests until either side closes the connection."""
         limit_send_buffers(self._writer)
         try:
             while await self._serve_next():
@@ -103,7 +103,7 @@ class RtspConnection:
             pass  # the client disconnected or is too slow
         finally:
             self._tunnels.close(self._reader)
-            for session in list(self._own.values()):
+            for session in list(self._own_sessions.values()):
                 session.connected = False
                 if isinstance(session.sink, InterleavedSink):
                     await self._sessions.end(session)
@@ -112,12 +112,12 @@ class RtspConnection:
                 await self._writer.wait_closed()
 
     async def _serve_next(self) -> bool:
-        """Wait for a message and handle it. Return whether the connection stays open."""
+        """Wait for a message and handle it. Return whether to keep the connection open."""
         try:
             async with asyncio.timeout(IDLE_TIMEOUT_S):
                 first = await self._reader.readexactly(1)
         except TimeoutError:
-            return any(not session.ended for session in self._own.values())
+            return any(not session.ended for session in self._own_sessions.values())
         try:
             async with asyncio.timeout(IO_TIMEOUT_S):
                 message = await read_message(self._reader, first)
@@ -126,14 +126,14 @@ class RtspConnection:
             return False
         if isinstance(message, TunnelRequest):
             return await self._tunnel(message)
-        if isinstance(message, Interleaved):
+        if isinstance(message, InterleavedPacket):
             self._touch(message.channel)
         elif message is not None:
             return await self._respond(message)
         return True
 
     async def _tunnel(self, request: TunnelRequest) -> bool:
-        """Become one direction of RTSP over HTTP. Return whether the connection stays open."""
+        """Turn the connection into one direction of an RTSP-over-HTTP tunnel. Return whether to keep it open."""
         try:
             if request.method == "GET":
                 self._reader = self._tunnels.open(request, self._peer)
@@ -145,7 +145,7 @@ class RtspConnection:
         return False
 
     def _touch(self, channel: int) -> None:
-        for session in self._own.values():
+        for session in self._own_sessions.values():
             if isinstance(session.sink, InterleavedSink) and channel in session.sink.channels:
                 session.touch()
 
@@ -180,7 +180,7 @@ class RtspConnection:
             raise RefusedError(501, {"Public": ", ".join(self._handlers)})
         if "require" in request.headers:
             raise RefusedError(551, {"Unsupported": request.headers["require"]})
-        if self._device.faults.unauthorized or (request.method != "OPTIONS" and not self._device.accounts.open_to_all):
+        if self._device.faults.unauthorized or (request.method != "OPTIONS" and not self._device.accounts.is_open):
             verdict = self._digest.check(request.headers.get("authorization"), request.method)
             if verdict.account is None or self._device.faults.unauthorized:
                 challenges = self._digest.challenges(stale=verdict.stale)
@@ -188,7 +188,7 @@ class RtspConnection:
             self._account = verdict.account.name
         return await handler(request)
 
-    def _requested(self, url: StreamUrl) -> StreamFormat:
+    def _stream_format(self, url: StreamUrl) -> StreamFormat:
         return stream_format(url, self._device, self._source.rate_hz)
 
     def _session(self, request: Request) -> Session:
@@ -200,19 +200,19 @@ class RtspConnection:
 
     async def _options(self, request: Request) -> Reply:
         if "session" in request.headers:
-            with suppress(RefusedError):  # the session is only kept alive, so an unknown one is not an error
+            with suppress(RefusedError):  # the request only keeps the session alive, so an unknown session is not an error
                 self._session(request)
         return Reply(headers=(("Public", ", ".join(self._handlers)),))
 
     async def _describe(self, request: Request) -> Reply:
         url = parse_url(request.uri)
         accepted = request.headers.get("accept", "*/*").lower()
-        if not any(each in accepted for each in ("application/sdp", "application/*", "*/*")):
+        if not any(media_type in accepted for media_type in ("application/sdp", "application/*", "*/*")):
             raise RefusedError(406)
         if url.events_only:
             body = describe_events(url, name=self._device.name, host=self._local_address)
         else:
-            requested = self._requested(url)
+            requested = self._stream_format(url)
             sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
             body = describe(url, requested, sets, name=self._device.name, host=self._local_address)
         head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
@@ -229,37 +229,39 @@ class RtspConnection:
                 session.sink.close()
                 session.sink = None
         else:
-            session = self._sessions.open(None if url.events_only else self._requested(url), (self._peer, self._account))
+            session = self._sessions.open(None if url.events_only else self._stream_format(url), (self._peer, self._account))
         try:
             transport = await (self._set_up_tcp(session, offer) if offer.interleaved else self._set_up_udp(session, offer))
         except RefusedError:
             await self._sessions.end(session)
             raise
-        self._own = {token: each for token, each in self._own.items() if not each.ended} | {session.token: session}
+        self._own_sessions = {token: other for token, other in self._own_sessions.items() if not other.ended} | {
+            session.token: session
+        }
         return Reply(
-            headers=(("Transport", f'{transport};ssrc={session.clock.ssrc:08X};mode="PLAY"'), self._session_header(session))
+            headers=(("Transport", f'{transport};ssrc={session.packetizer.ssrc:08X};mode="PLAY"'), self._session_header(session))
         )
 
     async def _set_up_tcp(self, session: Session, offer: TransportOffer) -> str:
-        taken = {
+        used_channels = {
             c
-            for each in self._own.values()
-            if isinstance(each.sink, InterleavedSink) and not each.ended
-            for c in each.sink.channels
+            for other in self._own_sessions.values()
+            if isinstance(other.sink, InterleavedSink) and not other.ended
+            for c in other.sink.channels
         }
         pairs = [offer.pair] if offer.pair is not None else [(k, k + 1) for k in range(0, 256, 2)]
-        channels = next((pair for pair in pairs if not taken.intersection(pair)), None)
+        channels = next((pair for pair in pairs if not used_channels.intersection(pair)), None)
         if channels is None:
             raise RefusedError(461)
         session.sink, session.on_lost = InterleavedSink(self._writer, channels), self.abort
         return f"RTP/AVP/TCP;unicast;interleaved={channels[0]}-{channels[1]}"
 
     async def _set_up_udp(self, session: Session, offer: TransportOffer) -> str:
-        assert offer.pair is not None  # noqa: S101 - UDP is never offered without ports
-        session.sink = await open_udp(self._local_address, self._peer, offer.pair, session.touch, session.lost)
+        assert offer.pair is not None  # noqa: S101 - a UDP offer always has ports
+        session.sink = await open_udp(self._local_address, self._peer, offer.pair, session.touch, session.handle_loss)
         session.on_lost = lambda: self._sessions.end_soon(session)
-        ports, own = offer.pair, session.sink.ports
-        return f"RTP/AVP;unicast;client_port={ports[0]}-{ports[1]};server_port={own[0]}-{own[1]}"
+        client_ports, server_ports = offer.pair, session.sink.ports
+        return f"RTP/AVP;unicast;client_port={client_ports[0]}-{client_ports[1]};server_port={server_ports[0]}-{server_ports[1]}"
 
     async def _play(self, request: Request) -> Reply:
         url = parse_url(request.uri)
@@ -279,7 +281,7 @@ class RtspConnection:
         return Reply()
 
     async def _parameter(self, request: Request) -> Reply:
-        """Answer a request to get or set parameters. There are none, so only keep-alive requests, which name none, succeed."""
+        """Handle a request to get or set parameters. There are none, so only keep-alive requests, which name none, succeed."""
         head = (self._session_header(self._session(request)),) if "session" in request.headers else ()
         if request.body:
             raise RefusedError(451)

@@ -1,4 +1,4 @@
-"""Encode live pictures as H.264 with libx264, without frame reordering or look-ahead, in one thread."""
+"""Encode live pictures as H.264 with libx264 in a single thread, without frame reordering or look-ahead."""
 
 from __future__ import annotations
 
@@ -19,46 +19,46 @@ from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ
 if TYPE_CHECKING:
     from av.video.codeccontext import VideoCodecContext
 
-QUALITY_CRF = 23  # constant rate factor of libx264; a lower number means better quality
+QUALITY_CRF = 23  # constant rate factor for libx264; lower means better quality
 BITS_PER_PIXEL_S = 6.5
 """Maximum bit rate in bits per second per pixel: 6 Mbit/s at 1280x720."""
 
-MIN_BITS_PER_S = 500_000  # the maximum bit rate is at least this, because headers take up a larger part of small pictures
+MIN_BITS_PER_S = 500_000  # lower bound for the maximum bit rate, because headers make up a larger part of small pictures
 
 BURST_S = 0.33
-"""Maximum size of an encoded picture, as its duration in seconds at the maximum bit rate. This limits the size of keyframes."""
+"""Maximum size of an encoded picture, expressed in seconds at the maximum bit rate. This limits the size of keyframes."""
 
 _START_CODE = re.compile(b"\x00{2,3}\x01")
 _SEI = 6  # type of the NAL units with supplemental enhancement information, which are not sent
-# Codes in the stream that tell decoders how colours are represented.
-_BT601 = 6  # the colour matrix with which ``encode`` converts RGB to YUV
+# Codes that tell decoders how colours are represented.
+_BT601 = 6  # the colour matrix that ``encode`` uses to convert RGB to YUV
 _BT709 = 1
 _LIMITED_RANGE = 1
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterSets:
-    """The sequence parameter set (SPS) and picture parameter set (PPS) that a decoder needs first, without start codes."""
+    """The sequence and picture parameter sets (SPS and PPS), which a decoder requires first, without start codes."""
 
     sps: bytes
     pps: bytes
 
     @property
     def profile_level_id(self) -> str:
-        """The H.264 profile and level, in the notation of SDP: six hexadecimal digits."""
+        """The H.264 profile and level in SDP notation: six hexadecimal digits."""
         return self.sps[1:4].hex()
 
 
 class H264Encoder:
-    """Encodes pictures of one size.
+    """Encodes pictures of a fixed size.
 
     Args:
-        width: Width in pixels, even.
-        height: Height in pixels, even.
-        fps: Frames per second, for rate control.
+        width: Width in pixels; must be even.
+        height: Height in pixels; must be even.
+        fps: Frames per second, used for rate control.
 
     Raises:
-        ConfigError: PyAV is missing, or lacks libx264.
+        ConfigError: PyAV is not installed, or lacks libx264.
     """
 
     def __init__(self, width: int, height: int, fps: float) -> None:
@@ -69,12 +69,12 @@ class H264Encoder:
         self._last_pts = -1
 
     def encode(self, image: NDArray[np.uint8], time_s: float, *, keyframe: bool) -> list[bytes]:
-        """Return the NAL units of a picture. This blocks until the picture is encoded.
+        """Encode a picture and return its NAL units. This blocks until the picture has been encoded.
 
         Args:
-            image: Array of shape ``(H, W, 3)``, RGB. An image of another size is scaled and cropped to the encoder's size.
+            image: Array of shape ``(H, W, 3)``, RGB. It is scaled and cropped to the encoder's size if necessary.
             time_s: The time at which the image was taken, in seconds from an arbitrary origin.
-            keyframe: Whether decoding can begin at this picture. If so, the parameter sets come first.
+            keyframe: Whether decoding can start at this picture. If so, the parameter sets come first.
 
         Raises:
             CameraError: libx264 failed.
@@ -96,16 +96,16 @@ class H264Encoder:
 
 
 def nal_units(stream: bytes) -> list[bytes]:
-    """Return the NAL units of a byte stream with start codes (Annex B of H.264)."""
+    """Split a byte stream with start codes (Annex B of H.264) into NAL units."""
     return [nal for nal in _START_CODE.split(stream) if nal]
 
 
 @lru_cache(maxsize=64)
 def parameter_sets(width: int, height: int, fps: float) -> ParameterSets:
-    """Return the parameter sets that an encoder of this format produces.
+    """Return the parameter sets for a stream format.
 
     Raises:
-        ConfigError: PyAV is missing, or lacks libx264.
+        ConfigError: PyAV is not installed, or lacks libx264.
     """
     return H264Encoder(width, height, fps).sets
 
@@ -115,14 +115,14 @@ def _open_codec(width: int, height: int, fps: float) -> VideoCodecContext:
         import av
         from av.codec.context import Flags
     except ModuleNotFoundError as error:
-        raise ConfigError("RTSP needs PyAV. Install it with: pip install 'scope-ptz[serve]'") from error
+        raise ConfigError("RTSP requires PyAV. Install it with: pip install 'scope-ptz[serve]'") from error
     bits_per_s = max(MIN_BITS_PER_S, BITS_PER_PIXEL_S * width * height)
     try:
         codec: VideoCodecContext = av.CodecContext.create("libx264", "w")
         codec.width, codec.height, codec.pix_fmt = width, height, "yuv420p"
         codec.time_base, codec.framerate = Fraction(1, CLOCK_HZ), Fraction(fps).limit_denominator(1000)
         codec.thread_count = 1
-        codec.gop_size = 10_000  # so large that only the caller decides which pictures are keyframes
+        codec.gop_size = 10_000  # large enough that only the caller decides which pictures are keyframes
         codec.flags |= Flags.global_header
         codec.colorspace, codec.color_range = _BT601, _LIMITED_RANGE
         codec.color_primaries = codec.color_trc = _BT709

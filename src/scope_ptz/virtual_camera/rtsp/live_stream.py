@@ -1,4 +1,4 @@
-"""Encoded live pictures: each format is encoded once for all clients that play it."""
+"""Encoded live pictures. Each format is encoded once for all clients that are playing it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
 KEYFRAME_INTERVAL_S = 1.0  # normal time between keyframes, in seconds
 MIN_KEYFRAME_INTERVAL_S = 0.2  # minimum time between keyframes, so that new clients cannot make every picture a keyframe
 MAX_FORMATS = 8
-"""Maximum number of formats that are encoded at the same time."""
+"""Maximum number of formats to encode at the same time."""
 
 _SETS = (7, 8)  # NAL unit types of the sequence and picture parameter sets
 
@@ -36,8 +36,8 @@ class AccessUnit:
     """An encoded picture.
 
     Attributes:
-        taken_s: The time at which the picture was taken, in seconds on the clock of ``time.monotonic``.
-        keyframe: Whether decoding can begin at this picture.
+        taken_s: The ``time.monotonic`` time at which the picture was taken, in seconds.
+        keyframe: Whether decoding can start at this picture.
         contents: The payloads of its RTP packets, in order.
     """
 
@@ -47,20 +47,20 @@ class AccessUnit:
 
 
 class Viewer(Protocol):
-    """A client that plays a stream."""
+    """A client that is playing a stream."""
 
     def offer(self, unit: AccessUnit) -> None:
-        """Accept a picture without blocking."""
+        """Receive a picture. This must not block."""
 
     def end(self) -> None:
-        """Record that the stream has ended, for example because the encoder failed."""
+        """Called when the stream has ended, for example because the encoder failed."""
 
 
 class LiveStreams:
-    """The streams of a camera, one for each format that is being played.
+    """A camera's streams, one for each format that is being played.
 
     Args:
-        source: The live picture of the camera.
+        source: The camera's live picture.
     """
 
     def __init__(self, source: LiveSource) -> None:
@@ -77,8 +77,8 @@ class LiveStreams:
 
         Args:
             requested: The format.
-            viewer: Receives the pictures.
-            start_s: The time, on ``time.monotonic``, from which the viewer needs pictures. A keyframe follows as soon after it as
+            viewer: The client that receives the pictures.
+            start_s: The ``time.monotonic`` time from which the viewer requires pictures. A keyframe follows as soon as
                 ``MIN_KEYFRAME_INTERVAL_S`` allows.
 
         Raises:
@@ -93,7 +93,7 @@ class LiveStreams:
         stream.keyframe_from_s = start_s
 
     def leave(self, requested: StreamFormat, viewer: Viewer) -> None:
-        """Remove a viewer. A format without viewers is not encoded."""
+        """Remove a viewer. Encoding stops when a format has no more viewers."""
         stream = self._streams.get(requested)
         if stream is not None:
             stream.viewers.discard(viewer)
@@ -110,13 +110,13 @@ class LiveStreams:
 
 
 class _Stream:
-    """Encodes the live picture in one format, in a separate task."""
+    """Encodes the live picture in one format in a separate task."""
 
     def __init__(self, source: LiveSource, requested: StreamFormat) -> None:
         self._source, self._requested = source, requested
         self._random = random.Random(0)
         self.viewers: set[Viewer] = set()
-        self.keyframe_from_s = inf  # a viewer needs a keyframe from this time on
+        self.keyframe_from_s = inf  # the time from which a viewer is waiting for a keyframe
         self.task = asyncio.create_task(self._run())
 
     async def _run(self) -> None:
@@ -131,23 +131,23 @@ class _Stream:
     async def _encode(self) -> None:
         device, fps = self._source.device, self._requested.fps
         encoder: H264Encoder | None = None
-        before: Exposure | None = None
-        pace, key_s = Pace(self._source.rate_hz, fps), -inf
+        previous: Exposure | None = None
+        pace, keyframe_s = Pace(self._source.rate_hz, fps), -inf
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
-                # The time stamps of a frozen picture keep increasing, as on a camera whose sensor is stuck.
-                taken_s = exposure.taken_s if exposure is not before else monotonic() - self._source.latency_s
-                before = exposure
+                # Time stamps keep increasing when the picture is frozen, as on a camera whose sensor is stuck.
+                taken_s = exposure.taken_s if exposure is not previous else monotonic() - self._source.latency_s
+                previous = exposure
                 if not pace.accepts(taken_s):
                     continue
                 width, height = _size(device, self._requested)
                 if encoder is None or (encoder.width, encoder.height) != (width, height):
                     encoder = await to_thread.run_sync(H264Encoder, width, height, fps)
-                    key_s = -inf
+                    keyframe_s = -inf
                 requested = taken_s >= self.keyframe_from_s
-                keyframe = taken_s - key_s >= (MIN_KEYFRAME_INTERVAL_S if requested else KEYFRAME_INTERVAL_S - 0.5 / fps)
+                keyframe = taken_s - keyframe_s >= (MIN_KEYFRAME_INTERVAL_S if requested else KEYFRAME_INTERVAL_S - 0.5 / fps)
                 if keyframe:
-                    key_s = taken_s
+                    keyframe_s = taken_s
                     self.keyframe_from_s = inf if requested else self.keyframe_from_s
                 nals = await to_thread.run_sync(_encode, encoder, exposure, taken_s, keyframe)
                 unit = AccessUnit(taken_s, keyframe, tuple(payloads(self._corrupt(nals))))
@@ -155,9 +155,9 @@ class _Stream:
                     viewer.offer(unit)
 
     def _corrupt(self, nals: list[bytes]) -> list[bytes]:
-        """Return NAL units after applying the camera's faults.
+        """Apply the camera's faults to NAL units.
 
-        Parameter sets stay intact, so that decoders still try to decode the rest.
+        Parameter sets are left intact, so that decoders still try to decode the rest.
         """
         faults = self._source.device.faults
         if faults.garbage:
@@ -168,7 +168,7 @@ class _Stream:
 
 
 def _size(device: VirtualDevice, requested: StreamFormat) -> tuple[int, int]:
-    """Return the size to encode: the requested size, or half the width and height if the camera has the fault ``size``."""
+    """Return the size to encode: the requested size, or half its width and height if the camera has the fault ``size``."""
     if device.faults.picture != "size":
         return requested.width, requested.height
     return max(2, requested.width // 4 * 2), max(2, requested.height // 4 * 2)

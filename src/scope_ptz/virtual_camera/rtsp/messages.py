@@ -1,4 +1,4 @@
-"""RTSP 1.0 messages (RFC 2326) and the RTP packets interleaved with them, as they are read from and written to a connection."""
+"""Read and write RTSP 1.0 messages (RFC 2326) and the RTP packets interleaved with them."""
 
 from __future__ import annotations
 
@@ -41,25 +41,25 @@ REASONS = {
 
 
 class RefusedError(CameraError):
-    """Raised to refuse a request with a status code.
+    """Raised to reject a request with a status code.
 
     Args:
         status: The RTSP status code.
-        headers: Additional headers of the reply.
+        headers: Additional headers for the reply.
     """
 
     def __init__(self, status: int, headers: Mapping[str, str] | None = None) -> None:
-        super().__init__(f"The RTSP request is refused: {status} {REASONS[status]}.")
+        super().__init__(f"The RTSP request was rejected: {status} {REASONS[status]}.")
         self.status, self.headers = status, dict(headers or {})
 
 
 class MalformedError(RefusedError):
-    """The received data is not an RTSP request. The connection cannot be used any longer."""
+    """The received data is not an RTSP request, so the connection can no longer be used."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request. Header names are in lower case."""
+    """An RTSP request. Header names are in lower case."""
 
     method: str
     uri: str
@@ -74,15 +74,15 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class TunnelRequest:
-    """The head of an HTTP request that opens one direction of RTSP over HTTP. Header names are in lower case."""
+    """The head of an HTTP request that opens one direction of an RTSP-over-HTTP tunnel. Header names are in lower case."""
 
     method: str
     headers: Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Interleaved:
-    """An RTP or RTCP packet that a client sent on a channel of the connection."""
+class InterleavedPacket:
+    """An RTP or RTCP packet that a client sent on a channel of an RTSP connection."""
 
     channel: int
     packet: bytes
@@ -90,14 +90,14 @@ class Interleaved:
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """A reply. Header names may be repeated."""
+    """An RTSP reply. Header names may be repeated."""
 
     status: int = 200
     headers: tuple[tuple[str, str], ...] = ()
     body: bytes = field(default=b"", repr=False)
 
     def encode(self, cseq: str | None) -> bytes:
-        """Return the bytes of the reply.
+        """Encode the reply.
 
         Args:
             cseq: The sequence number of the request; None if the request could not be parsed.
@@ -111,7 +111,7 @@ class Reply:
         return ("\r\n".join(head) + "\r\n\r\n").encode("latin-1", "replace") + self.body
 
 
-async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | TunnelRequest | Interleaved | None:
+async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | TunnelRequest | InterleavedPacket | None:
     """Read the rest of a message.
 
     Args:
@@ -127,7 +127,7 @@ async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | 
     """
     if first == _INTERLEAVED:
         head = await reader.readexactly(3)
-        return Interleaved(head[0], await reader.readexactly(int.from_bytes(head[1:], "big")))
+        return InterleavedPacket(head[0], await reader.readexactly(int.from_bytes(head[1:], "big")))
     if first == b"\n":
         return None
     line = (first + await _line(reader, 414)).strip(b"\r\n")
@@ -147,11 +147,11 @@ async def read_message(reader: asyncio.StreamReader, first: bytes) -> Request | 
     return Request(method, uri, headers, await reader.readexactly(int(length)))
 
 
-async def _line(reader: asyncio.StreamReader, too_long: int) -> bytes:
+async def _line(reader: asyncio.StreamReader, status_if_too_long: int) -> bytes:
     try:
         return await reader.readuntil(b"\n")
     except asyncio.LimitOverrunError as error:
-        raise MalformedError(too_long) from error
+        raise MalformedError(status_if_too_long) from error
 
 
 def _request_line(line: bytes) -> tuple[str, str]:

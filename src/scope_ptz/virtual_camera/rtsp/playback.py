@@ -1,4 +1,4 @@
-"""Send a live stream to one client. A slow client misses pictures, so that it always gets recent ones."""
+"""Send a live stream to a client. Slow clients miss pictures, so that they always receive recent ones."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from time import monotonic, time
 
 from scope_ptz.virtual_camera.rtsp import rtcp
 from scope_ptz.virtual_camera.rtsp.live_stream import AccessUnit
-from scope_ptz.virtual_camera.rtsp.rtp import RtpClock
+from scope_ptz.virtual_camera.rtsp.rtp import RtpPacketizer
 from scope_ptz.virtual_camera.rtsp.sinks import BATCH_PACKETS, Sink
 
 MAX_AGE_S = 0.5
-"""Maximum age of a picture in seconds, in addition to the configured latency of the stream. Older pictures are not sent."""
+"""Maximum age of a picture in seconds, beyond the configured stream latency. Older pictures are not sent."""
 
-MAX_QUEUED = 6  # maximum number of queued pictures for a client
+MAX_QUEUED = 6  # maximum number of queued pictures per client
 
 
 @dataclass(slots=True)
 class StreamStatistics:
-    """Statistics of the pictures that a server has sent.
+    """Statistics about the pictures that a server has sent.
 
     Attributes:
-        sessions: Number of sessions that were opened.
-        sent: Number of pictures that were sent completely.
-        dropped: Number of pictures that clients missed because they were slow.
-        oldest_s: Greatest age in seconds that a picture had when one of its packets was sent, minus the configured latency.
+        sessions: Number of sessions opened.
+        sent: Number of pictures sent completely.
+        dropped: Number of pictures that slow clients missed.
+        oldest_s: Maximum age in seconds of a picture when one of its packets was sent, minus the configured latency.
     """
 
     sessions: int = 0
@@ -37,13 +37,13 @@ class StreamStatistics:
 
 
 class Playback:
-    """Sends pictures from ``run`` until it is cancelled.
+    """Sends queued pictures to a client while ``run`` is running.
 
     Args:
-        sink: The destination of the packets.
-        clock: Numbers the packets and gives them time stamps.
-        latency_s: The configured latency of the stream, in seconds.
-        clock_skew_s: Returns the number of seconds by which the camera's clock is ahead.
+        sink: The destination for packets.
+        packetizer: Builds the RTP packets. It assigns sequence numbers and time stamps to packets.
+        latency_s: The configured stream latency in seconds.
+        clock_skew_s: A function that returns the number of seconds by which the camera's clock is fast.
         statistics: The counters to update.
         on_sent: Called each time a picture has been sent completely.
     """
@@ -51,17 +51,17 @@ class Playback:
     def __init__(
         self,
         sink: Sink,
-        clock: RtpClock,
+        packetizer: RtpPacketizer,
         *,
         latency_s: float,
         clock_skew_s: Callable[[], float],
         statistics: StreamStatistics,
         on_sent: Callable[[], None],
     ) -> None:
-        self._sink, self._clock, self._statistics = sink, clock, statistics
+        self._sink, self._packetizer, self._statistics = sink, packetizer, statistics
         self._latency_s, self._clock_skew_s, self._on_sent = latency_s, clock_skew_s, on_sent
         self.start_s = monotonic() - latency_s
-        """Pictures taken before this time are not sent, so that no time stamp is before the one that the reply to PLAY states."""
+        """Pictures taken before this time are not sent, so that no time stamp precedes the one in the reply to PLAY."""
         self._queue: deque[AccessUnit] = deque()
         self._changed = asyncio.Event()
         self._needs_keyframe, self._ended = True, False
@@ -69,11 +69,11 @@ class Playback:
         self._reported_s = -rtcp.REPORT_INTERVAL_S
 
     def offer(self, unit: AccessUnit) -> None:
-        """Queue a picture for sending, without blocking."""
+        """Queue a picture for sending. This does not block."""
         if unit.taken_s < self.start_s:
             return
         if len(self._queue) >= MAX_QUEUED:
-            self._drop_waiting()
+            self._drop_queue()
         if self._needs_keyframe and not unit.keyframe:
             self._statistics.dropped += 1
             return
@@ -104,14 +104,14 @@ class Playback:
                 self._on_sent()
             else:
                 self._statistics.dropped += 1
-                self._drop_waiting()
+                self._drop_queue()
 
     def goodbye(self) -> None:
-        """Notify the client that the stream ends."""
-        self._sink.report(rtcp.goodbye(self._clock.ssrc))
+        """Notify the client that the stream has ended."""
+        self._sink.report(rtcp.goodbye(self._packetizer.ssrc))
 
     async def _send(self, unit: AccessUnit) -> bool:
-        packets = self._clock.packets(unit.contents, unit.taken_s)
+        packets = self._packetizer.packets(unit.contents, unit.taken_s)
         for start in range(0, len(packets), BATCH_PACKETS):
             age_s = monotonic() - unit.taken_s - self._latency_s
             batch = packets[start : start + BATCH_PACKETS]
@@ -122,8 +122,8 @@ class Playback:
             self._octets += sum(map(len, unit.contents[start : start + BATCH_PACKETS]))
         return True
 
-    def _drop_waiting(self) -> None:
-        """Drop the queued pictures, and all later ones before the next keyframe, because they could not be decoded."""
+    def _drop_queue(self) -> None:
+        """Drop the queued pictures and all later ones before the next keyframe, because they could not be decoded."""
         self._statistics.dropped += len(self._queue)
         self._queue.clear()
         self._needs_keyframe = True
@@ -132,5 +132,5 @@ class Playback:
         now_s = monotonic()
         if now_s - self._reported_s >= rtcp.REPORT_INTERVAL_S:
             self._reported_s = now_s
-            unix_s, timestamp = time() + self._clock_skew_s(), self._clock.timestamp(now_s)
-            self._sink.report(rtcp.sender_report(self._clock.ssrc, unix_s, timestamp, self._packets, self._octets))
+            unix_s, timestamp = time() + self._clock_skew_s(), self._packetizer.timestamp(now_s)
+            self._sink.report(rtcp.sender_report(self._packetizer.ssrc, unix_s, timestamp, self._packets, self._octets))

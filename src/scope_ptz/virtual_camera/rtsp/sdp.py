@@ -1,4 +1,4 @@
-"""The description of a stream (SDP, RFC 4566)."""
+"""Stream descriptions (SDP, RFC 4566)."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl
 
 
 def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, name: str, host: str) -> bytes:
-    """Return the description of a stream.
+    """Describe a video stream.
 
     Args:
-        url: The address that the client used.
+        url: The URL that the client requested.
         requested: Size and frame rate of the stream.
-        sets: The parameter sets of the encoder.
-        name: Name of the camera.
-        host: IP address of the camera.
+        sets: The encoder's parameter sets.
+        name: The camera's name.
+        host: The camera's IP address.
     """
-    sprop = ",".join(b64encode(each).decode() for each in (sets.sps, sets.pps))
+    sprop = ",".join(b64encode(parameter_set).decode() for parameter_set in (sets.sps, sets.pps))
     track = [
         f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
         f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
@@ -30,7 +30,7 @@ def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, na
 
 
 def describe_events(url: StreamUrl, *, name: str, host: str) -> bytes:
-    """Return the description of a stream of events. The arguments are those of ``describe``."""
+    """Describe an event stream. The arguments are those of ``describe``."""
     return _description(url, "application", [f"a=rtpmap:{PAYLOAD_TYPE} vnd.onvif.metadata/{CLOCK_HZ}"], name, host)
 
 

@@ -1,4 +1,4 @@
-"""The RTSP server of one camera, in the running event loop."""
+"""A camera's RTSP server, which runs in the current event loop."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from scope_ptz.virtual_camera.rtsp.tunnel import Tunnels
 
 SESSION_TIMEOUT_S = 60.0
 MAX_CONNECTIONS = 64
-WATCH_INTERVAL_S = 0.1  # interval between checks of faults and session timeouts
+WATCH_INTERVAL_S = 0.1  # interval in seconds between checks for faults and session timeouts
 
 
 class RtspServer:
-    """Serves the live picture of a camera.
+    """Serves a camera's live picture.
 
     Args:
         source: The live picture. The caller runs it.
@@ -51,7 +51,7 @@ class RtspServer:
 
     @property
     def statistics(self) -> StreamStatistics:
-        """Statistics of the pictures that have been sent."""
+        """Statistics about the pictures that have been sent."""
         return self._sessions.statistics
 
     @property
@@ -71,13 +71,13 @@ class RtspServer:
 
     @asynccontextmanager
     async def listen(self, listener: socket.socket) -> AsyncIterator[RtspServer]:
-        """Serve on a listening socket while the context is open, then close the socket.
+        """Return a context manager that serves on a listening socket, and closes the socket on exit.
 
         Raises:
-            ConfigError: PyAV is missing, or lacks libx264.
+            ConfigError: PyAV is not installed, or lacks libx264.
         """
         device = self.device
-        # Load the encoder now: a build without one fails early, and the first client does not have to wait.
+        # Load the encoder now, so that a missing encoder is noticed early and the first client does not have to wait.
         await to_thread.run_sync(parameter_sets, device.width, device.height, self._source.rate_hz)
         server = await asyncio.start_server(self._accept, sock=listener, limit=MAX_LINE_BYTES)
         watcher = asyncio.create_task(self._watch())
@@ -96,8 +96,8 @@ class RtspServer:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.down:
             writer.transport.abort()
             return
-        # Many RTSP clients do not support qop, and ignore replies to keep-alive requests.
-        # So each connection has its own nonce, valid as long as the connection, and an intercepted response is useless on others.
+        # Many RTSP clients do not support qop, and ignore replies to keep-alive requests. Each connection therefore has its own
+        # nonce, which does not expire. An intercepted response is useless on other connections.
         digest = DigestAuthenticator(self.device.accounts, self._realm, qop=False, nonce_lifetime_s=inf)
         connection = RtspConnection(self.device, self._source, self._sessions, self._tunnels, digest, self._rng, reader, writer)
         task = asyncio.create_task(connection.run())

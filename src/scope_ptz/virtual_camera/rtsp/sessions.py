@@ -1,4 +1,4 @@
-"""The RTSP sessions of a camera: their maximum number, their owners and their timeouts."""
+"""A camera's RTSP sessions, with their owners, their timeouts and a maximum number."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat
 
 MAX_SESSIONS = 32
 ORPHAN_TIMEOUT_S = 15.0
-"""Seconds of inactivity after which a session without a connection ends. A UDP client may reconnect until then."""
+"""Seconds of inactivity after which a session without a connection ends. UDP clients may reconnect until then."""
 
 
 class Sessions:
-    """The sessions of a camera.
+    """A camera's sessions.
 
     Args:
         source: The live picture.
         timeout_s: Seconds of client inactivity after which a session ends.
 
     Attributes:
-        statistics: Statistics of the pictures that have been sent.
+        statistics: Statistics about the pictures that have been sent.
         streams: The encoded streams.
     """
 
@@ -35,13 +35,13 @@ class Sessions:
         self.streams = LiveStreams(source)
         self._source = source
         self._sessions: dict[str, Session] = {}
-        self._ending: set[asyncio.Task[None]] = set()
+        self._ending_tasks: set[asyncio.Task[None]] = set()
 
     def __len__(self) -> int:
         return len(self._sessions)
 
     def open(self, requested: StreamFormat | None, owner: tuple[str, str]) -> Session:
-        """Return a new session. The arguments are those of ``Session``.
+        """Open a session. The arguments are those of ``Session``.
 
         Raises:
             RefusedError: There are too many sessions.
@@ -54,7 +54,7 @@ class Sessions:
         return session
 
     def find(self, token: str, owner: tuple[str, str]) -> Session:
-        """Return a session of a client.
+        """Return a client's session, and record that the client is active.
 
         Raises:
             RefusedError: The client has no such session.
@@ -71,10 +71,10 @@ class Sessions:
             await session.close()
 
     def end_soon(self, session: Session) -> None:
-        """End a session from a callback that cannot wait."""
+        """End a session in a background task, for callbacks that cannot wait."""
         task = asyncio.create_task(self.end(session))
-        self._ending.add(task)
-        task.add_done_callback(self._ending.discard)
+        self._ending_tasks.add(task)
+        task.add_done_callback(self._ending_tasks.discard)
 
     async def end_all(self) -> None:
         """End all sessions."""
@@ -85,11 +85,11 @@ class Sessions:
         now_s = monotonic()
         for session in list(self._sessions.values()):
             limit_s = self.timeout_s if session.connected else min(ORPHAN_TIMEOUT_S, self.timeout_s)
-            if now_s - session.alive_s > limit_s:
+            if now_s - session.last_active_s > limit_s:
                 await self.end(session)
 
     async def close(self) -> None:
         """End all sessions and streams."""
         await self.end_all()
-        await asyncio.gather(*self._ending, return_exceptions=True)
+        await asyncio.gather(*self._ending_tasks, return_exceptions=True)
         await self.streams.close()

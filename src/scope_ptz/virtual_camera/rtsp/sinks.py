@@ -1,4 +1,4 @@
-"""Destinations of packets: channels of the RTSP connection, or a pair of UDP sockets."""
+"""Destinations for packets: channels of the RTSP connection, or a pair of UDP sockets."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from typing import Protocol
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 
 SEND_TIMEOUT_S = 10.0
-"""Seconds after which a client that reads nothing counts as disconnected."""
+"""Seconds after which a client that has stopped reading counts as disconnected."""
 
 UNSENT_BYTES = 32 * 1024
-"""Maximum number of bytes in the kernel's send buffer. Packets there cannot be dropped when they become too old."""
+"""Maximum number of bytes in the kernel's send buffer, where packets that become too old can no longer be dropped."""
 
 BATCH_PACKETS = 12  # packets per write; the age of a picture is checked before each write
 _PORT_ATTEMPTS = 50  # maximum number of attempts to find two adjacent free ports
 
 
 class Sink(Protocol):
-    """Sends packets to one client."""
+    """Sends packets to a client."""
 
     async def send(self, packets: Sequence[bytes]) -> bool:
         """Send RTP packets. Return False if they were dropped.
@@ -34,11 +34,11 @@ class Sink(Protocol):
         """Send an RTCP packet."""
 
     def close(self) -> None:
-        """Release the resources of this client."""
+        """Release the sink's resources."""
 
 
 def limit_send_buffers(writer: asyncio.StreamWriter) -> None:
-    """Limit the send buffers of a connection, so that writes wait when the client is too slow."""
+    """Limit a connection's send buffers, so that writes wait when the client is too slow."""
     writer.transport.set_write_buffer_limits(high=0)
     raw = writer.get_extra_info("socket")
     if hasattr(socket, "TCP_NOTSENT_LOWAT"):
@@ -71,7 +71,7 @@ class InterleavedSink:
             self._writer.write(_frame_packet(self.channels[1], packet))
 
     def close(self) -> None:
-        """Do nothing: the connection stays open, because requests use it too."""
+        """Do nothing, because requests use the same connection."""
 
 
 def _frame_packet(channel: int, packet: bytes) -> bytes:
@@ -79,11 +79,11 @@ def _frame_packet(channel: int, packet: bytes) -> bytes:
 
 
 class UdpSink:
-    """Sends packets by UDP to the host at the other end of the RTSP connection.
+    """Sends packets over UDP to the host at the other end of the RTSP connection.
 
     Args:
-        rtp: Socket for RTP, connected to the client.
-        rtcp: Socket for RTCP, connected to the client.
+        rtp: A socket for RTP that is connected to the client.
+        rtcp: A socket for RTCP that is connected to the client.
     """
 
     def __init__(self, rtp: asyncio.DatagramTransport, rtcp: asyncio.DatagramTransport) -> None:
@@ -124,17 +124,17 @@ class _Receiver(asyncio.DatagramProtocol):
 async def open_udp(
     local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_gone: Callable[[], None]
 ) -> UdpSink:
-    """Open two adjacent UDP ports, for RTP and RTCP, and connect them to those of a client.
+    """Open two adjacent UDP ports for RTP and RTCP, and connect them to a client's ports.
 
     Args:
         local_host: Address of this end of the RTSP connection.
         remote_host: Address of the other end. Packets are never sent elsewhere.
-        ports: Ports of the client.
-        on_packet: Called for every packet that the client sends, such as an RTCP report.
+        ports: The client's ports.
+        on_packet: Called for each packet from the client, such as an RTCP report.
         on_gone: Called when the client's ports turn out to be closed.
 
     Raises:
-        RefusedError: No ports are free, or those of the client cannot be reached.
+        RefusedError: No ports are free, or the client's ports cannot be reached.
     """
     loop = asyncio.get_running_loop()
     try:
@@ -143,13 +143,13 @@ async def open_udp(
         raise RefusedError(503) from error
     opened: list[asyncio.DatagramTransport] = []
     try:
-        for each, port in zip(pair, ports, strict=True):
-            each.connect((remote_host, port))
-            endpoint = await loop.create_datagram_endpoint(lambda: _Receiver(on_packet, on_gone), sock=each)
+        for udp_socket, port in zip(pair, ports, strict=True):
+            udp_socket.connect((remote_host, port))
+            endpoint = await loop.create_datagram_endpoint(lambda: _Receiver(on_packet, on_gone), sock=udp_socket)
             opened.append(endpoint[0])
     except OSError as error:
-        for each in pair:
-            each.close()
+        for udp_socket in pair:
+            udp_socket.close()
         for transport in opened:
             transport.abort()
         raise RefusedError(461) from error
@@ -157,7 +157,7 @@ async def open_udp(
 
 
 def _bind_pair(host: str) -> tuple[socket.socket, socket.socket]:
-    """Return UDP sockets at an even port and at the next one."""
+    """Bind UDP sockets to an even port and the next one."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     for _ in range(_PORT_ATTEMPTS):
         first, second = (socket.socket(family, socket.SOCK_DGRAM) for _ in range(2))
@@ -169,7 +169,7 @@ def _bind_pair(host: str) -> tuple[socket.socket, socket.socket]:
             first.close()
             second.close()
             continue
-        for each in (first, second):
-            each.setblocking(False)
+        for udp_socket in (first, second):
+            udp_socket.setblocking(False)
         return (first, second) if port % 2 == 0 else (second, first)
-    raise OSError("No pair of UDP ports is free.")
+    raise OSError("There is no free pair of UDP ports.")

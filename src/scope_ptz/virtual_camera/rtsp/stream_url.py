@@ -1,4 +1,4 @@
-"""The address of a stream and the options in it, such as ``rtsp://HOST/axis-media/media.amp?resolution=640x360&fps=10``."""
+"""Stream URLs and their options, such as ``rtsp://HOST/axis-media/media.amp?resolution=640x360&fps=10``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:\d{1,5})?")
 
 @dataclass(frozen=True, slots=True)
 class StreamFormat:
-    """The format that a client requests. Clients with equal formats share an encoder.
+    """The stream format that a client requests. Clients that request the same format share an encoder.
 
     Attributes:
         width: Width in pixels.
@@ -38,20 +38,20 @@ class StreamFormat:
 
 @dataclass(frozen=True, slots=True)
 class StreamUrl:
-    """The URL of a stream as a client sent it, but without credentials, trailing slash or track name."""
+    """A stream URL from a client, without credentials, trailing slash or track name."""
 
     base: str
     query: str
 
     @property
     def events_only(self) -> bool:
-        """Whether the stream consists of events, without a picture."""
+        """Whether the stream contains only events and no video."""
         options = _options(self)
         return options.get("video") == "0" and options.get("event", "").lower() == "on"
 
     @property
     def content_base(self) -> str:
-        """The URL of the whole stream, as it appears in replies."""
+        """The URL of the whole stream, for use in replies."""
         return f"{self.base}/{self._suffix}"
 
     @property
@@ -65,7 +65,7 @@ class StreamUrl:
 
 
 def parse_url(uri: str) -> StreamUrl:
-    """Parse the URL of a stream.
+    """Parse a stream URL.
 
     Raises:
         RefusedError: The text is not an RTSP URL, or there is no such stream.
@@ -77,7 +77,7 @@ def parse_url(uri: str) -> StreamUrl:
     authority = parts.netloc.rpartition("@")[2]
     if parts.scheme.lower() != "rtsp" or not _AUTHORITY.fullmatch(authority):
         raise RefusedError(400)
-    # Some clients append the track name to the whole URL, after the query.
+    # Some clients append the track name after the query.
     path = parts.path.removesuffix("/").removesuffix(f"/{TRACK}")
     query = parts.query.removesuffix("/").removesuffix(f"/{TRACK}")
     if path not in PATHS:
@@ -91,7 +91,7 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
     Args:
         url: The URL.
         device: The camera.
-        rate_hz: Frames per second of its live picture: the default and the maximum.
+        rate_hz: Frame rate of its live picture, which is the default and the maximum.
 
     Raises:
         RefusedError: An option has a value that the camera does not support.
@@ -115,10 +115,10 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
 
 
 def _options(url: StreamUrl) -> dict[str, str]:
-    """Return the options in the query of a URL. Names are in lower case.
+    """Return the options in a URL's query. Names are in lower case.
 
     Raises:
-        RefusedError: There are too many.
+        RefusedError: There are too many options.
     """
     try:
         return {name.lower(): value for name, value in parse_qsl(url.query, max_num_fields=MAX_FIELDS)}

@@ -1,4 +1,4 @@
-"""Parse the ``Transport`` header, in which a client lists the transports that it accepts for packets."""
+"""Parse the ``Transport`` header, in which clients list the packet transports that they accept."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _TCP, _UDP = ("RTP/AVP/TCP",), ("RTP/AVP", "RTP/AVP/UDP")
 
 @dataclass(frozen=True, slots=True)
 class TransportOffer:
-    """A transport that a client offers.
+    """A transport that a client accepts.
 
     Attributes:
-        interleaved: Whether packets go over the RTSP connection, instead of UDP.
-        pair: Channel numbers (TCP) or the client's ports (UDP) for RTP and RTCP; None if the server may choose the channels.
+        interleaved: Whether packets are sent over the RTSP connection instead of UDP.
+        pair: The channel numbers (TCP) or the client's ports (UDP) for RTP and RTCP; None if the server chooses the channels.
     """
 
     interleaved: bool
@@ -39,17 +39,17 @@ def choose_transport(header: str) -> TransportOffer:
         if protocol.upper() in _TCP:
             if "interleaved" not in options:
                 return TransportOffer(True, None)
-            if (pair := _pair(options["interleaved"], 0, 255)) is not None:
+            if (pair := _parse_pair(options["interleaved"], 0, 255)) is not None:
                 return TransportOffer(True, pair)
-        elif protocol.upper() in _UDP and (pair := _pair(options.get("client_port", ""), MIN_PORT, 65535)) is not None:
+        elif protocol.upper() in _UDP and (pair := _parse_pair(options.get("client_port", ""), MIN_PORT, 65535)) is not None:
             return TransportOffer(False, pair)
     raise RefusedError(461)
 
 
-def _pair(text: str, least: int, most: int) -> tuple[int, int] | None:
-    """Parse two different numbers from ``a-b``, or from ``a`` alone, which means ``a`` and ``a + 1``; None if they are invalid."""
+def _parse_pair(text: str, minimum: int, maximum: int) -> tuple[int, int] | None:
+    """Parse two different numbers from ``a-b``, or ``a`` and ``a + 1`` from ``a`` alone. Return None if they are invalid."""
     first, dash, second = text.partition("-")
     if not (first.isdecimal() and len(first) < 6 and (not dash or (second.isdecimal() and len(second) < 6))):
         return None
     pair = int(first), int(second) if dash else int(first) + 1
-    return pair if pair[0] != pair[1] and all(least <= each <= most for each in pair) else None
+    return pair if pair[0] != pair[1] and all(minimum <= number <= maximum for number in pair) else None

@@ -1,6 +1,6 @@
-"""RTSP over HTTP: a client sends requests, as base64, in a POST, and receives replies and media as the answer to a GET.
+"""RTSP over HTTP: a client sends base64-encoded requests in a POST, and receives replies and media in the response to a GET.
 
-Both connections state the same cookie. Clients use this where a firewall lets only HTTP through.
+Both connections send the same cookie. Clients use such tunnels where a firewall permits only HTTP.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ GET_REPLY = (
 
 _COOKIE = "x-sessioncookie"
 _CHUNK_BYTES = 4096
-_GROUP = 4  # characters of base64 that represent three bytes
+_GROUP = 4  # number of base64 characters that encode three bytes
 
 
 @dataclass(slots=True)
 class Tunnels:
-    """The tunnels of a server that wait for their POST connection, with the readers of its decoded requests."""
+    """A server's tunnels that are waiting for their POST connection, each with a reader for its decoded requests."""
 
     _readers: dict[tuple[str, str], asyncio.StreamReader] = field(default_factory=dict)
 
     def open(self, request: TunnelRequest, peer: str) -> asyncio.StreamReader:
-        """Return the requests of a client that has sent a GET.
+        """Open a tunnel for a client that has sent a GET, and return a reader for its requests.
 
         Args:
-            request: The GET.
-            peer: The address of the client.
+            request: The GET request.
+            peer: The client's address.
 
         Raises:
-            RefusedError: The cookie is missing or in use.
+            RefusedError: The cookie is missing or already in use.
         """
         key = _key(request, peer)
         if key in self._readers:
@@ -45,41 +45,41 @@ class Tunnels:
         return self._readers[key]
 
     def close(self, reader: asyncio.StreamReader) -> None:
-        """Forget a tunnel whose GET connection has ended. Other readers are ignored."""
-        self._readers = {key: each for key, each in self._readers.items() if each is not reader}
+        """Remove the tunnel with a reader, because its GET connection has ended. Unknown readers are ignored."""
+        self._readers = {key: other for key, other in self._readers.items() if other is not reader}
 
     async def receive(
         self, request: TunnelRequest, peer: str, source: asyncio.StreamReader, transport: asyncio.BaseTransport
     ) -> None:
-        """Decode the body of a POST into the requests of its tunnel, which ends when the client closes the connection.
+        """Decode the body of a POST into the requests of its tunnel, until the client closes the connection.
 
         Args:
-            request: The POST.
-            peer: The address of the client.
+            request: The POST request.
+            peer: The client's address.
             source: The body.
-            transport: The connection, which is not read while the tunnel has many unanswered requests.
+            transport: The connection, from which nothing is read while the tunnel has many unanswered requests.
 
         Raises:
-            RefusedError: There is no such tunnel, or it has a POST connection already.
+            RefusedError: There is no such tunnel, or it already has a POST connection.
         """
-        requests, waiting = self._readers.pop(_key(request, peer), None), b""
+        requests, pending = self._readers.pop(_key(request, peer), None), b""
         if requests is None:
             raise RefusedError(404)
         requests.set_transport(transport)
         try:
             while chunk := await source.read(_CHUNK_BYTES):
-                waiting += chunk.translate(None, b"\r\n")
-                whole = len(waiting) - len(waiting) % _GROUP
-                requests.feed_data(_decoded(waiting[:whole]))
-                waiting = waiting[whole:]
+                pending += chunk.translate(None, b"\r\n")
+                complete_length = len(pending) - len(pending) % _GROUP
+                requests.feed_data(_decode(pending[:complete_length]))
+                pending = pending[complete_length:]
         except BinasciiError:
             pass  # the tunnel ends, as after any request that cannot be parsed
         finally:
             requests.feed_eof()
 
 
-def _decoded(text: bytes) -> bytes:
-    """Return decoded base64. Each request is encoded on its own, so padding may be anywhere."""
+def _decode(text: bytes) -> bytes:
+    """Decode base64 in which padding may occur anywhere, because each request is encoded separately."""
     return b"".join(a2b_base64(text[start : start + _GROUP]) for start in range(0, len(text), _GROUP))
 
 

@@ -1,1 +1,1 @@
-"""VAPIX, the protocol of AXIS cameras: functions that execute a request on a device and return the reply, independently of HTTP."""
+"""VAPIX, the protocol of AXIS cameras: functions that carry out a request and return the reply, independently of HTTP."""

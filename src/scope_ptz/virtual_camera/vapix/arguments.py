@@ -1,4 +1,4 @@
-"""The arguments of a VAPIX request, with conversions whose errors name the invalid argument."""
+"""The arguments of a VAPIX request, and their conversion to numbers and words."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ MAX_SHOWN_CHARS = 60  # longer text from a client is truncated in error messages
 
 
 class Arguments:
-    """The arguments of a request. All conversions raise ``InputError`` for an invalid value.
+    """The arguments of a request. Conversions raise ``InputError``, which names the argument, if a value is invalid.
 
     Args:
-        values: Argument texts by name. If a request repeats a name, its first value is used.
+        values: The text of each argument, by name.
     """
 
     def __init__(self, values: Mapping[str, str]) -> None:
@@ -27,7 +27,7 @@ class Arguments:
         return iter(self._values)
 
     def items(self) -> Iterator[tuple[str, str]]:
-        """Return pairs of name and text."""
+        """Return the arguments as pairs of name and text."""
         return iter(self._values.items())
 
     def text(self, name: str, default: str = "") -> str:
@@ -35,15 +35,15 @@ class Arguments:
         return self._values.get(name, default)
 
     def number(self, name: str, low: float, high: float) -> float:
-        """Return a finite number, clamped to a range."""
+        """Return an argument as a finite number, clamped to a range."""
         return min(max(self._numbers(name, 1)[0], low), high)
 
     def integer(self, name: str, low: int, high: int) -> int:
-        """Return an integer, clamped to a range. Decimals are truncated, as AXIS documents."""
+        """Return an argument as an integer, clamped to a range. Any fractional part is dropped, as AXIS specifies."""
         return int(self.number(name, low, high))
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
-        """Return ``count`` finite numbers from a comma-separated list."""
+        """Return an argument as ``count`` finite numbers, separated by commas."""
         return tuple(self._numbers(name, count))
 
     def choice(self, name: str, known: tuple[str, ...]) -> str:
@@ -56,16 +56,16 @@ class Arguments:
     def _numbers(self, name: str, count: int) -> list[float]:
         text = self._values[name]
         try:
-            found = [float(part) for part in text.split(",")]
+            numbers = [float(part) for part in text.split(",")]
         except ValueError:
-            found = []
-        if len(found) != count or not all(map(math.isfinite, found)):
-            what = "a number" if count == 1 else f"{count} numbers with commas between them"
-            raise InputError(f"{name}: expected {what}, got {text[:MAX_SHOWN_CHARS]!r}")
-        return found
+            numbers = []
+        if len(numbers) != count or not all(map(math.isfinite, numbers)):
+            expected = "a number" if count == 1 else f"{count} comma-separated numbers"
+            raise InputError(f"{name}: expected {expected}, got {text[:MAX_SHOWN_CHARS]!r}")
+        return numbers
 
 
 def check_camera(arguments: Arguments) -> None:
-    """Raise ``InputError`` if a request names a video channel other than the only one."""
+    """Raise ``InputError`` if a request names a video channel that does not exist."""
     if "camera" in arguments and arguments.text("camera") not in ("1", "all"):
-        raise InputError(f"camera: there is only camera 1, got {arguments.text('camera')[:MAX_SHOWN_CHARS]!r}")
+        raise InputError(f"camera: the only camera is 1, got {arguments.text('camera')[:MAX_SHOWN_CHARS]!r}")

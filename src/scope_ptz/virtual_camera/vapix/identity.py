@@ -1,4 +1,4 @@
-"""The identity of the camera in VAPIX."""
+"""The camera's identity in VAPIX."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
 
 def identity(unit: VapixUnit) -> dict[str, str]:
-    """Return brand, product, versions and serial number by their VAPIX names."""
+    """Return the brand, product, versions and serial number by VAPIX name."""
     return {
         "Architecture": "aarch64",
         "Brand": BRAND,

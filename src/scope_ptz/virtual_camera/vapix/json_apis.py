@@ -1,4 +1,4 @@
-"""The VAPIX interfaces that use JSON: ``apidiscovery.cgi`` and ``basicdeviceinfo.cgi``."""
+"""The JSON interfaces in VAPIX: ``apidiscovery.cgi`` and ``basicdeviceinfo.cgi``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ INVALID_VALUE, ONLY_POST, WRONG_VERSION, UNKNOWN_METHOD, INVALID_JSON, MISSING =
 
 
 def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: ARG001 - the signature of all JSON interfaces
-    """Answer ``apidiscovery.cgi``."""
+    """Handle a request to ``apidiscovery.cgi``."""
     apis = [{"id": key, "version": version, "name": name, "docLink": "", "status": "official"} for key, name, version in APIS]
 
     def api_list(_: dict[str, Any]) -> dict[str, Any]:
@@ -35,19 +35,19 @@ def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: 
 
 
 def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
-    """Answer ``basicdeviceinfo.cgi``."""
-    about = identity(unit)
+    """Handle a request to ``basicdeviceinfo.cgi``."""
+    properties = identity(unit)
 
     def selected_properties(request: dict[str, Any]) -> dict[str, Any]:
         names = request.get("params", {}).get("propertyList") if isinstance(request.get("params"), dict) else None
         if not isinstance(names, list):
             raise _RequestError(MISSING, "Required parameter missing or invalid")
-        if not all(isinstance(name, str) and name in about for name in names):
+        if not all(isinstance(name, str) and name in properties for name in names):
             raise _RequestError(INVALID_VALUE, "Invalid parameter value specified")
-        return {"propertyList": {name: about[name] for name in names}}
+        return {"propertyList": {name: properties[name] for name in names}}
 
     def all_properties(_: dict[str, Any]) -> dict[str, Any]:
-        return {"propertyList": about}
+        return {"propertyList": properties}
 
     methods = {
         "getAllProperties": all_properties,
@@ -58,7 +58,7 @@ def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
 
 
 class _RequestError(Exception):
-    """Raised to refuse a request, with an error code and a message."""
+    """Raised to reject a request with an error code and a message."""
 
 
 def _answer(http_method: str, body: bytes, version: str, methods: dict[str, Callable[[dict[str, Any]], dict[str, Any]]]) -> Reply:

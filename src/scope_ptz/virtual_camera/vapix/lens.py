@@ -1,4 +1,4 @@
-"""Focus and iris in ``ptz.cgi``: positions from 1 to 9999."""
+"""Focus and iris commands in ``ptz.cgi``, with positions from 1 to 9999."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ON_OFF = ("on", "off")
 
 
 def state(lens: VirtualLens) -> dict[str, object]:
-    """Return the lens lines of the reply to ``query=position``."""
+    """Return the lens values for the reply to ``query=position``."""
     return {
         "iris": _position(lens.iris),
         "focus": _position(lens.focus),
@@ -29,14 +29,14 @@ def state(lens: VirtualLens) -> dict[str, object]:
 
 
 def adjust(lens: VirtualLens, arguments: Arguments) -> None:
-    """Carry out the focus and iris commands of one request. A manual command turns the automatic mode off.
+    """Carry out the focus and iris commands in a request. A manual command turns the automatic mode off.
 
     Raises:
-        InputError: An argument is invalid. In that case, nothing changes.
+        InputError: An argument is invalid. In this case, nothing changes.
     """
     numbers = {
         name: arguments.number(name, low, high) for name, (low, high) in _RANGES.items() if name in arguments
-    }  # all values are validated before the first takes effect
+    }  # validate all values before applying any
     switches = {name: arguments.choice(name, _ON_OFF) == "on" for name in ("autofocus", "autoiris") if name in arguments}
     if "autofocus" in switches:
         lens.set_autofocus(on=switches["autofocus"])

@@ -1,4 +1,4 @@
-"""The movement commands of ``ptz.cgi``."""
+"""Movement commands in ``ptz.cgi``."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ COMMANDS = ("move", *PRESETS, *PIXELS, *CONTINUOUS, *ABSOLUTE, *RELATIVE)
 
 
 def move(unit: VapixUnit, arguments: Arguments) -> None:
-    """Carry out the movement commands of one request. If they are of several types, only one type is carried out.
+    """Carry out the movement commands in a request. If there are several types, only one of them is carried out.
 
     Raises:
-        InputError: An argument is invalid, or there is no such preset. In that case, nothing moves.
+        InputError: An argument is invalid, or there is no such preset. In this case, nothing moves.
     """
     device = unit.device
     if "move" in arguments:
@@ -73,27 +73,27 @@ def _move_word(unit: VapixUnit, word: str) -> None:
 
 
 def _target(device: VirtualDevice, arguments: Arguments) -> Pose:
-    """Return the pose that absolute and relative arguments request. Axes that are not named keep their destination."""
-    here, end = device.pose(), device.destination
-    pan, tilt, zoom = end.pan_deg, end.tilt_deg, end.zoom
+    """Return the target of the absolute and relative arguments. Axes that are not named keep their current target."""
+    current, destination = device.pose(), device.destination
+    pan, tilt, zoom = destination.pan_deg, destination.tilt_deg, destination.zoom
     if "pan" in arguments:
         pan = arguments.number("pan", -180, 180)
     elif "rpan" in arguments:
-        pan = here.pan_deg + arguments.number("rpan", -360, 360)
+        pan = current.pan_deg + arguments.number("rpan", -360, 360)
     if "tilt" in arguments:
         tilt = arguments.number("tilt", -180, 180)
     elif "rtilt" in arguments:
-        tilt = here.tilt_deg + arguments.number("rtilt", -360, 360)
+        tilt = current.tilt_deg + arguments.number("rtilt", -360, 360)
     if "zoom" in arguments:
         zoom = scales.magnification(arguments.integer("zoom", 1, scales.MAX_ZOOM_STEP), device.limits)
     elif "rzoom" in arguments:
         steps = arguments.integer("rzoom", -scales.MAX_ZOOM_STEP, scales.MAX_ZOOM_STEP)
-        zoom = scales.magnification(scales.zoom_step(here.zoom, device.limits) + steps, device.limits)
+        zoom = scales.magnification(scales.zoom_step(current.zoom, device.limits) + steps, device.limits)
     return Pose(pan, tilt, zoom)
 
 
 def _drive(device: VirtualDevice, arguments: Arguments) -> None:
-    """Drive pan and tilt, the zoom, or all three continuously. Axes that a request does not name keep their velocity."""
+    """Drive pan and tilt, zoom, or all three continuously. Axes that are not named keep their velocity."""
     velocity, head = device.commanded_velocity, device.head
     if "continuouspantiltmove" in arguments:
         pan, tilt = (scales.speed_fraction(value) for value in arguments.numbers("continuouspantiltmove", 2))
@@ -115,19 +115,19 @@ def _preset_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
 
 
 def _pixel_pose(device: VirtualDevice, arguments: Arguments) -> Pose:
-    """Return the pose that brings a pixel to the centre of the image; for ``areazoom``, also at a different magnification."""
+    """Return the pose that centres a pixel of the image; for ``areazoom``, with a new magnification."""
     width = arguments.integer("imagewidth", 1, 100_000) if "imagewidth" in arguments else device.width
     height = arguments.integer("imageheight", 1, 100_000) if "imageheight" in arguments else device.height
-    here = device.pose()
+    current = device.pose()
     if "areazoom" in arguments:
         x, y, percent = arguments.numbers("areazoom", 3)
         if percent < 1:
             raise InputError(f"areazoom: the zoom must be 1 or more, got {percent:g}")
-        zoom = device.optics.zoom_for_focal(device.optics.focal(here.zoom) * percent / 100)
+        zoom = device.optics.zoom_for_focal(device.optics.focal(current.zoom) * percent / 100)
     else:
-        (x, y), zoom = arguments.numbers("center", 2), here.zoom
+        (x, y), zoom = arguments.numbers("center", 2), current.zoom
     point = np.clip([x / width, y / height], 0.0, 1.0)
-    pan, tilt = pan_tilt_deg(_view(device, here, width, height).directions(point))
+    pan, tilt = pan_tilt_deg(_view(device, current, width, height).directions(point))
     return Pose(device.limits.aim_pan_deg(float(pan)), float(tilt), zoom)
 
 

@@ -1,4 +1,4 @@
-"""Answer ``/axis-cgi/param.cgi``, which lists the parameters of the camera and changes the few that are not read-only."""
+"""Handle ``/axis-cgi/param.cgi``, which lists the camera's parameters and changes the few that are not read-only."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ UNSUPPORTED_ABILITIES = (
     "ProportionalSpeed", "RelativeBrightness",
 )  # fmt: skip
 
-QUEUE = "PTZ.Various.V1"  # the group of the parameters that configure the control queue
+QUEUE = "PTZ.Various.V1"  # the group of parameters that configure the control queue
 
 
 def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
-    """Answer a request to ``param.cgi`` with ``action=list`` or ``action=update``."""
+    """Handle a request to ``param.cgi`` with ``action=list`` or ``action=update``."""
     action = arguments.text("action")
     if action == "list":
         return _list(unit, arguments.text("group"))
@@ -41,7 +41,7 @@ def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
 
 
 def parameters(unit: VapixUnit) -> dict[str, str]:
-    """Return the values of all parameters by name, without the prefix ``root.``."""
+    """Return all parameters by name, without the prefix ``root.``."""
     return {**_properties(unit), **_media(unit), **_ptz(unit), **_presets(unit)}
 
 
@@ -51,10 +51,10 @@ def _list(unit: VapixUnit, groups: str) -> Reply:
     for group in groups.split(",") if groups else ["*"]:
         name = group.strip().removeprefix("root.").strip(".")
         pattern = "*" if name in ("", "root") else name
-        found = {key: value for key, value in known.items() if _matches(key, pattern)}
-        if not found:
+        matches = {key: value for key, value in known.items() if _matches(key, pattern)}
+        if not matches:
             return replies.parameter_error(f"Error -1 getting param in group '{group.strip()[:MAX_SHOWN_CHARS]}'")
-        rows.update(found)
+        rows.update(matches)
     return replies.values({f"root.{key}": value for key, value in rows.items()})
 
 
@@ -88,20 +88,22 @@ def _set(unit: VapixUnit, name: str, arguments: Arguments, argument: str) -> Non
 
 
 def _properties(unit: VapixUnit) -> dict[str, str]:
-    about = identity(unit)
-    brand = {f"Brand.{key}": about[key] for key in ("Brand", "ProdFullName", "ProdNbr", "ProdShortName", "ProdType", "ProdVariant")}
+    properties = identity(unit)
+    brand = {
+        f"Brand.{key}": properties[key] for key in ("Brand", "ProdFullName", "ProdNbr", "ProdShortName", "ProdType", "ProdVariant")
+    }
     return {
         **brand,
-        "Brand.WebURL": about["WebURL"],
+        "Brand.WebURL": properties["WebURL"],
         "Properties.API.HTTP.AdminPath": "/",
         "Properties.API.HTTP.Version": "3",
         "Properties.API.Metadata.Metadata": "no",
         "Properties.API.Metadata.Version": "1.0",
         "Properties.API.PTZ.Presets.Version": "2.00",
         "Properties.API.RTSP.Version": "2.01",
-        "Properties.Firmware.BuildDate": about["BuildDate"],
+        "Properties.Firmware.BuildDate": properties["BuildDate"],
         "Properties.Firmware.BuildNumber": "1",
-        "Properties.Firmware.Version": about["Version"],
+        "Properties.Firmware.Version": properties["Version"],
         "Properties.Image.Format": "jpeg,mjpeg,h264",
         "Properties.Image.NbrOfViews": "1",
         "Properties.Image.Resolution": ",".join(unit.resolutions()),
@@ -113,12 +115,12 @@ def _properties(unit: VapixUnit) -> dict[str, str]:
         "Properties.PTZ.PTZ": "yes",
         "Properties.PTZ.PTZOnQuadView": "no",
         "Properties.PTZ.SelectableDriverMode": "no",
-        "Properties.System.Architecture": about["Architecture"],
-        "Properties.System.HardwareID": about["HardwareID"],
+        "Properties.System.Architecture": properties["Architecture"],
+        "Properties.System.HardwareID": properties["HardwareID"],
         "Properties.System.Language": "English",
         "Properties.System.LanguageType": "default",
-        "Properties.System.SerialNumber": about["SerialNumber"],
-        "Properties.System.Soc": about["Soc"],
+        "Properties.System.SerialNumber": properties["SerialNumber"],
+        "Properties.System.Soc": properties["Soc"],
     }
 
 

@@ -1,4 +1,4 @@
-"""Answer ``/axis-cgi/com/ptz.cgi``, ``ptzconfig.cgi`` and ``ptzqueue.cgi``: moves, presets and the control queue."""
+"""Handle ``/axis-cgi/com/ptz.cgi``, ``ptzconfig.cgi`` and ``ptzqueue.cgi``: moves, presets and the control queue."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 UNSUPPORTED = (
     "continuousirismove", "brightness", "rbrightness", "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
 )  # fmt: skip
-"""Commands that other AXIS cameras support. This one refuses them."""
+"""Commands that other AXIS cameras support but this one rejects."""
 
 FORBIDDEN_IN_NAMES = '"<>~:'
-"""Characters that preset names on AXIS cameras cannot contain."""
+"""Characters that AXIS cameras do not allow in preset names."""
 
 # The reply to ``info=1``.
 COMMANDS = f"""Available commands:
@@ -59,7 +59,7 @@ query={{ {" | ".join(QUERIES)} }}
 
 
 def ptz(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
-    """Answer a request to ``ptz.cgi``, which is either a query or contains commands."""
+    """Handle a request to ``ptz.cgi``, which contains either a query or commands."""
     try:
         check_camera(arguments)
         if "query" in arguments:
@@ -91,7 +91,7 @@ def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
 
 
 def ptz_config(unit: VapixUnit, arguments: Arguments) -> Reply:
-    """Answer a request to ``ptzconfig.cgi``, which saves, renames and removes presets."""
+    """Handle a request to ``ptzconfig.cgi``, which saves, renames and removes presets, and sets the home position."""
     try:
         check_camera(arguments)
         _configure(unit, arguments)
@@ -125,7 +125,7 @@ def _configure(unit: VapixUnit, arguments: Arguments) -> None:
 
 
 def ptz_queue(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
-    """Answer a request to ``ptzqueue.cgi`` with the three values of ``QueueStatus``."""
+    """Handle a request to ``ptzqueue.cgi``. The reply contains the three values of ``QueueStatus``."""
     try:
         status = _queue_status(unit, arguments, client)
     except (InputError, CameraError) as problem:

@@ -1,4 +1,4 @@
-"""The queries of ``ptz.cgi``: position, limits, presets, speed and attributes."""
+"""Queries in ``ptz.cgi``: position, limits, presets, speed and attributes."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scope_ptz.virtual_camera.vapix.arguments import Arguments
 from scope_ptz.virtual_camera.vapix.replies import Reply
 from scope_ptz.virtual_camera.vapix.unit import VapixUnit
 
-GROUPS = ("zoom", "speed")  # the groups of attributes that ``query=attributes`` can select
+GROUPS = ("zoom", "speed")  # the attribute groups that ``query=attributes`` can select
 
 Attributes = Mapping[str, str | Sequence[Mapping[str, str]]]
 
 
 def query(unit: VapixUnit, arguments: Arguments) -> Reply:
-    """Answer ``query=...``.
+    """Handle ``query=...``.
 
     Raises:
         InputError: There is no such query.
@@ -38,7 +38,7 @@ def _position(unit: VapixUnit, _: Arguments) -> Reply:
 
 
 def limit_values(device: VirtualDevice) -> dict[str, object]:
-    """Return the limits of the camera by their VAPIX names. Field angles are in tenths of a degree."""
+    """Return the camera's limits by VAPIX name. Field angles are in tenths of a degree."""
     limits, optics = device.limits, device.optics
     return {
         "MinPan": f"{limits.min_pan_deg:g}",
@@ -62,18 +62,18 @@ def _speed(unit: VapixUnit, _: Arguments) -> Reply:
 
 
 def _presets(unit: VapixUnit, arguments: Arguments) -> Reply:
-    return _preset_list(arguments, [f"presetposno{each.number}={each.name}" for each in unit.device.presets()])
+    return _preset_list(arguments, [f"presetposno{preset.number}={preset.name}" for preset in unit.device.presets()])
 
 
 def preset_data(preset: DevicePreset, limits: Limits) -> str:
-    """Return the pose of a preset in the format of AXIS cameras: ``tilt=...:pan=...:zoom=...``."""
+    """Return a preset's pose in the format of AXIS cameras: ``tilt=...:pan=...:zoom=...``."""
     pose = preset.pose
     return f"tilt={pose.tilt_deg:.6f}:pan={pose.pan_deg:.6f}:zoom={scales.zoom_step(pose.zoom, limits)}"
 
 
 def _preset_positions(unit: VapixUnit, arguments: Arguments) -> Reply:
     limits = unit.device.limits
-    rows = [f"presetposno{each.number}={each.name}:{preset_data(each, limits)}" for each in unit.device.presets()]
+    rows = [f"presetposno{preset.number}={preset.name}:{preset_data(preset, limits)}" for preset in unit.device.presets()]
     return _preset_list(arguments, rows)
 
 
@@ -85,19 +85,19 @@ def _preset_list(arguments: Arguments, rows: list[str]) -> Reply:
 
 def _attributes(unit: VapixUnit, arguments: Arguments) -> Reply:
     groups = (arguments.choice("group", GROUPS),) if "group" in arguments else GROUPS
-    found: dict[str, str | Sequence[Mapping[str, str]]] = {}
+    attributes: dict[str, str | Sequence[Mapping[str, str]]] = {}
     if "zoom" in groups:
-        found.update(_zoom_attributes(unit.device))
+        attributes.update(_zoom_attributes(unit.device))
     if "speed" in groups:
         rows = scales.speed_table(unit.device.head.pan)
-        found["speeds"] = [{"value": str(value), "speed": f"{speed:g}"} for value, speed in rows]
+        attributes["speeds"] = [{"value": str(value), "speed": f"{speed:g}"} for value, speed in rows]
     if arguments.text("format") == "json":
-        return replies.document({"Camera 1": found})
-    return replies.lines(["Attributes for camera 1", *(f"{name}={_plain(value)}" for name, value in found.items())])
+        return replies.document({"Camera 1": attributes})
+    return replies.lines(["Attributes for camera 1", *(f"{name}={_format_attribute(value)}" for name, value in attributes.items())])
 
 
 def _zoom_attributes(device: VirtualDevice) -> Attributes:
-    """Return the magnifications of selected zoom positions: both ends, and those in the field-of-view table of the optics."""
+    """Return the magnifications at both ends of the zoom range and at the positions in the optics' field-of-view table."""
     limits = device.limits
     inside = [zoom for zoom, _ in device.optics.table if limits.min_zoom <= zoom <= limits.max_zoom]
     steps = sorted({1, scales.MAX_ZOOM_STEP, *(scales.zoom_step(zoom, limits) for zoom in inside)})
@@ -107,10 +107,10 @@ def _zoom_attributes(device: VirtualDevice) -> Attributes:
     }
 
 
-def _plain(value: Any) -> str:
+def _format_attribute(value: Any) -> str:
     if isinstance(value, str):
         return value
-    return ",".join(" | ".join(f"{name}={each}" for name, each in row.items()) for row in value)
+    return ",".join(" | ".join(f"{name}={content}" for name, content in row.items()) for row in value)
 
 
 QUERIES: dict[str, Callable[[VapixUnit, Arguments], Reply]] = {

@@ -1,4 +1,4 @@
-"""Replies to VAPIX requests, and the clients that send the requests."""
+"""VAPIX replies, and the clients that send requests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.accounts import Role
 
 @dataclass(frozen=True, slots=True)
 class Client:
-    """The client that sends a request. ``name`` is its account name, or its address if the camera has no accounts."""
+    """A client that sends a request. ``name`` is its account name, or its address if the camera has no accounts."""
 
     name: str
     role: Role
@@ -20,7 +20,7 @@ class Client:
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """A reply: HTTP status, body and media type."""
+    """A VAPIX reply: HTTP status, body and media type."""
 
     status: int
     body: str = ""
@@ -28,31 +28,31 @@ class Reply:
 
 
 DONE = Reply(204)
-"""The reply to a successful command. It has no body."""
+"""The reply to a successful command, which has no body."""
 
 
 def error(message: str) -> Reply:
-    """Return the error reply to a PTZ request. Its HTTP status is 200, as on AXIS cameras."""
+    """Return an error reply to a PTZ request. Its HTTP status is 200, as on AXIS cameras."""
     return Reply(200, f"Error: {_one_line(message)}\n")
 
 
 def parameter_error(message: str) -> Reply:
-    """Return the error reply of ``param.cgi``."""
+    """Return an error reply from ``param.cgi``."""
     return Reply(200, f"# Error: {_one_line(message)}\n")
 
 
 def lines(content: Iterable[str]) -> Reply:
-    """Return a reply that consists of lines of text."""
+    """Return a reply with lines of text."""
     return Reply(200, "".join(f"{line}\n" for line in content))
 
 
 def values(content: Mapping[str, object]) -> Reply:
-    """Return a reply that consists of ``name=value`` lines."""
+    """Return a reply with ``name=value`` lines."""
     return lines(f"{name}={value}" for name, value in content.items())
 
 
 def document(content: Mapping[str, Any]) -> Reply:
-    """Return a reply that is a JSON document."""
+    """Return a reply with a JSON document."""
     return Reply(200, json.dumps(content), "application/json")
 
 

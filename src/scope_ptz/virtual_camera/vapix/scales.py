@@ -1,4 +1,4 @@
-"""The scales of VAPIX: zoom positions from 1 to 9999 and speeds from 1 to 100."""
+"""VAPIX scales: zoom positions from 1 to 9999, and speeds from 1 to 100."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ MAX_ZOOM_STEP = 9999
 """The zoom position at the end of the optical range."""
 
 SPEEDS = ((1, 0.0005), (20, 0.015), (40, 0.06), (60, 0.2), (80, 0.5), (100, 1.0))
-"""Speed values, each with its fraction of the top speed. Slow speeds are finely graded, as in the tables of AXIS cameras."""
+"""Speed values with the corresponding fractions of the top speed. Slow speeds are finely graded, as on AXIS cameras."""
 
 
 def zoom_step(zoom: float, limits: Limits) -> int:
-    """Return the zoom position of a magnification. Positions are linear in magnification."""
+    """Return the zoom position for a magnification. Positions are linear in magnification."""
     fraction = (zoom - limits.min_zoom) / (limits.max_zoom - limits.min_zoom)
     return round(1 + min(max(fraction, 0.0), 1.0) * (MAX_ZOOM_STEP - 1))
 
 
 def magnification(step: float, limits: Limits) -> float:
-    """Return the magnification of a zoom position, clamped to the optical range."""
+    """Return the magnification at a zoom position, clamped to the optical range."""
     fraction = (min(max(step, 1), MAX_ZOOM_STEP) - 1) / (MAX_ZOOM_STEP - 1)
     return limits.min_zoom + fraction * (limits.max_zoom - limits.min_zoom)
 
@@ -38,5 +38,5 @@ def speed_fraction(speed: float) -> float:
 
 
 def speed_table(motor: Motor) -> list[tuple[int, float]]:
-    """Return the speed values, each with the corresponding speed of a motor."""
+    """Return the speed values with a motor's corresponding speeds."""
     return [(value, fraction * motor.speed) for value, fraction in SPEEDS]

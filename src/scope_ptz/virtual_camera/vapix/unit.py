@@ -1,4 +1,4 @@
-"""What VAPIX adds to the state of a device: identity, move speed and control queue."""
+"""The state that VAPIX adds to a device: its identity, move speed and control queue."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (
 
 
 class VapixUnit:
-    """A device together with the state that only VAPIX needs.
+    """A device together with the state that only VAPIX uses.
 
     Args:
         device: The camera.
 
     Attributes:
-        speed: The move speed of pan and tilt, 1 to 100.
-        queue: The queue of clients that request control.
-        serial: The serial number, which is constant for a viewpoint of a scene.
+        speed: The pan and tilt speed for moves, from 1 to 100.
+        queue: The control queue.
+        serial: The serial number, which depends only on the scene and the viewpoint.
         rtsp_port: The port of its RTSP server; None if there is none.
     """
 
@@ -35,7 +35,7 @@ class VapixUnit:
         return f"AXIS_{self.serial}"
 
     def resolutions(self) -> list[str]:
-        """Return the resolutions that the camera lists, largest first."""
+        """Return the resolutions that the camera reports, largest first."""
         full = (self.device.width, self.device.height)
         smaller = [size for size in RESOLUTIONS if size[0] < full[0] and size[1] < full[1]]
         return [f"{width}x{height}" for width, height in (full, *smaller)]

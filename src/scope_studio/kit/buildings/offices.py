@@ -129,7 +129,7 @@ def door(*, glazed: bool = True, lit: bool = True, height: float = 2.2, width: f
 
 
 def glowing_room() -> bpy.types.Material:
-    """Return the material of a picture of a lit lobby behind a door: bright at the top, dark at the floor, blurred furniture."""
+    """Return a material that imitates a lit lobby behind a door: bright at the top, dark at the floor, with blurred furniture."""
     existing = bpy.data.materials.get("glowing lobby")
     if existing is not None:
         return existing

@@ -143,18 +143,18 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
 
 def _indoor_material(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
     """Return a slightly emissive indoor material. Emission renders faster and with less noise than lamps behind glass."""
-    full = f"inside {name}"
-    existing = bpy.data.materials.get(full)
+    material_name = f"inside {name}"
+    existing = bpy.data.materials.get(material_name)
     if existing is not None:
         return existing
-    s = Shader(full)
+    s = Shader(material_name)
     patch = s.ramp(s.noise(s.object_coords(), 1.2, 3.0), 0.3, 0.7, 0.75, 1.1)
     warm = tuple(c * t for c, t in zip(colour, (1.0, 0.90, 0.74), strict=True))
     return s.surface(base_color=colour, roughness=0.8, emission_color=warm, emission_strength=s.math("MULTIPLY", patch, glow))
 
 
 def shop_glass() -> bpy.types.Material:
-    """Return the material of a clean, mostly transparent pane that reflects the street more strongly at grazing angles."""
+    """Return the material of clean, mostly transparent glass that reflects the street more strongly at grazing angles."""
     existing = bpy.data.materials.get("shop glass")
     if existing is not None:
         return existing
@@ -164,7 +164,7 @@ def shop_glass() -> bpy.types.Material:
     shine.inputs["Roughness"].default_value = 0.015
     fraction = s.ramp(s.node("ShaderNodeLayerWeight").outputs["Facing"], 0.25, 0.95, 0.10, 0.36)
     mixed = s.node("ShaderNodeMixShader")
-    s.feed(mixed.inputs[0], fraction)
+    s.set_input(mixed.inputs[0], fraction)
     s.tree.links.new(clear.outputs[0], mixed.inputs[1])
     s.tree.links.new(shine.outputs[0], mixed.inputs[2])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")

@@ -57,14 +57,14 @@ def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None
         u += width + rng.uniform(0.05, 0.3)
 
 
-def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
+def shop_door(colour: str, *, is_open: bool = False, notice: str | None = None) -> Built:
     """Build a half-glazed door, 1.0 x 2.2 m, hinged at x = 0.5.
 
-    ``open`` turns it outwards. ``notice`` is the text of a card on the glass.
+    ``is_open`` turns it outwards. ``notice`` is the text of a card on the glass.
     """
     s = Solid("shop door")
     wood = paint(colour, dirt=0.12, roughness=0.3)
-    with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
+    with s.at(0.5, 0.0, 0.0, turn=-100.0 if is_open else 0.0):
         for z, height in ((0.42, 0.80), (2.14, 0.12)):
             s.box((1.0, 0.05, height), (-0.5, 0, z), wood, 0.01)
         for x in (-0.94, -0.06):
@@ -73,9 +73,9 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
         s.box((0.62, 0.02, 0.5), (-0.5, 0.025, 0.42), wood, 0.02)
         s.rod((-0.90, 0.06, 0.95), (-0.90, 0.06, 1.35), 0.014, paint("yellow", roughness=0.25))
         if notice:
-            shut = notice == "CLOSED"
-            s.box((0.46, 0.006, 0.18), (-0.5, 0.012, 1.65), sheet("red" if shut else "white"), 0.0)
-            s.text(notice, 0.08, (-0.5, 0.0165, 1.65), sheet("white" if shut else "green"))
+            is_closed = notice == "CLOSED"
+            s.box((0.46, 0.006, 0.18), (-0.5, 0.012, 1.65), sheet("red" if is_closed else "white"), 0.0)
+            s.text(notice, 0.08, (-0.5, 0.0165, 1.65), sheet("white" if is_closed else "green"))
     return s.built()
 
 
@@ -91,12 +91,14 @@ def sign_board(
     return s.built()
 
 
-def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
+def awning(
+    width: float, colour: str, second_colour: str, *, reach: float = 1.6, text: str | None = None, is_open: bool = True
+) -> Built:
     """Build a canvas awning, fixed at the origin. If open, it slopes down by 0.7 m over ``reach`` and has a lettered valance."""
     s = Solid("awning")
-    cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
+    cloth = stripes(f"canvas {colour} {second_colour}", colour, second_colour, 0.42)
     iron = paint("dark grey", dirt=0.15)
-    if not open:
+    if not is_open:
         s.lathe([(0.11, -width / 2), (0.11, width / 2)], cloth, (0, 0.16, 0), "X", 16)
         s.box((width + 0.1, 0.14, 0.10), (0, 0.08, 0.12), iron, 0.02)
         return s.built()
@@ -124,11 +126,11 @@ def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
     s = Solid("pharmacy cross")
     s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
     arm, cy = size / 3, 0.5 + size / 2
-    for material, grow, thick in (
+    for material, margin, thickness in (
         (paint("dark grey", dirt=0.1), 0.04, 0.08),
         (glow("green", 2.5) if lit else lens("green"), 0.0, 0.10),
     ):
-        a, b = arm / 2 + grow / 2, size / 2 + grow / 2
+        a, b = arm / 2 + margin / 2, size / 2 + margin / 2
         shape = [(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)]
-        s.prism([(cy + u, v) for u, v in shape], (-thick, thick), material, "YZ")
+        s.prism([(cy + u, v) for u, v in shape], (-thickness, thickness), material, "YZ")
     return s.built()

@@ -144,8 +144,8 @@ def _round_headed_window(s: Solid, half: float, height: float, pale: bpy.types.M
     """Add a narrow window with an arched head, in relief on a wall, with a stone surround and glazing bars."""
     s.box((2 * half + 0.5, 0.12, 0.12), (0, 0.04, -0.06), pale, 0.02)
     outline = [(half, 0.0), *arc((0, height), half, 0, 180, 12), (-half, 0.0)]
-    grown = [(half + 0.16, 0.0), *arc((0, height), half + 0.16, 0, 180, 12), (-half - 0.16, 0.0)]
-    s.prism(grown, (-0.05, 0.05), pale, "XZ")
+    surround = [(half + 0.16, 0.0), *arc((0, height), half + 0.16, 0, 180, 12), (-half - 0.16, 0.0)]
+    s.prism(surround, (-0.05, 0.05), pale, "XZ")
     s.prism(outline, (0.045, 0.06), glass(), "XZ")
     white = paint("cream", dirt=0.15)
     block(s, (0.05, 0.03, height + half), (0, 0.065, (height + half) / 2), white)
@@ -226,12 +226,12 @@ def _train_shed(s: Solid) -> None:
     s.box((60.0, 4.6, 0.16), (0, -28.0, 14.4), steel(dark=True), 0.02)
 
 
-def double_door(colour: str = "dark green", *, open: bool = True) -> Built:  # noqa: A002
-    """Build a pair of part-glazed doors for an opening 2.7 m wide and 2.6 m high. ``open`` folds them inwards (-y)."""
+def double_door(colour: str = "dark green", *, is_open: bool = True) -> Built:
+    """Build a pair of part-glazed doors for an opening 2.7 m wide and 2.6 m high. ``is_open`` folds them inwards (-y)."""
     s = Solid("station door")
     wood = paint(colour, dirt=0.15, roughness=0.35)
     for sign in (-1, 1):
-        with s.at(sign * 1.33, 0, 0, turn=sign * (84.0 if open else 0.0)):
+        with s.at(sign * 1.33, 0, 0, turn=sign * (84.0 if is_open else 0.0)):
             c = -sign * 0.66
             s.box((1.30, 0.06, 1.0), (c, 0, 0.50), wood, 0.01)
             s.box((1.30, 0.06, 0.14), (c, 0, 2.50), wood, 0.01)

@@ -80,7 +80,7 @@ def _piers(edge: float, under: float, concrete: bpy.types.Material) -> list[bpy.
 
 
 def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: bpy.types.Material) -> list[bpy.types.Object]:
-    """Create bank seats on paved slopes, and wing walls that retain the embankments."""
+    """Create the abutments: bank seats on paved slopes, and wing walls that retain the embankments."""
     parts = []
     for side in (-1, 1):
         parts.append(box("bank seat", (1.4, 2 * edge - 0.2, 2.2), (side * (half + 0.4), 0, under - 1.3), concrete, bevel_m=0.05))

@@ -1,4 +1,4 @@
-"""Lettering as meshes with exact cap heights, in two weights of Blender's built-in sans serif font.
+"""Create lettering as meshes with exact cap heights, in two weights of Blender's built-in sans-serif font.
 
 Blender's other Latin fonts are unsuitable: the contours of Inter overlap, so K, R and A are filled incorrectly, and Noto Sans
 CJK takes 15 s to load.
@@ -12,7 +12,7 @@ import bpy
 
 from scope_studio.kit.core.mesh import Point
 
-EMBOLDEN = ((-0.040, -0.026), (-0.040, 0.026), (0.040, -0.026), (0.040, 0.026))
+BOLD_SHIFTS = ((-0.040, -0.026), (-0.040, 0.026), (0.040, -0.026), (0.040, 0.026))
 """Shifts of the copies that together form the bold weight, as multiples of the cap height.
 
 Enlarged outlines would be simpler, but they close the holes in letters such as A and B.
@@ -24,16 +24,16 @@ def letters(
 ) -> tuple[list[Point], list[tuple[int, ...]]]:
     """Return points and faces of flat letters in the xy plane, with the baseline on y = 0 and the left end of the line near x = 0.
 
-    The copies that form the bold weight lie 0.05 mm apart in z.
+    The copies that form the bold weight are 0.05 mm apart in z.
     """
     outline, polygons = _outline(body, _spacing(bold, spacing))
     points: list[Point] = []
     faces: list[tuple[int, ...]] = []
-    grow = max(y for _, y in EMBOLDEN) if bold else 0.0
-    for k, (dx, dy) in enumerate(EMBOLDEN if bold else ((0.0, 0.0),)):
+    margin = max(y for _, y in BOLD_SHIFTS) if bold else 0.0
+    for k, (dx, dy) in enumerate(BOLD_SHIFTS if bold else ((0.0, 0.0),)):
         base = len(points)
-        scale = cap_height_m / (1 + 2 * grow)
-        points += [((x + dx) * scale, (y + dy + grow) * scale, 0.00005 * k) for x, y in outline]
+        scale = cap_height_m / (1 + 2 * margin)
+        points += [((x + dx) * scale, (y + dy + margin) * scale, 0.00005 * k) for x, y in outline]
         faces += [tuple(base + i for i in face) for face in polygons]
     return points, faces
 

@@ -1,4 +1,4 @@
-"""Functions that create mesh objects: boxes, surfaces of revolution, tubes, text."""
+"""Create mesh objects: boxes, surfaces of revolution, tubes, text."""
 
 from __future__ import annotations
 
@@ -146,15 +146,15 @@ def text(
         curve.font = font
     curve.align_x, curve.align_y = align, "CENTER"
     curve.extrude = thickness_m / 2
-    probe = bpy.data.objects.new(name, curve)
-    bpy.context.scene.collection.objects.link(probe)
+    text_object = bpy.data.objects.new(name, curve)
+    bpy.context.scene.collection.objects.link(text_object)
     curve.body = "H"
     bpy.context.view_layer.update()
-    curve.size = cap_height_m / max(probe.dimensions.y, 1e-6)
+    curve.size = cap_height_m / max(text_object.dimensions.y, 1e-6)
     curve.body = body
     curve.materials.append(material)
     bpy.context.view_layer.update()
-    obj = to_mesh(probe)
+    obj = to_mesh(text_object)
     xs = [v.co.x for v in obj.data.vertices]
     ys = [v.co.y for v in obj.data.vertices]
     width, height = max(xs) - min(xs), max(ys) - min(ys)

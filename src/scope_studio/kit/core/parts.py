@@ -31,7 +31,7 @@ class Parts:
         self._smooth: list[bool] = []
 
     def slot(self, material: bpy.types.Material) -> int:
-        """Return the slot number of a material. A new material gets a new slot."""
+        """Return the slot number of a material, after adding a slot if the material is new."""
         if material not in self.materials:
             self.materials.append(material)
         return self.materials.index(material)
@@ -231,6 +231,6 @@ class Parts:
 
 
 def _outward(points: Sequence[Point], face: tuple[int, ...], middle: Vector) -> tuple[int, ...]:
-    """Return the face with its points in the order that makes it face away from ``middle``."""
+    """Return the face with its points ordered so that its normal points away from ``middle``."""
     a, b, c = (Vector(points[k]) for k in face[:3])
     return face if (b - a).cross(c - b).dot(a - middle) > 0 else face[::-1]

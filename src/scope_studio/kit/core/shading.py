@@ -1,4 +1,4 @@
-"""Build Cycles materials from expressions. Each method of ``Shader`` in an expression adds one or more nodes."""
+"""Build Cycles materials from expressions of ``Shader`` methods, each of which adds one or more nodes."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Shader:
             setattr(node, key, value)
         return node
 
-    def feed(self, socket: bpy.types.NodeSocket, value: Value) -> None:
-        """Link a socket to an input, or set a constant. For colour inputs, an alpha of 1 is appended to tuples of three numbers."""
+    def set_input(self, socket: bpy.types.NodeSocket, value: Value) -> None:
+        """Link an input to a socket, or set it to a constant. Colours without an alpha value get an alpha of 1."""
         if value is None:
             return
         if isinstance(value, bpy.types.NodeSocket):
@@ -39,7 +39,7 @@ class Shader:
         """Set inputs of the principled BSDF and return the material. Names are in snake case, such as ``base_color``."""
         by_name = {s.name.lower().replace(" ", "_"): s for s in self.bsdf.inputs}
         for key, value in inputs.items():
-            self.feed(by_name[key], value)
+            self.set_input(by_name[key], value)
         return self.material
 
     def object_coords(self) -> bpy.types.NodeSocket:
@@ -57,13 +57,13 @@ class Shader:
     def xyz(self, vector: Value) -> tuple[Value, Value, Value]:
         """Return the three components of a vector."""
         node = self.node("ShaderNodeSeparateXYZ")
-        self.feed(node.inputs[0], vector)
+        self.set_input(node.inputs[0], vector)
         return node.outputs[0], node.outputs[1], node.outputs[2]
 
     def scaled(self, vector: Value, scale: tuple[float, float, float], offset: tuple[float, float, float] = (0, 0, 0)) -> Value:
         """Return ``vector`` multiplied by ``scale`` and shifted by ``offset``, component by component."""
         node = self.node("ShaderNodeMapping")
-        self.feed(node.inputs["Vector"], vector)
+        self.set_input(node.inputs["Vector"], vector)
         node.inputs["Scale"].default_value = scale
         node.inputs["Location"].default_value = offset
         return node.outputs[0]
@@ -71,7 +71,7 @@ class Shader:
     def noise(self, vector: Value, scale: float, detail: float = 4.0, roughness: float = 0.55, distortion: float = 0.0) -> Value:
         """Return fractal noise in [0, 1]."""
         node = self.node("ShaderNodeTexNoise")
-        self.feed(node.inputs["Vector"], vector)
+        self.set_input(node.inputs["Vector"], vector)
         for key, value in {"Scale": scale, "Detail": detail, "Roughness": roughness, "Distortion": distortion}.items():
             node.inputs[key].default_value = value
         return node.outputs[0]
@@ -79,15 +79,15 @@ class Shader:
     def voronoi(self, vector: Value, scale: float, feature: str = "F1", output: str = "Distance") -> Value:
         """Return an output of a Voronoi texture, such as the distance to the nearest cell centre."""
         node = self.node("ShaderNodeTexVoronoi", feature=feature)
-        self.feed(node.inputs["Vector"], vector)
+        self.set_input(node.inputs["Vector"], vector)
         node.inputs["Scale"].default_value = scale
         return node.outputs[output]
 
     def math(self, operation: str, a: Value, b: Value = None, *, clamp: bool = False) -> Value:
         """Return the result of an operation of Blender's Math node."""
         node = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
-        self.feed(node.inputs[0], a)
-        self.feed(node.inputs[1], b)
+        self.set_input(node.inputs[0], a)
+        self.set_input(node.inputs[1], b)
         return node.outputs[0]
 
     def ramp(
@@ -96,7 +96,7 @@ class Shader:
         """Map ``low..high`` to ``to_low..to_high``, clamped."""
         node = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):
-            self.feed(node.inputs[index], number)
+            self.set_input(node.inputs[index], number)
         return node.outputs[0]
 
     def band(self, value: Value, low: float, high: float, soft: float = 0.002) -> Value:
@@ -106,9 +106,9 @@ class Shader:
     def mix(self, factor: Value, a: Value, b: Value, blend: str = "MIX") -> Value:
         """Mix two colours: ``a`` where the factor is 0, ``b`` where it is 1."""
         node = self.node("ShaderNodeMix", data_type="RGBA", blend_type=blend)
-        self.feed(node.inputs[0], factor)
-        self.feed(node.inputs[6], a)
-        self.feed(node.inputs[7], b)
+        self.set_input(node.inputs[0], factor)
+        self.set_input(node.inputs[6], a)
+        self.set_input(node.inputs[7], b)
         return node.outputs[2]
 
     def bump(self, height: Value, strength: float = 0.3, distance: float = 0.01) -> Value:
@@ -116,7 +116,7 @@ class Shader:
         node = self.node("ShaderNodeBump")
         node.inputs["Strength"].default_value = strength
         node.inputs["Distance"].default_value = distance
-        self.feed(node.inputs["Height"], height)
+        self.set_input(node.inputs["Height"], height)
         return node.outputs[0]
 
 

@@ -26,7 +26,7 @@ def rounded_rectangle(
 
 
 def block(s: Solid, size: Point, centre: Point, material: bpy.types.Material) -> None:
-    """Add a box of six faces without chamfers, for parts that are never visible in close-up."""
+    """Add a box of six faces without chamfers, for parts that are never seen in close-up."""
     x, y, z = (v / 2 for v in size)
     points = [(centre[0] + a * x, centre[1] + b * y, centre[2] + c * z) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
     s.add(points, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)], material)

@@ -27,7 +27,7 @@ SHARP_ANGLE = math.radians(38)
 
 
 class Solid:
-    """A collection of geometry. ``frame`` transforms the points that are added. Materials get slots in order of first use."""
+    """A collection of geometry. ``frame`` transforms all added points. Materials get slots in order of first use."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -50,7 +50,7 @@ class Solid:
         pitch: float = 0.0,
         roll: float = 0.0,
     ) -> Iterator[None]:
-        """While the context is active, move and rotate the frame: ``turn`` degrees about z, ``pitch`` about x, ``roll`` about y."""
+        """Move and rotate the frame while the context is active: ``turn`` degrees about z, ``pitch`` about x, ``roll`` about y."""
         saved = self.frame
         rotation = Matrix.Rotation(math.radians(turn), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(pitch), 4, "X") @ Matrix.Rotation(math.radians(roll), 4, "Y")

@@ -132,7 +132,7 @@ def _keep_materials(*, skip: tuple[str, ...] = ()) -> None:
 class Stage:
     """The objects, viewpoints and presets that a scene module defines.
 
-    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` applies the last changes
+    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` applies final changes
     to materials, such as haze. It is called once after the scene is built, and again for each moving object that is built later;
     ``skip`` then contains the names of the materials that are already finished.
     """

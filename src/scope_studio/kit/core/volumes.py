@@ -56,7 +56,7 @@ class Volume:
         self.rings(rows)
 
     def ellipsoid(self, centre: Vec, radii: tuple[float, float, float], frame: Matrix | None = None) -> None:
-        """Add an axis-aligned ellipsoid, transformed by ``frame`` if given."""
+        """Add an axis-aligned ellipsoid, transformed by ``frame`` if it is given."""
         rows = []
         for i in range(13):
             t = math.radians(-84 + 14 * i)
@@ -78,8 +78,8 @@ class Volume:
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", voxel_m
         if smooth:
-            soft = obj.modifiers.new("smooth", "SMOOTH")
-            soft.factor, soft.iterations = 0.5, smooth
+            smoothing = obj.modifiers.new("smooth", "SMOOTH")
+            smoothing.factor, smoothing.iterations = 0.5, smooth
         scratch = bpy.data.scenes.new("merge")  # a separate scene, so that the evaluation does not include the whole stage
         scratch.collection.objects.link(obj)
         layer = scratch.view_layers[0]

@@ -66,14 +66,14 @@ def chair(colour: str = "dark green") -> Built:
     return s.built()
 
 
-def parasol(first: str, second: str | None = None, *, open: bool = True, text: str | None = None) -> Built:  # noqa: A002
-    """Build an octagonal parasol on a concrete base, 2.9 m wide and 2.75 m high. If ``open`` is false, it is folded."""
+def parasol(colour: str, second_colour: str | None = None, *, is_open: bool = True, text: str | None = None) -> Built:
+    """Build an octagonal parasol on a concrete base, 2.9 m wide and 2.75 m high. If ``is_open`` is false, it is folded."""
     s = Solid("parasol")
-    cloth = stripes(f"parasol {first} {second or first}", first, second or first, 0.7)
+    cloth = stripes(f"parasol {colour} {second_colour or colour}", colour, second_colour or colour, 0.7)
     s.box((0.55, 0.55, 0.10), (0, 0, 0.05), concrete(light=False), 0.03)
     s.lathe([(0.05, 0.10), (0.035, 0.14), (0.035, 0.40)], steel(), steps=16)
     s.rod((0, 0, 0.1), (0, 0, 2.78), 0.024, timber())
-    if not open:
+    if not is_open:
         s.lathe([(0.05, 1.05), (0.15, 1.12), (0.13, 1.6), (0.105, 2.2), (0.07, 2.62), (0.02, 2.80)], cloth, steps=18)
         s.lathe([(0.128, 1.70), (0.126, 1.76)], paint("black"), steps=18)
         s.lathe([(0.04, 2.78), (0.05, 2.84), (0.01, 2.90)], timber(), steps=14)
@@ -108,7 +108,7 @@ def parasol(first: str, second: str | None = None, *, open: bool = True, text: s
                     text,
                     0.10,
                     (0, (rim + 0.01) * flat + 0.012, top - 0.59),
-                    paint("white" if first != "white" else "navy", dirt=0.0),
+                    paint("white" if colour != "white" else "navy", dirt=0.0),
                 )
     return s.built()
 

@@ -21,24 +21,24 @@ def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black",
     s.lathe([(radius * 1.01, lift - 0.02), (radius * 1.01, lift)], face, (0, 0, 0), "Y", 48)
     for k in range(60):
         a = 2 * math.pi * k / 60
-        long, width = (0.12, 0.030) if k % 5 == 0 else (0.045, 0.012)
+        length, width = (0.12, 0.030) if k % 5 == 0 else (0.045, 0.012)
         if k % 15 == 0:
-            long, width = 0.06, 0.05
+            length, width = 0.06, 0.05
         with s.at(roll=math.degrees(a)):
-            s.box((radius * width, 0.004, radius * long), (0, lift + 0.003, radius * (0.95 - long / 2)), ink, 0.0)
+            s.box((radius * width, 0.004, radius * length), (0, lift + 0.003, radius * (0.95 - length / 2)), ink, 0.0)
     for text, a in (("12", 0), ("3", 90), ("6", 180), ("9", 270)):
         u, v = -math.sin(math.radians(a)) * radius * 0.72, math.cos(math.radians(a)) * radius * 0.72
         s.text(text, radius * 0.20, (u, lift + 0.003, v), ink, mark=False)
     minutes = 6.0 * minute
     hours = 30.0 * (hour % 12) + minute / 2
-    for angle, long, width, y in ((hours, 0.54, 0.075, lift + 0.012), (minutes, 0.84, 0.048, lift + 0.020)):
+    for angle, length, width, y in ((hours, 0.54, 0.075, lift + 0.012), (minutes, 0.84, 0.048, lift + 0.020)):
         with s.at(roll=-angle):
             shape = [
                 (-width * 0.5, -0.16),
                 (width * 0.5, -0.16),
-                (width * 0.62, long * 0.6),
-                (0.0, long),
-                (-width * 0.62, long * 0.6),
+                (width * 0.62, length * 0.6),
+                (0.0, length),
+                (-width * 0.62, length * 0.6),
             ]
             s.prism([(u * radius, v * radius) for u, v in shape], (y, y + 0.005), ink, "XZ")
     s.lathe([(radius * 0.06, lift), (radius * 0.06, lift + 0.03)], lens("black"), (0, 0, 0), "Y", 16)

@@ -82,8 +82,8 @@ def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> B
     return s.built()
 
 
-def bronze(built: Built) -> Built:
-    """Change the material of all parts of ``built`` to weathered bronze, and return ``built``."""
+def apply_bronze(built: Built) -> Built:
+    """Replace all materials of ``built`` with weathered bronze, and return ``built``."""
     metal = _bronze()
     for obj in built.objects:
         for slot in obj.material_slots:

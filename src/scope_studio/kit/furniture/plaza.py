@@ -60,7 +60,7 @@ def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4
     return s.built()
 
 
-def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, seed: int = 0) -> Built:
+def planter(colour: str = "red", second_colour: str = "yellow", *, side: float = 0.95, seed: int = 0) -> Built:
     """Build a square timber planter full of flowers in two colours."""
     s = Solid("planter")
     rng = random.Random(f"planter {seed}")
@@ -74,7 +74,7 @@ def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, s
     for i in range(3):
         for j in range(3):
             with s.at((i - 1) * 0.26, (j - 1) * 0.26):
-                flowers(s, rng, bloom if (i + j) % 2 else second, count=13, reach=0.17, low=0.44, high=0.70)
+                flowers(s, rng, colour if (i + j) % 2 else second_colour, count=13, reach=0.17, low=0.44, high=0.70)
     return s.built()
 
 

@@ -26,16 +26,16 @@ def crate(colour: str = "timber") -> Built:
 def _crate(s: Solid, colour: str) -> None:
     """Add an empty crate."""
     w, d, h = CRATE_M
-    stuff = timber() if colour == "timber" else paint(colour, dirt=0.25, roughness=0.55)
-    s.box((w, d, 0.012), (0, 0, 0.008), stuff, 0.0)
+    material = timber() if colour == "timber" else paint(colour, dirt=0.25, roughness=0.55)
+    s.box((w, d, 0.012), (0, 0, 0.008), material, 0.0)
     for z in (0.045, 0.125):
         for y in (-d / 2, d / 2):
-            s.box((w, 0.010, 0.052), (0, y, z), stuff, 0.002)
+            s.box((w, 0.010, 0.052), (0, y, z), material, 0.002)
         for x in (-w / 2, w / 2):
-            s.box((0.010, d, 0.052), (x, 0, z), stuff, 0.002)
+            s.box((0.010, d, 0.052), (x, 0, z), material, 0.002)
     for x in (-w / 2 + 0.015, w / 2 - 0.015):
         for y in (-d / 2 + 0.015, d / 2 - 0.015):
-            s.box((0.03, 0.03, h), (x, y, h / 2), stuff, 0.002)
+            s.box((0.03, 0.03, h), (x, y, h / 2), material, 0.002)
 
 
 Maker = Callable[[Solid, random.Random, float, float, float], None]
@@ -43,7 +43,7 @@ Maker = Callable[[Solid, random.Random, float, float, float], None]
 
 
 def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:
-    """Return a function that adds a round fruit or vegetable in a random one of the colours."""
+    """Return a function that adds a round fruit or vegetable in one of the colours, chosen at random."""
     profile = [(0.15, -0.95), (0.7, -0.7), (1.0, 0.0), (0.75, 0.72), (0.3, 0.93), (0.08, 0.82)]
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -56,7 +56,7 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
 
 
 def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
-    """Return a function that adds a long vegetable or loaf in a random one of the colours."""
+    """Return a function that adds a long vegetable or loaf in one of the colours, chosen at random."""
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         k = rng.randrange(len(tints))

@@ -145,12 +145,12 @@ def emergency_phone(number: str = "174") -> Built:
     return s.built()
 
 
-def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa: A002
+def cabinet(*, is_open: bool = False, colour: str = "light grey") -> Built:
     """Build a roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, with doors towards +y. If open, it shows shelves of equipment."""
     s = Solid("roadside cabinet")
     body = paint(colour, dirt=0.36)
     s.box((1.30, 0.48, 0.10), (0, 0, 0.05), concrete(light=False), 0.01)
-    if open:
+    if is_open:
         for x in (-0.59, 0.59):
             s.box((0.02, 0.40, 1.22), (x, 0, 0.71), body, 0.004)
         s.box((1.2, 0.02, 1.22), (0, -0.19, 0.71), body, 0.004)
@@ -169,14 +169,14 @@ def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa
         s.box((1.2, 0.40, 1.22), (0, 0, 0.71), body, 0.012)
     s.box((1.26, 0.46, 0.05), (0, 0, 1.34), body, 0.015)
     for side in (-1, 1):
-        with s.at(side * 0.59, 0.205, 0.71, turn=side * 108.0 if open else 0.0):
+        with s.at(side * 0.59, 0.205, 0.71, turn=side * 108.0 if is_open else 0.0):
             s.box((0.58, 0.02, 1.16), (-side * 0.30, 0.004, 0), body, 0.004)
             for i in range(6):
                 s.box((0.34, 0.008, 0.012), (-side * 0.30, 0.016, 0.46 - 0.03 * i), lens("black"), 0.002)
             s.box((0.03, 0.03, 0.12), (-side * 0.54, 0.022, 0.0), paint("black"), 0.006)
     s.prism(
         [(-0.08, 0.90), (0.08, 0.90), (0.0, 1.04)],
-        (0.2205, 0.2225) if not open else (-0.2025, -0.2005),
+        (0.2205, 0.2225) if not is_open else (-0.2025, -0.2005),
         sheet("yellow"),
         "XZ",
     )
@@ -184,7 +184,7 @@ def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa
 
 
 def drain() -> Built:
-    """Build a cast-iron gully grate, 0.5 x 0.5 m, in a frame that stands 15 mm above the road."""
+    """Build a cast-iron gully grate, 0.5 x 0.5 m, in a frame that is 15 mm above the road."""
     s = Solid("drain")
     s.box((0.56, 0.56, 0.01), (0, 0, 0.004), lens("black"), 0.0)
     iron = steel(dark=True)

@@ -17,27 +17,27 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
 
 
-def _stripes(first: str, second: str) -> bpy.types.Material:
+def _stripes(colour: str, second_colour: str) -> bpy.types.Material:
     """Return the material of striped canvas."""
-    name = f"awning {first} {second}"
+    name = f"awning {colour} {second_colour}"
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing
     s = Shader(name)
     x, _, _ = s.xyz(s.object_coords())
     stripe = s.ramp(s.math("PINGPONG", x, 0.22), 0.108, 0.112)
-    tint = s.mix(stripe, PALETTE[first], PALETTE[second])
+    tint = s.mix(stripe, PALETTE[colour], PALETTE[second_colour])
     grime = s.ramp(s.noise(s.object_coords(), 2.2, 5.0), 0.45, 0.8, 0.0, 0.45)
     return s.surface(base_color=s.mix(grime, tint, (0.10, 0.095, 0.085)), roughness=0.55)
 
 
-def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 1.35, open: bool = True) -> Built:  # noqa: A002
+def awning(width_m: float, colour: str, second_colour: str = "white", *, out_m: float = 1.35, is_open: bool = True) -> Built:
     """Build a striped shop awning with its roller at the origin. If it is closed, only the roll and the valance are visible."""
-    s = Solid(f"{first} awning")
-    cloth, metal = _stripes(first, second), paint("dark grey", dirt=0.2)
+    s = Solid(f"{colour} awning")
+    cloth, metal = _stripes(colour, second_colour), paint("dark grey", dirt=0.2)
     w = width_m / 2
     s.box((width_m + 0.06, 0.20, 0.20), (0, 0.10, 0.02), paint("cream", dirt=0.3), 0.04)
-    if not open:
+    if not is_open:
         s.lathe([(0.075, -w), (0.075, w)], cloth, (0, 0.16, -0.11), "X", 20)
         _valance(s, w, 0.22, -0.13, cloth)
         return s.built()

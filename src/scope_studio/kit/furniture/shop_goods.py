@@ -18,11 +18,11 @@ Rgb = tuple[float, float, float]
 
 def _goods_material(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
     """Return a material for goods in a lit shop window. It is slightly emissive, so that they look brighter than the street."""
-    full = f"ware {name}"
-    existing = bpy.data.materials.get(full)
+    material_name = f"ware {name}"
+    existing = bpy.data.materials.get(material_name)
     if existing is not None:
         return existing
-    s = Shader(full)
+    s = Shader(material_name)
     tint = s.mix(s.ramp(s.noise(s.object_coords(), 18.0, 4.0), 0.35, 0.7, 0.0, 0.4), colour, tuple(c * 0.55 for c in colour))
     return s.surface(base_color=tint, roughness=roughness, emission_color=tint, emission_strength=glow)
 

@@ -17,15 +17,17 @@ COUNTER_M = 0.78
 """Height in metres of a stall's counter at its front edge."""
 
 
-def stall(first: str, second: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False) -> Built:
+def stall(
+    colour: str, second_colour: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False
+) -> Built:
     """Build a stall, 3.0 x 2.2 m, with steel poles, a ridged canopy, a sloping counter with a skirt, and a name board.
 
-    The canopy is plain, or striped if ``second`` is given. The name board hangs under its front edge. With ``rolled``, the
+    The canopy is plain, or striped if ``second_colour`` is given. The name board hangs under its front edge. With ``rolled``, the
     canvas is rolled up at the back of the frame.
     """
     s = Solid("market stall")
     pole, w, d = steel(), 1.5, 1.1
-    cloth = stripes(f"canvas {first} {second or first}", first, second or first, 0.5)
+    cloth = stripes(f"canvas {colour} {second_colour or colour}", colour, second_colour or colour, 0.5)
     for x in (-w, w):
         for y in (-d, d):
             s.rod((x, y, 0.0), (x, y, 2.30), 0.022, pole)
@@ -61,7 +63,7 @@ def stall(first: str, second: str | None = None, *, sign: str | None = None, tab
     if sign:
         cap = min(0.19, 2.5 / extent(sign, 1.0))
         s.box((2.75, 0.03, 0.34), (0, d + 0.27, 2.13), paint("white", dirt=0.12), 0.01)
-        s.text(sign, cap, (0, d + 0.2885, 2.13), paint("dark green" if first != "green" else "navy", dirt=0.05))
+        s.text(sign, cap, (0, d + 0.2885, 2.13), paint("dark green" if colour != "green" else "navy", dirt=0.05))
     return s.built()
 
 

@@ -8,7 +8,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
 
-def bin(*, colour: str = "dark green") -> Built:  # noqa: A001
+def litter_bin(*, colour: str = "dark green") -> Built:
     """Build a litter bin, 1.1 m high: a slatted drum with a hooded top."""
     s = Solid("litter bin")
     body = paint(colour, dirt=0.3)

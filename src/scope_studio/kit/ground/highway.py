@@ -82,20 +82,20 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
     grain_value = s.xyz(grain)[0]
     blotch = s.noise(uv, 0.35, detail=6.0, roughness=0.6)
     fine = s.noise(uv, 6.0, detail=4.0, roughness=0.65)
-    stretched = s.noise(s.scaled(uv, (1.6, 0.05, 1)), 1.0, detail=4.0)
+    streaks = s.noise(s.scaled(uv, (1.6, 0.05, 1)), 1.0, detail=4.0)
     tone = s.math("ADD", 0.068, s.math("MULTIPLY", s.math("SUBTRACT", blotch, 0.5), 0.055))
     tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", fine, 0.5), 0.030))
-    tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", stretched, 0.5), 0.030))
+    tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", streaks, 0.5), 0.030))
     tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", grain_value, 0.5), 0.026))
     side = s.math("SUBTRACT", s.math("ABSOLUTE", u), road.first_lane_m)
     lane = s.math("SUBTRACT", s.math("FLOORED_MODULO", side, road.lane_m), road.lane_m / 2)
     across = s.math("ABSOLUTE", lane)
     track = s.ramp(s.math("ABSOLUTE", s.math("SUBTRACT", across, 0.85)), 0.10, 0.48, 1.0, 0.0)
-    running = s.ramp(side, 3 * road.lane_m - 0.3, 3 * road.lane_m + 0.1, 1.0, 0.0)
-    track = s.math("MULTIPLY", track, running)
+    in_lanes = s.ramp(side, 3 * road.lane_m - 0.3, 3 * road.lane_m + 0.1, 1.0, 0.0)
+    track = s.math("MULTIPLY", track, in_lanes)
     tone = s.math("MULTIPLY", tone, s.ramp(track, 0, 1, 1.0, 0.74, smooth=False))
-    drip = s.math("MULTIPLY", s.ramp(across, 0.05, 0.40, 1.0, 0.0), s.ramp(stretched, 0.42, 0.62))
-    tone = s.math("MULTIPLY", tone, s.ramp(s.math("MULTIPLY", drip, running), 0, 1, 1.0, 0.66, smooth=False))
+    oil = s.math("MULTIPLY", s.ramp(across, 0.05, 0.40, 1.0, 0.0), s.ramp(streaks, 0.42, 0.62))
+    tone = s.math("MULTIPLY", tone, s.ramp(s.math("MULTIPLY", oil, in_lanes), 0, 1, 1.0, 0.66, smooth=False))
     tone = s.math("MULTIPLY", tone, s.ramp(side, 3 * road.lane_m, 3 * road.lane_m + 0.2, 1.0, 1.16))
     dust = s.math("MULTIPLY", s.ramp(side, 12.3, 13.5), s.ramp(blotch, 0.35, 0.6, 0.2, 1.0))
     tone = s.math("MULTIPLY", tone, s.ramp(_cracks(s, uv), 0, 1, 1.0, 0.42, smooth=False))
@@ -103,7 +103,7 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
     tone = s.math("MULTIPLY", tone, seam)
     colour: Value = s.node("ShaderNodeCombineColor")
     for index, warmth in enumerate((1.03, 1.0, 0.965)):
-        s.feed(colour.inputs[index], s.math("MULTIPLY", tone, warmth))
+        s.set_input(colour.inputs[index], s.math("MULTIPLY", tone, warmth))
     colour = s.mix(s.math("MULTIPLY", dust, 0.55), colour.outputs[0], (0.115, 0.100, 0.078))
     white = s.mix(s.ramp(fine, 0.35, 0.7), (0.50, 0.50, 0.47), (0.66, 0.66, 0.63))
     mask = markings.paint(s, u, v, road.lines)
@@ -117,8 +117,8 @@ def _cracks(s: Shader, uv: Value) -> Value:
     """Return a mask of thin irregular cracks, dense in a few places and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
     node = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(node.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
-    s.feed(node.inputs[1], warp)
+    s.set_input(node.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
+    s.set_input(node.inputs[1], warp)
     distance = s.voronoi(node.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
     thin = s.ramp(distance, 0.0008, 0.0045, 1.0, 0.0)
     return s.math("MULTIPLY", thin, s.ramp(s.noise(uv, 0.06, detail=3.0), 0.50, 0.58))
@@ -137,15 +137,15 @@ def _patches(
     rough: Value,
 ) -> tuple[Value, Value]:
     """Apply the patches to the colour and roughness of the asphalt, and return both."""
-    old = s.mix(fine, (0.030, 0.030, 0.031), (0.052, 0.051, 0.050))
+    repair = s.mix(fine, (0.030, 0.030, 0.031), (0.052, 0.051, 0.050))
     fresh = s.mix(s.math("MULTIPLY", s.math("ADD", fine, grain), 0.5), (0.010, 0.010, 0.011), (0.026, 0.026, 0.027))
     groove = s.ramp(s.math("PINGPONG", u, 0.03), 0.004, 0.022)
-    planed = s.mix(s.math("MULTIPLY", blotch, groove), (0.060, 0.056, 0.052), (0.150, 0.138, 0.122))
+    milled = s.mix(s.math("MULTIPLY", blotch, groove), (0.060, 0.056, 0.052), (0.150, 0.138, 0.122))
     seal = (0.012, 0.012, 0.013)
-    wander = s.ramp(s.noise(uv, 3.0, detail=3.0), 0.3, 0.7, -0.02, 0.02)
-    u, v = s.math("ADD", u, wander), s.math("ADD", v, wander)
+    jitter = s.ramp(s.noise(uv, 3.0, detail=3.0), 0.3, 0.7, -0.02, 0.02)
+    u, v = s.math("ADD", u, jitter), s.math("ADD", v, jitter)
     for patch in patches:
-        body = {"repair": old, "fresh": fresh, "milled": planed}[patch.kind]
+        body = {"repair": repair, "fresh": fresh, "milled": milled}[patch.kind]
         if patch.kind != "milled":
             colour = s.mix(markings.inside(s, u, v, patch, grow_m=0.06), colour, seal)
         mask = markings.inside(s, u, v, patch)

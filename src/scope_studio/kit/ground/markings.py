@@ -73,6 +73,6 @@ def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, gr
 def _vector(s: Shader, u: Value, v: Value) -> Value:
     """Return u and v as a vector."""
     node = s.node("ShaderNodeCombineXYZ")
-    s.feed(node.inputs[0], u)
-    s.feed(node.inputs[1], v)
+    s.set_input(node.inputs[0], u)
+    s.set_input(node.inputs[1], v)
     return node.outputs[0]

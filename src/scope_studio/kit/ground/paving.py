@@ -18,47 +18,47 @@ Area = tuple[float, float, float, float]
 
 
 def _courses(
-    s: Shader, where: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
+    s: Shader, coords: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
 ) -> tuple[Value, Value]:
     """Return the colour of rectangular stones in bond, each with a different tone, and a mask that is 1 in the joints."""
     node = s.node("ShaderNodeTexBrick")
-    s.feed(node.inputs["Vector"], where)
+    s.set_input(node.inputs["Vector"], coords)
     settings = {"Scale": 1.0, "Mortar Size": joint_m, "Mortar Smooth": 0.35, "Brick Width": size[0], "Row Height": size[1]}
     for key, value in settings.items():
         node.inputs[key].default_value = value
     for key, colour in {"Color1": low, "Color2": high, "Mortar": joint}.items():
-        s.feed(node.inputs[key], colour)
+        s.set_input(node.inputs[key], colour)
     return node.outputs["Color"], node.outputs["Fac"]
 
 
 def _jitter(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
-    """Return positions shifted by slight noise, which makes courses irregular, as if laid by hand."""
+    """Return positions shifted by slight noise, so that the courses look laid by hand."""
     noise = s.node("ShaderNodeTexNoise")
-    s.feed(noise.inputs["Vector"], p)
+    s.set_input(noise.inputs["Vector"], p)
     noise.inputs["Scale"].default_value = scale
-    centred = s.node("ShaderNodeVectorMath", operation="MULTIPLY_ADD")
-    s.feed(centred.inputs[0], noise.outputs["Color"])
-    centred.inputs[1].default_value = (2 * amount_m, 2 * amount_m, 0.0)
-    s.feed(centred.inputs[2], p)
-    return centred.outputs[0]
+    shifted = s.node("ShaderNodeVectorMath", operation="MULTIPLY_ADD")
+    s.set_input(shifted.inputs[0], noise.outputs["Color"])
+    shifted.inputs[1].default_value = (2 * amount_m, 2 * amount_m, 0.0)
+    s.set_input(shifted.inputs[2], p)
+    return shifted.outputs[0]
 
 
 def _worn_stone(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
     """Return the material of worn stone, with stains, chewing gum, and relief of the joints and pits."""
     _x, _y, _ = s.xyz(p)
-    broad = s.noise(p, 0.16, 7.0, 0.62)
-    colour = s.mix(s.ramp(broad, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
+    stains = s.noise(p, 0.16, 7.0, 0.62)
+    colour = s.mix(s.ramp(stains, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
     spills = s.ramp(s.noise(p, 0.9, 6.0, 0.6, 0.8), 0.60, 0.66, 0.0, 0.42)
     colour = s.mix(spills, colour, (0.055, 0.050, 0.044))
     gum = s.voronoi(s.scaled(p, (1, 1, 0)), 2.6)
-    rare = s.ramp(s.noise(p, 0.5), 0.50, 0.60)
-    colour = s.mix(s.math("MULTIPLY", s.ramp(gum, 0.045, 0.06, 0.6, 0.0), rare), colour, (0.05, 0.048, 0.045))
+    gum_density = s.ramp(s.noise(p, 0.5), 0.50, 0.60)
+    colour = s.mix(s.math("MULTIPLY", s.ramp(gum, 0.045, 0.06, 0.6, 0.0), gum_density), colour, (0.05, 0.048, 0.045))
     fine = s.noise(p, 26.0, 4.0, 0.7)
     colour = s.mix(s.ramp(fine, 0.3, 0.75, 0.0, grain), colour, (0.12, 0.11, 0.10))
     moss = s.math("MULTIPLY", joints, s.ramp(s.noise(p, 0.35, 4.0), 0.52, 0.66))
     colour = s.mix(moss, colour, (0.045, 0.058, 0.022))
     height = s.math("SUBTRACT", s.math("MULTIPLY", fine, 0.25), joints)
-    rough = s.ramp(broad, 0.35, 0.7, 0.62, 0.86)
+    rough = s.ramp(stains, 0.35, 0.7, 0.62, 0.86)
     return s.surface(base_color=colour, roughness=rough, normal=s.bump(height, 0.55, 0.012))
 
 
@@ -100,7 +100,7 @@ def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.t
     s = Shader(name)
     p = s.position()
     turned = s.node("ShaderNodeMapping")
-    s.feed(turned.inputs["Vector"], p)
+    s.set_input(turned.inputs["Vector"], p)
     turned.inputs["Rotation"].default_value = (0.0, 0.0, math.radians(turn_deg))
     wavy = _jitter(s, turned.outputs[0], 0.012, 5.0)
     colour, joints = _courses(s, wavy, (0.19, 0.12), 0.009, (0.20, 0.19, 0.175), (0.105, 0.102, 0.098), (0.05, 0.045, 0.038))
@@ -112,7 +112,7 @@ def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
     """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
     node = s.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        s.feed(node.inputs[socket], value)
+        s.set_input(node.inputs[socket], value)
     return node.outputs[0]
 
 

@@ -46,13 +46,13 @@ def hills(road: Carriageway) -> Callable[[float, float], float]:
 
     def height(x: float, y: float) -> float:
         r = math.hypot(x, y)
-        off = abs(x - road.centre_x(max(-road.length_m, min(road.length_m, y))))
-        away = _smooth(off, 70.0, 280.0) * _smooth(r, 120.0, 420.0)
+        offset_m = abs(x - road.centre_x(max(-road.length_m, min(road.length_m, y))))
+        roll_weight = _smooth(offset_m, 70.0, 280.0) * _smooth(r, 120.0, 420.0)
         roll = 4.0 * math.sin(x / 97.0 + 0.4) * math.cos(y / 121.0 - 0.9) + 2.2 * math.sin((x + 1.7 * y) / 63.0)
         bearing = math.atan2(x, y)
         ridge = 34 + 16 * math.sin(3 * bearing + 0.7) + 9 * math.sin(7 * bearing + 2.1) + 5 * math.sin(13 * bearing)
-        far = _smooth(r, 500.0, 1900.0) + 0.75 * _smooth(r, 1900.0, 3000.0)
-        return -0.03 + away * roll + max(_smooth(off, 80.0, 420.0), _smooth(r, 900.0, 1200.0)) * ridge * far
+        ridge_weight = _smooth(r, 500.0, 1900.0) + 0.75 * _smooth(r, 1900.0, 3000.0)
+        return -0.03 + roll_weight * roll + max(_smooth(offset_m, 80.0, 420.0), _smooth(r, 900.0, 1200.0)) * ridge * ridge_weight
 
     return height
 
@@ -79,22 +79,22 @@ def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, f
     clover = s.ramp(s.noise(p, 0.16, detail=5.0, roughness=0.65), 0.52, 0.60, 0.0, 0.5)
     grass = s.mix(clover, grass, (0.062, 0.105, 0.026))
     fields = _fields(s, p, large, middle)
-    across = s.math("ABSOLUTE", x)
-    colour = s.mix(s.ramp(s.math("ADD", across, s.math("MULTIPLY", y, 0.04)), 58, 62), grass, fields)
+    abs_x = s.math("ABSOLUTE", x)
+    colour = s.mix(s.ramp(s.math("ADD", abs_x, s.math("MULTIPLY", y, 0.04)), 58, 62), grass, fields)
     soil = s.mix(s.ramp(fine, 0.3, 0.7), (0.105, 0.083, 0.058), (0.185, 0.158, 0.122))
     soil = s.mix(s.ramp(s.voronoi(p, 6.0), 0.10, 0.30, 0.35, 0.0), soil, (0.24, 0.22, 0.19))
     soil = s.mix(s.ramp(s.noise(p, 0.3, detail=5.0), 0.45, 0.62, 0.0, 0.75), soil, (0.088, 0.070, 0.050))
-    ragged = s.math("MULTIPLY", s.math("SUBTRACT", middle, 0.5), 3.2)
+    edge_noise = s.math("MULTIPLY", s.math("SUBTRACT", middle, 0.5), 3.2)
     for x0, x1, y0, y1 in bare:
         mask = s.math(
             "MULTIPLY",
-            s.band(s.math("ADD", x, ragged), x0, x1, 0.5),
-            s.band(s.math("ADD", y, ragged), y0, y1, 0.5),
+            s.band(s.math("ADD", x, edge_noise), x0, x1, 0.5),
+            s.band(s.math("ADD", y, edge_noise), y0, y1, 0.5),
         )
-        worn = s.ramp(middle, 0.28, 0.40, 0.55, 1.0)
-        colour = s.mix(s.math("MULTIPLY", mask, worn), colour, soil)
-    edge = s.ramp(s.math("ADD", across, s.math("MULTIPLY", ragged, 0.12)), road.edge_m + 0.10, road.edge_m + 0.45, 1.0, 0.0)
-    colour = s.mix(s.math("MULTIPLY", edge, s.ramp(across, 100, 101, 1.0, 0.0)), colour, (0.12, 0.105, 0.08))
+        wear = s.ramp(middle, 0.28, 0.40, 0.55, 1.0)
+        colour = s.mix(s.math("MULTIPLY", mask, wear), colour, soil)
+    edge = s.ramp(s.math("ADD", abs_x, s.math("MULTIPLY", edge_noise, 0.12)), road.edge_m + 0.10, road.edge_m + 0.45, 1.0, 0.0)
+    colour = s.mix(s.math("MULTIPLY", edge, s.ramp(abs_x, 100, 101, 1.0, 0.0)), colour, (0.12, 0.105, 0.08))
     height = s.math("ADD", fine, s.math("MULTIPLY", middle, 2.0))
     return s.surface(base_color=colour, roughness=0.95, specular_ior_level=0.1, normal=s.bump(height, 0.5, 0.05))
 
@@ -102,7 +102,7 @@ def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, f
 def _fields(s: Shader, p: Value, large: Value, middle: Value) -> Value:
     """Return the colour of fields: crops, stubble and ploughed land in Voronoi cells, with tractor tracks."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
-    s.feed(cell.inputs["Vector"], s.scaled(p, (0.0055, 0.0042, 0.0), (0.37, 0.21, 0)))
+    s.set_input(cell.inputs["Vector"], s.scaled(p, (0.0055, 0.0042, 0.0), (0.37, 0.21, 0)))
     cell.inputs["Scale"].default_value = 1.0
     cell.inputs["Randomness"].default_value = 0.75
     index, shade, _ = s.xyz(cell.outputs["Color"])

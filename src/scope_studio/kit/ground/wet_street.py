@@ -40,7 +40,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
     tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", broad, 0.45), 0.035))
     grey = s.node("ShaderNodeCombineColor")
     for socket, warmth in zip(grey.inputs, (1.0, 1.0, 1.03), strict=True):
-        s.feed(socket, s.math("MULTIPLY", tone, warmth))
+        s.set_input(socket, s.math("MULTIPLY", tone, warmth))
     colour: Value = s.mix(_patchwork(s, p, fine), grey.outputs[0], (0.012, 0.012, 0.0125))
     low = s.math("ADD", s.noise(p, 0.34, 4.0, 0.5, 0.4), s.math("MULTIPLY", _gutter_mask(s, gutters, x, y), 0.085))
     puddle = s.ramp(low, 0.585, 0.615)
@@ -57,7 +57,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
 def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
     """Return a mask of trenches filled with newer, darker asphalt. They are cells of a stretched Chebyshev Voronoi pattern."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
-    s.feed(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
+    s.set_input(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
     cell.inputs["Scale"].default_value = 1.0
     return s.math("MULTIPLY", s.ramp(s.xyz(cell.outputs["Color"])[0], 0.80, 0.81), s.ramp(fine, 0.2, 0.7, 0.6, 0.9))
 
@@ -132,7 +132,7 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
     s = Shader(f"wet paving {slab[0]:.2f}")
     p = s.position()
     brick = s.node("ShaderNodeTexBrick")
-    s.feed(brick.inputs["Vector"], s.scaled(p, (1.0, 1.0, 0.0)))
+    s.set_input(brick.inputs["Vector"], s.scaled(p, (1.0, 1.0, 0.0)))
     settings = {
         "Scale": 1.0,
         "Mortar Size": 0.007,
@@ -143,9 +143,9 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
     }
     for key, value in settings.items():
         brick.inputs[key].default_value = value
-    s.feed(brick.inputs["Color1"], (0.150, 0.145, 0.134))
-    s.feed(brick.inputs["Color2"], (0.088, 0.085, 0.080))
-    s.feed(brick.inputs["Mortar"], (0.022, 0.022, 0.019))
+    s.set_input(brick.inputs["Color1"], (0.150, 0.145, 0.134))
+    s.set_input(brick.inputs["Color2"], (0.088, 0.085, 0.080))
+    s.set_input(brick.inputs["Mortar"], (0.022, 0.022, 0.019))
     middle, fine = s.noise(p, 0.8, 6.0, 0.62), s.noise(p, 14.0, 4.0, 0.65)
     colour = s.mix(s.ramp(middle, 0.35, 0.70, 0.0, 0.55), brick.outputs["Color"], (0.055, 0.053, 0.050))
     colour = s.mix(s.ramp(fine, 0.35, 0.75, 0.0, 0.3), colour, (0.20, 0.195, 0.18))

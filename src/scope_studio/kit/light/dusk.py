@@ -1,7 +1,7 @@
 """Dusk: a deep blue sky with a warm horizon, lamplight, evening haze, and a long exposure.
 
-There is no sun; soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller lights are
-noisy at few samples. These lights are invisible to the camera, which sees the emissive lens of the lamp instead.
+Soft light comes from the whole sky, without a sun. Every lamp is an area light of at least 0.3 m, because smaller lights cause
+noise at low sample counts. These lights are invisible to the camera, which sees the emissive lens of the lamp instead.
 """
 
 from __future__ import annotations
@@ -63,37 +63,37 @@ def _world(scene: bpy.types.Scene, strength: float) -> None:
     x, y, z = s.xyz(s.node("ShaderNodeTexCoord").outputs["Generated"])
     height = s.math("MAXIMUM", z, 0.0)
     bearing = math.radians(GLOW_BEARING_DEG)
-    towards = s.math("ADD", s.math("MULTIPLY", x, math.sin(bearing)), s.math("MULTIPLY", y, math.cos(bearing)))
-    horizon = s.mix(s.ramp(towards, -0.25, 1.0), COOL_HORIZON, WARM_HORIZON)
-    clear = s.mix(s.ramp(height, 0.0, 0.26), horizon, MIDDLE)
-    clear = s.mix(s.ramp(height, 0.14, 0.85), clear, ZENITH)
-    seen = _clouds(s, x, y, height, towards, clear)
-    light = s.mix(s.ramp(z, -0.1, 0.9), (0.42, 0.42, 0.50), (0.30, 0.37, 0.56))
-    light = s.mix(s.ramp(s.math("SUBTRACT", towards, z), 0.0, 1.0, 0.0, 0.6), light, (0.85, 0.55, 0.36))
-    light = s.mix(s.ramp(z, -0.25, 0.0), (0.07, 0.07, 0.08), light)
+    toward_glow = s.math("ADD", s.math("MULTIPLY", x, math.sin(bearing)), s.math("MULTIPLY", y, math.cos(bearing)))
+    horizon = s.mix(s.ramp(toward_glow, -0.25, 1.0), COOL_HORIZON, WARM_HORIZON)
+    clear_sky = s.mix(s.ramp(height, 0.0, 0.26), horizon, MIDDLE)
+    clear_sky = s.mix(s.ramp(height, 0.14, 0.85), clear_sky, ZENITH)
+    visible_sky = _clouds(s, x, y, height, toward_glow, clear_sky)
+    diffuse_light = s.mix(s.ramp(z, -0.1, 0.9), (0.42, 0.42, 0.50), (0.30, 0.37, 0.56))
+    diffuse_light = s.mix(s.ramp(s.math("SUBTRACT", toward_glow, z), 0.0, 1.0, 0.0, 0.6), diffuse_light, (0.85, 0.55, 0.36))
+    diffuse_light = s.mix(s.ramp(z, -0.25, 0.0), (0.07, 0.07, 0.08), diffuse_light)
     path = s.node("ShaderNodeLightPath")
-    direct = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
+    is_visible_ray = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
     background = s.node("ShaderNodeBackground")
-    s.feed(background.inputs["Color"], s.mix(direct, light, seen))
+    s.set_input(background.inputs["Color"], s.mix(is_visible_ray, diffuse_light, visible_sky))
     background.inputs["Strength"].default_value = strength
     s.tree.links.new(background.outputs[0], s.node("ShaderNodeOutputWorld").inputs["Surface"])
     world.cycles.sampling_method = "MANUAL"
     world.cycles.sample_map_resolution = 256
 
 
-def _clouds(s: Shader, x: Value, y: Value, height: Value, towards: Value, clear: Value) -> Value:
+def _clouds(s: Shader, x: Value, y: Value, height: Value, toward_glow: Value, clear_sky: Value) -> Value:
     """Return the sky colour with thin evening clouds, dark above and lit from below on the side of the sunset."""
     depth = s.math("ADD", height, 0.10)
     plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
-    s.feed(plane.inputs[1], s.math("DIVIDE", y, depth))
+    s.set_input(plane.inputs[0], s.math("DIVIDE", x, depth))
+    s.set_input(plane.inputs[1], s.math("DIVIDE", y, depth))
     p = s.scaled(plane.outputs[0], (0.55, 1.0, 1.0))
     lumps = s.noise(p, 0.75, detail=8.0, roughness=0.58, distortion=0.3)
     mask = s.math("MULTIPLY", s.ramp(lumps, 0.50, 0.66), s.ramp(height, 0.02, 0.10, 0.25, 0.85))
-    lit = s.math("MULTIPLY", s.ramp(towards, 0.1, 0.95), s.ramp(height, 0.05, 0.45, 1.0, 0.1))
+    lit = s.math("MULTIPLY", s.ramp(toward_glow, 0.1, 0.95), s.ramp(height, 0.05, 0.45, 1.0, 0.1))
     body = s.mix(lit, (0.105, 0.130, 0.195), (0.62, 0.30, 0.22))
     edge = s.mix(lit, (0.185, 0.225, 0.320), (1.05, 0.56, 0.34))
-    return s.mix(mask, clear, s.mix(s.ramp(lumps, 0.55, 0.68), edge, body))
+    return s.mix(mask, clear_sky, s.mix(s.ramp(lumps, 0.55, 0.68), edge, body))
 
 
 def lamplight(

@@ -1,4 +1,4 @@
-"""An overcast sky just after rain: a low grey cloud layer, soft light from all sides, and haze beyond half a kilometre."""
+"""An overcast sky just after rain: a low layer of grey cloud, soft light from all sides, and haze."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def setup(
     s = _WorldShader(world)
     x, y, z = s.xyz(s.node("ShaderNodeTexCoord").outputs["Generated"])
     height = s.math("MAXIMUM", z, 0.0)
-    seen = _layer(s, x, y, height)
-    light = s.mix(s.ramp(z, 0.0, 0.9), (0.62, 0.66, 0.70), (0.88, 0.92, 0.98))
-    light = s.mix(s.ramp(z, -0.25, 0.0), (0.10, 0.10, 0.10), light)
+    visible_sky = _stratus(s, x, y, height)
+    diffuse_light = s.mix(s.ramp(z, 0.0, 0.9), (0.62, 0.66, 0.70), (0.88, 0.92, 0.98))
+    diffuse_light = s.mix(s.ramp(z, -0.25, 0.0), (0.10, 0.10, 0.10), diffuse_light)
     path = s.node("ShaderNodeLightPath")
-    direct = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
+    is_visible_ray = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
     background = s.node("ShaderNodeBackground")
-    s.feed(background.inputs["Color"], s.mix(direct, light, seen))
+    s.set_input(background.inputs["Color"], s.mix(is_visible_ray, diffuse_light, visible_sky))
     background.inputs["Strength"].default_value = strength
     s.tree.links.new(background.outputs[0], s.node("ShaderNodeOutputWorld").inputs["Surface"])
     world.cycles.sampling_method = "MANUAL"
@@ -51,19 +51,19 @@ def setup(
     scene.view_settings.gamma = 1.0
 
 
-def _layer(s: Shader, x: Value, y: Value, height: Value) -> Value:
-    """Return the colour of stratus cloud: pale and dark bands that converge towards the horizon, with one brighter break."""
+def _stratus(s: Shader, x: Value, y: Value, height: Value) -> Value:
+    """Return the colour of stratus cloud: pale and dark bands that converge towards the horizon, with a brighter gap."""
     depth = s.math("ADD", height, 0.16)
     plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
-    s.feed(plane.inputs[1], s.math("DIVIDE", y, depth))
+    s.set_input(plane.inputs[0], s.math("DIVIDE", x, depth))
+    s.set_input(plane.inputs[1], s.math("DIVIDE", y, depth))
     p = plane.outputs[0]
-    broad = s.noise(s.scaled(p, (0.55, 0.8, 1)), 0.7, detail=7.0, roughness=0.52, distortion=0.5)
-    rags = s.noise(p, 1.7, detail=8.0, roughness=0.58, distortion=0.3)
-    grey = s.mix(s.ramp(broad, 0.34, 0.66), (0.40, 0.43, 0.47), (0.86, 0.88, 0.90))
-    grey = s.mix(s.ramp(rags, 0.52, 0.72, 0.0, 0.5), grey, (0.46, 0.49, 0.53))
-    break_ = s.math("MULTIPLY", s.ramp(broad, 0.60, 0.72), s.ramp(rags, 0.55, 0.42))
-    grey = s.mix(s.math("MULTIPLY", break_, 0.7), grey, (1.15, 1.13, 1.08))
+    bands = s.noise(s.scaled(p, (0.55, 0.8, 1)), 0.7, detail=7.0, roughness=0.52, distortion=0.5)
+    wisps = s.noise(p, 1.7, detail=8.0, roughness=0.58, distortion=0.3)
+    grey = s.mix(s.ramp(bands, 0.34, 0.66), (0.40, 0.43, 0.47), (0.86, 0.88, 0.90))
+    grey = s.mix(s.ramp(wisps, 0.52, 0.72, 0.0, 0.5), grey, (0.46, 0.49, 0.53))
+    gap = s.math("MULTIPLY", s.ramp(bands, 0.60, 0.72), s.ramp(wisps, 0.55, 0.42))
+    grey = s.mix(s.math("MULTIPLY", gap, 0.7), grey, (1.15, 1.13, 1.08))
     return s.mix(s.ramp(height, 0.0, 0.22, 0.85, 0.0), grey, (0.66, 0.70, 0.74))
 
 
@@ -76,5 +76,5 @@ def _sun(scene: bpy.types.Scene, bearing_deg: float, strength: float) -> None:
     lamp = bpy.data.objects.new("Veiled sun", light)
     scene.collection.objects.link(lamp)
     bearing, elevation = math.radians(bearing_deg), math.radians(52)
-    towards = Vector((math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation)))
-    lamp.rotation_euler = towards.to_track_quat("Z", "Y").to_euler()
+    sun_direction = Vector((math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation)))
+    lamp.rotation_euler = sun_direction.to_track_quat("Z", "Y").to_euler()

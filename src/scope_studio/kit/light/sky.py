@@ -52,8 +52,8 @@ def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
     lamp = bpy.data.objects.new("Sun", light)
     bpy.context.scene.collection.objects.link(lamp)
     bearing, elevation = math.radians(bearing_deg), math.radians(elevation_deg)
-    towards = Vector((math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation)))
-    lamp.rotation_euler = towards.to_track_quat("Z", "Y").to_euler()
+    sun_direction = Vector((math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation)))
+    lamp.rotation_euler = sun_direction.to_track_quat("Z", "Y").to_euler()
 
 
 def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
@@ -64,26 +64,26 @@ def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
     direction = s.node("ShaderNodeTexCoord").outputs["Generated"]
     x, y, z = s.xyz(direction)
     height = s.math("MAXIMUM", z, 0.0)
-    clear = s.mix(s.ramp(s.math("POWER", height, 0.55), 0.0, 0.85), HORIZON, ZENITH)
-    seen = _clouds(s, x, y, height, clear, cover)
-    light = s.mix(s.ramp(z, -0.1, 0.9), (0.74, 0.78, 0.82), (0.52, 0.66, 0.90))
-    light = s.mix(s.ramp(z, -0.25, 0.0), (0.20, 0.21, 0.17), light)
+    clear_sky = s.mix(s.ramp(s.math("POWER", height, 0.55), 0.0, 0.85), HORIZON, ZENITH)
+    visible_sky = _clouds(s, x, y, height, clear_sky, cover)
+    diffuse_light = s.mix(s.ramp(z, -0.1, 0.9), (0.74, 0.78, 0.82), (0.52, 0.66, 0.90))
+    diffuse_light = s.mix(s.ramp(z, -0.25, 0.0), (0.20, 0.21, 0.17), diffuse_light)
     path = s.node("ShaderNodeLightPath")
-    direct = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
+    is_visible_ray = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
     background = s.node("ShaderNodeBackground")
-    s.feed(background.inputs["Color"], s.mix(direct, light, seen))
+    s.set_input(background.inputs["Color"], s.mix(is_visible_ray, diffuse_light, visible_sky))
     background.inputs["Strength"].default_value = strength
     s.tree.links.new(background.outputs[0], s.node("ShaderNodeOutputWorld").inputs["Surface"])
     world.cycles.sampling_method = "MANUAL"
     world.cycles.sample_map_resolution = 256
 
 
-def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: float) -> Value:
+def _clouds(s: Shader, x: Value, y: Value, height: Value, clear_sky: Value, cover: float) -> Value:
     """Return the sky colour with a flat layer of cumulus: noise that converges towards the horizon, with grey undersides."""
     depth = s.math("ADD", height, 0.11)
     plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
-    s.feed(plane.inputs[1], s.math("DIVIDE", y, depth))
+    s.set_input(plane.inputs[0], s.math("DIVIDE", x, depth))
+    s.set_input(plane.inputs[1], s.math("DIVIDE", y, depth))
     p = plane.outputs[0]
     lumps = s.noise(p, 0.62, detail=9.0, roughness=0.56, distortion=0.25)
     sunward = s.noise(s.scaled(p, (1, 1, 1), (0.16, 0.11, 0)), 0.62, detail=5.0, roughness=0.56, distortion=0.25)
@@ -91,11 +91,11 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
     mask = s.ramp(lumps, edge, edge + 0.09)
     mask = s.math("MULTIPLY", mask, s.ramp(height, 0.01, 0.09, 0.45, 1.0))
     lit = s.ramp(s.math("SUBTRACT", lumps, sunward), -0.10, 0.10)
-    thick = s.ramp(lumps, edge + 0.05, edge + 0.26)
+    thickness = s.ramp(lumps, edge + 0.05, edge + 0.26)
     body = s.mix(lit, (0.62, 0.68, 0.78), (1.25, 1.23, 1.20))
-    body = s.mix(s.math("MULTIPLY", thick, 0.55), body, (0.58, 0.62, 0.69))
+    body = s.mix(s.math("MULTIPLY", thickness, 0.55), body, (0.58, 0.62, 0.69))
     body = s.mix(s.ramp(height, 0.01, 0.20, 0.5, 0.0), body, HORIZON)
-    return s.mix(mask, clear, body)
+    return s.mix(mask, clear_sky, body)
 
 
 def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()) -> None:

@@ -29,9 +29,9 @@ def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
     skin = _body(body, pose)
     rest = [tuple(body.inverted() @ Vector(p)) for p in skin[0]]
     s.add(skin[0].tolist(), skin[1], _feathers(colour), rest)
-    head = body @ _HEADS[pose]
+    head = body @ _HEAD_POSITIONS[pose]
     beak = plain("pigeon beak", (0.03, 0.028, 0.03), 0.4)
-    aim = ((body @ (_HEADS[pose] + _AIM[pose])) - head).normalized()
+    aim = ((body @ (_HEAD_POSITIONS[pose] + _BEAK_DIRECTIONS[pose])) - head).normalized()
     s.rod(tuple(head + aim * 0.022), tuple(head + aim * 0.046), 0.006, beak, radius_b=0.0015, sides=8)
     s.box(
         (0.012, 0.008, 0.007),
@@ -48,10 +48,10 @@ def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
     return s.built()
 
 
-_HEADS = {"stand": Vector((0, 0.115, 0.105)), "peck": Vector((0, 0.158, -0.058)), "rest": Vector((0, 0.085, 0.065))}
-"""Position of the head in metres, for each pose."""
-_AIM = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest": Vector((0, 1, -0.1))}
-"""Direction of the beak, for each pose."""
+_HEAD_POSITIONS = {"stand": Vector((0, 0.115, 0.105)), "peck": Vector((0, 0.158, -0.058)), "rest": Vector((0, 0.085, 0.065))}
+"""Position of the head in metres, by pose."""
+_BEAK_DIRECTIONS = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest": Vector((0, 1, -0.1))}
+"""Direction of the beak, by pose."""
 
 
 def _body(frame: Matrix, pose: str) -> Skin:
@@ -59,7 +59,7 @@ def _body(frame: Matrix, pose: str) -> Skin:
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))
-    head = _HEADS[pose]
+    head = _HEAD_POSITIONS[pose]
     v.capsule((0, 0.065, 0.022), tuple(Vector((0, 0.065, 0.022)).lerp(head, 0.9)), 0.042, 0.021)
     v.ellipsoid(tuple(head), (0.0195, 0.026, 0.0205))
     for side in (-1, 1):
@@ -86,14 +86,14 @@ def _feathers(colour: str) -> bpy.types.Material:
     if existing is not None:
         return existing
     s = Shader(name)
-    where = s.node("ShaderNodeAttribute", attribute_name="rest").outputs["Vector"]
-    x, y, z = s.xyz(where)
+    coords = s.node("ShaderNodeAttribute", attribute_name="rest").outputs["Vector"]
+    x, y, z = s.xyz(coords)
     dark, pale = PLUMAGE[colour]
     tone = s.mix(s.ramp(s.math("ABSOLUTE", x), 0.030, 0.042), dark, pale)
-    tone = s.mix(s.ramp(s.noise(where, 70.0, 3.0), 0.35, 0.65, 0.0, 0.35), tone, tuple(c * 0.6 for c in dark))
+    tone = s.mix(s.ramp(s.noise(coords, 70.0, 3.0), 0.35, 0.65, 0.0, 0.35), tone, tuple(c * 0.6 for c in dark))
     neck = s.math("ADD", y, s.math("MULTIPLY", z, 0.7))
     collar = s.band(neck, 0.10, 0.158, 0.012)
-    sheen = s.mix(s.ramp(s.noise(where, 26.0, 2.0), 0.4, 0.6), (0.025, 0.13, 0.075), (0.13, 0.035, 0.12))
+    sheen = s.mix(s.ramp(s.noise(coords, 26.0, 2.0), 0.4, 0.6), (0.025, 0.13, 0.075), (0.13, 0.035, 0.12))
     tone = s.mix(s.ramp(neck, 0.148, 0.165), tone, tuple(c * 0.55 for c in dark))
     tone = s.mix(collar, tone, sheen if colour != "white" else pale)
     slant = s.math("ADD", y, s.math("MULTIPLY", z, 0.6))
@@ -102,4 +102,4 @@ def _feathers(colour: str) -> bpy.types.Material:
     ink = (0.018, 0.018, 0.022) if colour != "white" else pale
     tone = s.mix(s.math("MULTIPLY", bars, side), tone, ink)
     tone = s.mix(s.ramp(y, -0.178, -0.190), tone, ink)
-    return s.surface(base_color=tone, roughness=0.55, normal=s.bump(s.noise(where, 160.0, 2.0), 0.3, 0.002))
+    return s.surface(base_color=tone, roughness=0.55, normal=s.bump(s.noise(coords, 160.0, 2.0), 0.3, 0.002))

@@ -263,13 +263,13 @@ def leaf_material(sp: Species) -> bpy.types.Material:
     colour = s.mix(s.math("MULTIPLY", s.random(), 0.45), colour, yellow)
     s.surface(base_color=colour, roughness=0.55, specular_ior_level=0.25)
     through = s.node("ShaderNodeBsdfTranslucent")
-    s.feed(through.inputs["Color"], s.mix(0.5, colour, yellow))
+    s.set_input(through.inputs["Color"], s.mix(0.5, colour, yellow))
     both = s.node("ShaderNodeMixShader")
     both.inputs[0].default_value = 0.34
-    s.feed(both.inputs[1], s.bsdf.outputs[0])
-    s.feed(both.inputs[2], through.outputs[0])
+    s.set_input(both.inputs[1], s.bsdf.outputs[0])
+    s.set_input(both.inputs[2], through.outputs[0])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.feed(output.inputs["Surface"], both.outputs[0])
+    s.set_input(output.inputs["Surface"], both.outputs[0])
     return s.material
 
 

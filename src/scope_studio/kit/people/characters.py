@@ -19,7 +19,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Skin, normals
 from scope_studio.kit.people import clothing, figure, heads
-from scope_studio.kit.people.hand_props import HOLDABLE, hold
+from scope_studio.kit.people.hand_props import PROP_BUILDERS, hold
 from scope_studio.kit.people.poses import Joints, Pose, named_pose, solve
 
 
@@ -67,7 +67,7 @@ def _add_skin(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = 
 
 def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> None:
     """Add head and hair. If ``covered``, the hair is shorter, to fit under a helmet."""
-    skin = heads.face(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
+    skin = heads.head_and_neck(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
     _add_skin(
         s, heads.place(skin, joints.head), clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble), skin[0]
     )
@@ -143,7 +143,7 @@ def _add_body(
     _add_skin(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
     sleeve, along = figure.sleeves(joints, loose=0.008 if vest else loose * 0.7, seed=seed + 4)
     bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
-    _add_skin(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
+    _add_skin(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb_coords(along))
     if vest:
         skin, rest = figure.trunk(
             joints, swell=0.024, low=0.835, girth=appearance.girth, woman=appearance.woman, flare=0.007, seed=seed + 1
@@ -151,7 +151,7 @@ def _add_body(
         _add_skin(s, skin, clothing.vest(vest, outfit.top), rest)
     leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=appearance.girth, seed=seed + 2)
     bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
-    _add_skin(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
+    _add_skin(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb_coords(along))
     shoe = vest is None
     upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.38, roughness=0.6)
     _add_skin(s, figure.boots(joints, shoe=shoe), upper)
@@ -176,13 +176,13 @@ def _add_body(
         )
 
 
-def _limb(along: np.ndarray) -> np.ndarray:
+def _limb_coords(along: np.ndarray) -> np.ndarray:
     """Return the rest coordinates of a limb. Only the position along the limb matters."""
     return np.column_stack([np.zeros((len(along), 2)), along])
 
 
 DEFAULT_PROP = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""The prop that a person holds by default, for each pose in which there is one."""
+"""Name of the default prop, by pose. Other poses have no prop."""
 
 
 def _person(
@@ -196,8 +196,8 @@ def _person(
     custom_pose: Pose | None = None,
 ) -> Built:
     """Build a person in a pose, with clothes and a prop."""
-    if holding is not None and holding not in HOLDABLE:
-        raise ValueError(f"'holding' must be one of {sorted(HOLDABLE)}, not {holding!r}")
+    if holding is not None and holding not in PROP_BUILDERS:
+        raise ValueError(f"'holding' must be one of {sorted(PROP_BUILDERS)}, not {holding!r}")
     stance = custom_pose or named_pose(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
@@ -229,8 +229,8 @@ def worker(
     Args:
         helmet: Colour of the helmet, or None for no helmet.
         pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
-        holding: Name of a prop, a key of ``HOLDABLE``, that replaces the default prop of the pose.
-        stance: A pose that is used instead of ``pose``.
+        holding: Name of a prop, a key of ``PROP_BUILDERS``, that replaces the default prop of the pose.
+        stance: A pose that replaces ``pose``.
     """
     random = Random(f"worker {seed}")
     appearance = _random_appearance(random, None, 0.15)
@@ -256,8 +256,7 @@ def pedestrian(
 ) -> Built:
     """Build a pedestrian in everyday clothes.
 
-    Colours have plain names. Colours that are not given are random and depend on the seed. ``stance`` is a pose that is used
-    instead of ``pose``.
+    Colours are names. Those that are None are chosen at random from ``seed``. ``stance`` is a pose that replaces ``pose``.
     """
     random = Random(f"pedestrian {seed}")
     appearance = _random_appearance(random, hair, 0.5)

@@ -112,7 +112,7 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
     for i in range(2):
         bones.append((joints.shoulders[i], joints.elbows[i], 0.0, 0.295))
         bones.append((joints.elbows[i], joints.wrists[i], 0.295, 0.55))
-    along = _along(points, bones)
+    along = _interpolate_along_bones(points, bones)
     bend = [(e - s).angle(w - e) for s, e, w in zip(joints.shoulders, joints.elbows, joints.wrists, strict=True)]
     depth = 0.006 + 0.006 * min(1.0, max(bend))
     near = np.exp(-(((along - 0.295) / 0.09) ** 2))
@@ -138,7 +138,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
     for i in range(2):
         bones.append((joints.hips[i], joints.knees[i], 0.92, 0.495))
         bones.append((joints.knees[i], joints.ankles[i], 0.495, 0.085))
-    along = _along(points, bones)
+    along = _interpolate_along_bones(points, bones)
 
     knee_weight = np.exp(-(((along - 0.50) / 0.09) ** 2))
     cuff_weight = np.exp(-(((along - 0.10) / 0.10) ** 2))
@@ -149,7 +149,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
     return crease(skin, 0.002, (24.0, 24.0, 30.0), seed + 3), along
 
 
-def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
+def _interpolate_along_bones(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
     """Return a value for each point, interpolated between the ends of the nearest bone.
 
     Bones are (start, end, value at the start, value at the end).

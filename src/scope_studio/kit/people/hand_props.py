@@ -1,4 +1,4 @@
-"""Objects that people hold, such as tools, phones, boxes and bags. They are placed in the hands of a pose."""
+"""Objects in the hands of people, such as tools, phones, boxes and bags."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _torch(s: Solid, joints: Joints) -> None:
     s.lathe([(0.026, 0.178), (0.024, 0.184)], glow("white", 12.0), axis="Y", steps=16)
 
 
-HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
+PROP_BUILDERS: dict[str, Callable[[Solid, Joints], None]] = {
     "shovel": _shovel,
     "broom": _broom,
     "phone": _phone,
@@ -131,11 +131,11 @@ HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "torch": _torch,
     "trowel": _trowel,
 }
-"""Function that adds each prop, by its name."""
+"""Functions that add a prop to the hands, by the name of the prop."""
 
 
 def hold(s: Solid, joints: Joints, name: str) -> None:
     """Add the prop with this name to the hands."""
     saved = s.frame
-    HOLDABLE[name](s, joints)
+    PROP_BUILDERS[name](s, joints)
     s.frame = saved

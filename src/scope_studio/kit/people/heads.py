@@ -1,6 +1,7 @@
 """Heads with face, ears, neck and hair.
 
-Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``. The face looks towards +y.
+Head coordinates have their origin at the centre of the head, which is at ``CENTRE`` in the upright rest pose. The face looks
+towards +y.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ EYES = ((-0.0315, 0.0775, 0.012), (0.0315, 0.0775, 0.012))
 """Positions of the eyes relative to ``CENTRE`` (m)."""
 
 
-def face(*, woman: bool, stout: float) -> Skin:
-    """Return head and neck as one skin, relative to ``CENTRE``."""
+def head_and_neck(*, woman: bool, stout: float) -> Skin:
+    """Return the head and neck as one skin, in head coordinates."""
     v = Volume()
     jaw = 0.90 if woman else 1.0
     v.ellipsoid((0, -0.014, 0.036), (0.0755, 0.096, 0.086))
@@ -75,8 +76,8 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
     points = points + normals((points, faces)) * (0.0045 * shift)[:, None]
     wobble = np.array([noise.noise((x * 70, y * 40, z * 40 + seed)) for x, y, z in points]) * 0.008
     line = _hairline(points, style) + wobble
-    kept = [f for f in faces if any(points[i][2] > line[i] for i in f)]
-    return points, kept
+    visible_faces = [f for f in faces if any(points[i][2] > line[i] for i in f)]
+    return points, visible_faces
 
 
 def _hairline(points: np.ndarray, style: str) -> np.ndarray:

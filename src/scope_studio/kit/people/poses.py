@@ -19,14 +19,14 @@ HIP, WAIST, NECK = 0.925, 1.06, 1.525
 THIGH, SHIN, ANKLE = 0.435, 0.410, 0.085
 """Lengths of thigh and shin, and height of the ankle, in metres."""
 UPPER_ARM, FOREARM = 0.295, 0.255
-"""Lengths in metres."""
+"""Lengths of the upper arm and the forearm in metres."""
 SHOULDER = (0.178, -0.008, 1.412)
 """Position of the right shoulder of the upright figure in metres."""
 
 
 @dataclass(frozen=True)
 class Foot:
-    """Position of a foot: point below the ankle (m), outward rotation and pitch (degrees, positive = toe up), and lift (m)."""
+    """Position of a foot: point below the ankle (m), outward rotation and pitch (degrees; positive raises the toes), lift (m)."""
 
     x: float
     y: float
@@ -99,7 +99,7 @@ def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: floa
     return Matrix.Translation(pivot) @ rotation @ Matrix.Translation(-Vector(pivot))
 
 
-def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
+def _solve_two_bones(a: Vector, target: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
     """Return the positions of the middle joint and the end of a two-bone chain from ``a`` towards ``target``."""
     reach = target - a
     d = min(reach.length, (first + second) * 0.9995)
@@ -123,20 +123,20 @@ def solve(pose: Pose) -> Joints:
     feet = [_foot_frame(f, s) for f, s in zip(pose.feet, SIDES, strict=True)]
     ankles = [f @ Vector((0, 0, ANKLE)) for f in feet]
     turn = Matrix.Translation(pose.hip) @ _turn((0, 0, HIP), pose.hip_lean, pose.hip_roll, pose.hip_yaw)
-    sink = 0.0
+    drop = 0.0
     for side, ankle in zip(SIDES, ankles, strict=True):
         hip = turn @ Vector((side * 0.09, 0, HIP))
         level = math.hypot(hip.x - ankle.x, hip.y - ankle.y)
         reach = math.sqrt(max(0.01, ((THIGH + SHIN) * 0.996) ** 2 - level**2))
-        sink = max(sink, hip.z - (ankle.z + reach))
-    pelvis = Matrix.Translation((0, 0, -sink)) @ turn
+        drop = max(drop, hip.z - (ankle.z + reach))
+    pelvis = Matrix.Translation((0, 0, -drop)) @ turn
     chest = pelvis @ _turn((0, 0.01, WAIST), pose.lean, pose.tilt, pose.twist)
     head = chest @ _turn((0, 0, NECK), pose.lean * -0.6 - pose.head_pitch, pose.head_roll, pose.head_yaw)
     joints = Joints(pelvis, chest, head, feet, ankles=ankles)
     for index, side in enumerate(SIDES):
         hip = pelvis @ Vector((side * 0.09, 0, HIP))
         toes = feet[index].to_3x3() @ Vector((0, 1, 0))
-        knee, ankle = _bend(hip, ankles[index], THIGH, SHIN, Vector((toes.x * 0.7 + side * 0.04, max(0.5, toes.y), 0.3)))
+        knee, ankle = _solve_two_bones(hip, ankles[index], THIGH, SHIN, Vector((toes.x * 0.7 + side * 0.04, max(0.5, toes.y), 0.3)))
         shoulder = chest @ Vector((side * SHOULDER[0], SHOULDER[1], SHOULDER[2]))
         elbow, wrist = _arm(pose.arms[index], side, shoulder, chest)
         joints.hips.append(hip)
@@ -152,7 +152,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
     """Return the positions of the elbow and the wrist."""
     if arm.hand is not None:
         pole = chest.to_3x3() @ Vector((side * arm.elbow[0], arm.elbow[1], arm.elbow[2]))
-        return _bend(shoulder, chest @ Vector(arm.hand), UPPER_ARM, FOREARM, pole)
+        return _solve_two_bones(shoulder, chest @ Vector(arm.hand), UPPER_ARM, FOREARM, pole)
     swing = chest.to_3x3() @ (
         Matrix.Rotation(-side * math.radians(arm.out), 3, "Y") @ Matrix.Rotation(math.radians(arm.forward), 3, "X")
     )
@@ -162,7 +162,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
 
 
 def _gait_foot(phase: float, x: float) -> Foot:
-    """Return the position of a foot during a walk. At phase 0, its heel strikes the ground, where it stays for 0.6 of the cycle."""
+    """Return the position of a foot during a walk. It strikes the ground at phase 0 and stays there for 0.6 of the cycle."""
     p = phase % 1.0
     start, stop = 0.33, 0.33 - 0.6 * STRIDE_M
     if p < 0.6:
@@ -223,7 +223,11 @@ def standing(random: Random) -> Pose:
 
 
 def named_pose(name: str, phase: float, random: Random) -> Pose:
-    """Return the pose with this name, or raise ValueError if there is none."""
+    """Return the pose with this name.
+
+    Raises:
+        ValueError: No pose has this name.
+    """
     base = standing(random)
     relaxed = Arm(3, 9, 18)
     if name == "stand":

@@ -1,4 +1,4 @@
-"""Prams."""
+"""A pram with a hood and spoked wheels."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
         if target is None:
             continue
         shoulder = chest @ Vector((side * 0.178, -0.008, 1.412))
-        towards = (Vector(target) - shoulder).normalized()
-        wrist = chest.inverted() @ (Vector(target) - towards * HAND_M)
+        direction = (Vector(target) - shoulder).normalized()
+        wrist = chest.inverted() @ (Vector(target) - direction * HAND_M)
         arms[index] = Arm(hand=tuple(wrist), elbow=(0.7, -0.8, drop), curl=0.9)
     return replace(pose, arms=(arms[0], arms[1]))
 

@@ -13,11 +13,11 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 RIBS = 8
-"""Number of ribs."""
+"""Number of ribs of an umbrella."""
 
 
-def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) -> Built:
-    """Build an open umbrella, held at the origin. ``second`` is the colour of every other panel."""
+def umbrella(colour: str, *, second_colour: str | None = None, radius_m: float = 0.54) -> Built:
+    """Build an open umbrella, held at the origin. ``second_colour`` is the colour of every other panel."""
     s = Solid(f"{colour} umbrella")
     top = 0.72
     s.rod((0, 0, 0.05), (0, 0, top + 0.05), 0.0055, steel())
@@ -25,7 +25,7 @@ def umbrella(colour: str, *, second: str | None = None, radius_m: float = 0.54) 
     hook = [(0, 0.05 - 0.05 * math.cos(a), -0.10 - 0.05 * math.sin(a)) for a in (k * math.pi / 8 for k in range(9))]
     s.tube([(0, 0, 0.06), (0, 0, -0.10), *hook[1:]], 0.012, timber(), sides=8)
     for panel in range(RIBS):
-        cloth = _nylon(second if second and panel % 2 else colour)
+        cloth = _nylon(second_colour if second_colour and panel % 2 else colour)
         rows = 7
         points: list[Point] = []
         for i in range(rows + 1):

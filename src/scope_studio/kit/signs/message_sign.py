@@ -11,7 +11,7 @@ from scope_studio.kit.core.finishes import glow, lens, paint
 from scope_studio.kit.core.lettering import extent, letters
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs.stands import posts_at
+from scope_studio.kit.signs.stands import add_posts
 
 
 def _dots(body: str, cap: float, rows: int) -> list[tuple[float, float]]:
@@ -71,5 +71,5 @@ def variable_message(
         for x in (-width / 2 + 0.14, width / 2 - 0.14):
             for z in (-height / 2 + 0.14, height / 2 - 0.14):
                 s.lathe([(0.07, 0.0), (0.06, 0.012), (0.02, 0.018)], lens("amber"), (x, 0.002, z), "Y", 16)
-    posts_at(s, width * 0.3, post_height + height * 0.6, 0.09, -0.18)
+    add_posts(s, width * 0.3, post_height + height * 0.6, 0.09, -0.18)
     return s.built()

@@ -10,7 +10,7 @@ from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import INK, Panel, arrow, board, disc, flat, panel_face, stroke, write
-from scope_studio.kit.signs.stands import frame_stand, posts_at
+from scope_studio.kit.signs.stands import add_posts, frame_stand
 
 
 def panel(
@@ -32,7 +32,7 @@ def panel(
     with s.at(0, 0, post_height + height / 2):
         panel_face(s, Panel(lines, width, height, background, cap_height, align, arrows, route, route_background))
     if posts:
-        posts_at(s, width * 0.30 if width > 0.8 else 0.0, post_height + height - 0.04, 0.045 if width < 2.5 else 0.07)
+        add_posts(s, width * 0.30 if width > 0.8 else 0.0, post_height + height - 0.04, 0.045 if width < 2.5 else 0.07)
     return s.built()
 
 
@@ -47,7 +47,7 @@ def round_limit(text: str = "50", *, diameter: float = 0.75, post_height: float 
         cap = min(0.74 * r, 1.15 * r / max(0.1, extent(text, 1.0)))
         write(s, text, cap, 0, 0, "black")
         s.box((diameter * 0.5, 0.03, 0.045), (0, -0.026, 0), steel(), 0.003)
-    posts_at(s, 0.0, post_height + diameter - 0.08, 0.038, -0.078)
+    add_posts(s, 0.0, post_height + diameter - 0.08, 0.038, -0.078)
     return s.built()
 
 
@@ -136,7 +136,7 @@ def triangle(
     if stand == "frame":
         frame_stand(s, side, low)
     else:
-        posts_at(s, 0.0, low + plate_h + height - 0.10, 0.038, -0.078)
+        add_posts(s, 0.0, low + plate_h + height - 0.10, 0.038, -0.078)
     return s.built()
 
 
@@ -165,7 +165,7 @@ def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | No
     if stand == "frame":
         frame_stand(s, width, low)
     else:
-        posts_at(s, width * 0.3, low + plate_h + height - 0.04, 0.045)
+        add_posts(s, width * 0.3, low + plate_h + height - 0.04, 0.045)
     return s.built()
 
 
@@ -182,7 +182,7 @@ def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str |
     if stand == "frame":
         frame_stand(s, width, low)
     else:
-        posts_at(s, width * 0.3, low + height - 0.04, 0.045)
+        add_posts(s, width * 0.3, low + height - 0.04, 0.045)
     return s.built()
 
 
@@ -289,5 +289,5 @@ def warning_plate(
         for i, line in enumerate(lines):
             write(s, line, cap_height, 0, (len(lines) / 2 - i - 0.5) * 1.6 * cap_height, INK.get(background, "black"))
     if posts:
-        posts_at(s, 0.0, post_height + height * 0.9, 0.025, -0.037)
+        add_posts(s, 0.0, post_height + height * 0.9, 0.025, -0.037)
     return s.built()

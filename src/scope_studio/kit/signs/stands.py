@@ -6,7 +6,7 @@ from scope_studio.kit.core.finishes import concrete, paint, steel
 from scope_studio.kit.core.solid import Solid
 
 
-def posts_at(s: Solid, spread: float, top: float, radius: float, y: float = -0.10) -> None:
+def add_posts(s: Solid, spread: float, top: float, radius: float, y: float = -0.10) -> None:
     """Add galvanised posts in small concrete footings: one post if ``spread`` is 0, otherwise two posts."""
     for x in sorted({-spread, spread}):
         s.lathe([(radius, -0.02), (radius, top), (radius * 0.6, top + 0.012)], steel(), (x, y, 0), steps=16)

@@ -36,7 +36,7 @@ def _tractor_parts() -> Parts:
     parts.slot(pw.paint_slot(0))
     chassis.running_gear(parts, 1.75, [-1.75], _REAR, _FRONT - 0.1)
     chassis.cab(parts, _FRONT, depth=2.15, top=3.02)
-    chassis.stores(parts, 0.75)
+    chassis.tank_and_boxes(parts, 0.75)
     sleeper: list[Point2D] = [
         (0.95, 2.98),
         (_FRONT - 0.55, 3.0),
@@ -67,7 +67,7 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
     """
     extra_parts, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
     if name:
-        letters.append(bw.words(name, 0.19, (0, _FRONT - 0.445, 3.20), "+Y", fittings.contrast(colour), width_m=1.9))
+        letters.append(bw.text_line(name, 0.19, (0, _FRONT - 0.445, 3.20), "+Y", fittings.lettering_colour(colour), width_m=1.9))
     if lit:
         for sign in (-1, 1):
             extra_parts.box((0.26, 0.03, 0.12), (sign * 0.88, _FRONT + 0.145, 0.72), glow("cream", 9.0), bevel_m=0.02)
@@ -133,7 +133,7 @@ def _body_parts(kind: str) -> Parts:
         if kind == "box":
             parts.box((0.06, TRAILER_M - 0.1, top - bed - 0.1), (1.23, 0, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.01)
         else:
-            _folds(parts, bed + 0.10, top - 0.16, half, skin)
+            _curtain_side(parts, bed + 0.10, top - 0.16, half, skin)
             for k in range(18):
                 y = -half + 0.55 + 0.735 * k
                 parts.box((0.012, 0.05, 0.42), (1.268, y, bed + 0.14), wheels.shade(), bevel_m=0.0)
@@ -166,15 +166,15 @@ def _body_parts(kind: str) -> Parts:
     return parts
 
 
-def _folds(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Material) -> None:
+def _curtain_side(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Material) -> None:
     """Add a taut curtain along the right-hand side, with shallow folds between its straps."""
     steps = 120
     points, faces = [], []
     for k in range(steps + 1):
         y = -half + 0.1 + (2 * half - 0.2) * k / steps
         wave = 0.008 * ((k % 6) - 3) / 3 * (1 if k % 12 < 6 else -1)
-        for z, pull in ((z0, 0.3), ((z0 + z1) / 2, 1.0), (z1, 0.3)):
-            points.append((1.252 + wave * pull, y, z))
+        for z, amount in ((z0, 0.3), ((z0 + z1) / 2, 1.0), (z1, 0.3)):
+            points.append((1.252 + wave * amount, y, z))
     for k in range(steps):
         for r in range(2):
             a = 3 * k + r
@@ -183,6 +183,7 @@ def _folds(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Mate
 
 
 def _curtain() -> bpy.types.Material:
+    """Return the placeholder material of the curtains."""
     return pw.paint_slot(1)
 
 
@@ -198,15 +199,15 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
     face = shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35)
     extra_parts.box((0.52, 0.012, 0.111), (0, -TRAILER_M / 2 - 0.045, 1.02), face, bevel_m=0.003)
     letters.append(plate_letters[1])
-    tint = fittings.contrast(colour)
-    letters += bw.both_sides(lettering, 0.72, 0.0, 2.72, tint, x=1.268, width_m=11.0)
+    tint = fittings.lettering_colour(colour)
+    letters += bw.text_on_both_sides(lettering, 0.72, 0.0, 2.72, tint, x=1.268, width_m=11.0)
     letters.append(
-        bw.words(
+        bw.text_line(
             lettering,
             0.22,
             (0, -TRAILER_M / 2 - 0.05, 3.35),
             "-Y",
-            fittings.contrast(front if kind == "curtain" else colour),
+            fittings.lettering_colour(front if kind == "curtain" else colour),
             width_m=2.0,
         )
     )
@@ -230,17 +231,17 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
     letters.append(plate_letters[1])
     built = bw.finish("skeletal trailer", mesh, [], letters, extra_parts)
     load = container(colour, code, feet=feet, livery=livery)
-    lift = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
+    transform = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
     for obj in load.objects:
-        obj.data.transform(lift)
+        obj.data.transform(transform)
         obj.parent = built.root
-    turned = []
+    marks = []
     for mark in load.texts:
-        turned.append(
+        marks.append(
             type(mark)(
                 mark.text,
-                tuple(lift @ Vector(mark.centre)),
-                tuple(lift.to_3x3() @ Vector(mark.right)),
+                tuple(transform @ Vector(mark.centre)),
+                tuple(transform.to_3x3() @ Vector(mark.right)),
                 mark.up,
                 mark.width_m,
                 mark.height_m,
@@ -248,7 +249,7 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
             )
         )
     bpy.data.objects.remove(load.root)
-    return Built(built.root, [*built.objects, *load.objects], [*built.texts, *turned])
+    return Built(built.root, [*built.objects, *load.objects], [*built.texts, *marks])
 
 
 def _skeletal_parts() -> Parts:

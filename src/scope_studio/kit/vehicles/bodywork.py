@@ -72,8 +72,8 @@ def shell(
         for j in range(ring):
             k = (j + 1) % ring
             quads[i, j] = bm.faces.new((grid[i][j], grid[i + 1][j], grid[i + 1][k], grid[i][k]))
-    for end, push in ((grid[0], bulge[0]), (grid[-1], -bulge[1])):
-        _cap(bm, end, rows, push)
+    for end, bulge_m in ((grid[0], bulge[0]), (grid[-1], -bulge[1])):
+        _cap(bm, end, rows, bulge_m)
     bm.edges.ensure_lookup_table()
     for row, strength, first, last in creases:
         for column in {row, (ring - row) % ring}:
@@ -102,13 +102,13 @@ def _ring_point(station: Station, j: int, rows: int) -> Point:
     return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
 
 
-def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
-    """Close an end of the body with quads that bulge outwards by ``push`` metres."""
+def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, bulge_m: float) -> None:
+    """Close an end of the body with quads that bulge outwards by ``bulge_m`` metres."""
     ring = 2 * rows - 2
     spine = [end[0]]
     for row in range(2, rows - 2):
         middle = end[row].co.copy()
-        middle.x, middle.y = 0.0, middle.y + push
+        middle.x, middle.y = 0.0, middle.y + bulge_m
         spine.append(bm.verts.new(middle))
     spine.append(end[rows - 1])
     for step in range(rows - 3):
@@ -156,19 +156,19 @@ def _evaluate(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.t
     collection.objects.link(obj)
     smooth = obj.modifiers.new("smooth", "SUBSURF")
     smooth.levels, smooth.render_levels = levels, levels
-    tool = None
+    cutter = None
     if cutters is not None:
-        tool = bpy.data.objects.new("cutters", cutters.build("cutters"))
-        collection.objects.link(tool)
-        cut = obj.modifiers.new("cut", "BOOLEAN")
-        cut.object, cut.operation, cut.solver, cut.material_mode = tool, "DIFFERENCE", "EXACT", "TRANSFER"
+        cutter = bpy.data.objects.new("cutters", cutters.build("cutters"))
+        collection.objects.link(cutter)
+        boolean = obj.modifiers.new("cut", "BOOLEAN")
+        boolean.object, boolean.operation, boolean.solver, boolean.material_mode = cutter, "DIFFERENCE", "EXACT", "TRANSFER"
     graph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
-    for used in (obj, tool):
-        if used is not None:
-            used_mesh = used.data
-            bpy.data.objects.remove(used, do_unlink=True)
-            bpy.data.meshes.remove(used_mesh)
+    for temporary in (obj, cutter):
+        if temporary is not None:
+            temporary_mesh = temporary.data
+            bpy.data.objects.remove(temporary, do_unlink=True)
+            bpy.data.meshes.remove(temporary_mesh)
     return mesh
 
 
@@ -214,7 +214,7 @@ _LETTERING_AXES: dict[str, tuple[Point, Point]] = {
 """Unit vectors (right, up) of lettering, for each direction that it can face."""
 
 
-def words(
+def text_line(
     body: str,
     cap_m: float,
     centre: Point,
@@ -267,7 +267,7 @@ def _subdivide(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[
     return result
 
 
-def both_sides(
+def text_on_both_sides(
     body: str,
     cap_m: float,
     y: float,
@@ -283,7 +283,7 @@ def both_sides(
     The lettering is on the planes at ``x`` and -``x`` or, with ``onto``, projected onto that surface.
     """
     return [
-        words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
+        text_line(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
         for sign, facing in ((1, "+X"), (-1, "-X"))
     ]
 
@@ -301,7 +301,7 @@ def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) ->
         parts.box((0.55, 0.016, 0.135), (0, y - sign * 0.004, z), pw.black_trim(), bevel_m=0.004)
         face = shading.plain(f"number plate {colour}", rgb, 0.35)
         parts.box((0.52, 0.012, 0.111), (0, y, z), face, bevel_m=0.003)
-        letters.append(words(plate, 0.079, (0, y + sign * 0.0085, z), "+Y" if sign > 0 else "-Y", width_m=0.47))
+        letters.append(text_line(plate, 0.079, (0, y + sign * 0.0085, z), "+Y" if sign > 0 else "-Y", width_m=0.47))
     return parts, letters
 
 

@@ -34,11 +34,11 @@ class Cabin:
 class CarModel:
     """The shape and the parts of one car model.
 
-    ``stations``, ``panes``, ``creases`` and ``bulge`` are arguments of ``bodywork.shell``. ``axles`` are the y coordinates of the
-    axles, and the wheels are at ``track_x`` on both sides. ``handles`` and ``mirror`` are positions (y, z) on the side, and
-    ``plate_z`` are the heights of the front and the rear number plate. ``pillars`` are the (y, width) of door pillars.
-    ``arch_trim`` adds black flares to the wheel arches. ``extra_cutters`` are the (size, centre) of boxes to subtract from the
-    body for a load bed.
+    ``stations``, ``panes``, ``creases`` and ``bulge`` are arguments of ``bodywork.shell``. ``axles`` contains y coordinates, and
+    the wheels are at ``track_x`` on both sides. ``handles`` and ``mirror`` are positions (y, z) on the side, and
+    ``plate_z`` contains the heights of the front and the rear number plate. ``pillars`` lists the (y, width) of door pillars.
+    ``arch_trim`` adds black flares to the wheel arches. ``extra_cutters`` lists the (size, centre) of boxes to subtract from
+    the body for a load bed.
     """
 
     name: str

@@ -185,9 +185,9 @@ def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = F
     surface = bw.Surface(bw.body_mesh(VAN.name, lambda: _body(VAN)))
     letters: list[bw.Lettering] = []
     if lettering:
-        tint = shared.contrast(colour)
+        tint = shared.lettering_colour(colour)
         for k, line in enumerate(lettering.split("\n")):
-            letters += bw.both_sides(line, 0.22, -1.28, 1.72 - 0.34 * k, tint, width_m=2.2, onto=surface)
+            letters += bw.text_on_both_sides(line, 0.22, -1.28, 1.72 - 0.34 * k, tint, width_m=2.2, onto=surface)
     fittings = _light_bar(0.5, surface.top(0.0, 0.5), 1.1) if roof_beacon else None
     return _car(VAN, colour, plate, letters=letters, fittings=fittings)
 

@@ -68,11 +68,11 @@ def bicycle(
         crank_deg: Angle of the right crank, measured forwards from the top.
     """
     s = Solid(f"{colour} bicycle")
-    model, painted = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)
+    model, frame_paint = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)
     _wheel(s, REAR, model)
     if front_wheel:
         _wheel(s, FRONT, model)
-    _frame(s, model, painted)
+    _frame(s, model, frame_paint)
     _bars(s, model)
     _drive(s, crank_deg)
     if basket:
@@ -111,16 +111,16 @@ def _wheel(s: Solid, hub: Point, model: _Kind) -> None:
             s.tube([(dx, y, z) for _, y, z in guard], 0.010, paint("black", dirt=0.1), sides=6)
 
 
-def _frame(s: Solid, model: _Kind, painted: bpy.types.Material) -> None:
+def _frame(s: Solid, model: _Kind, frame_paint: bpy.types.Material) -> None:
     seat, low, top = (0.0, -0.24, 0.80), (0.0, 0.40, 0.70), (0.0, 0.36, 0.86)
     bars: list[tuple[Point, Point, float]] = [(CRANK, seat, 0.017), (CRANK, low, 0.020), (low, top, 0.023)]
     bars.append(((0.0, -0.14, 0.50), (0.0, 0.385, 0.77), 0.017) if model.step_through else (seat, top, 0.017))
-    for a, b, thick in bars:
-        s.rod(a, b, thick, painted, sides=12)
+    for a, b, radius in bars:
+        s.rod(a, b, radius, frame_paint, sides=12)
     for x in (-0.05, 0.05):
-        s.rod((x * 0.5, *CRANK[1:]), (x, *REAR[1:]), 0.011, painted)
-        s.rod((x * 0.4, seat[1] + 0.02, seat[2] - 0.06), (x, *REAR[1:]), 0.009, painted)
-        s.tube([(x * 0.9, low[1], low[2] - 0.01), (x, 0.47, 0.52), (x, *FRONT[1:])], 0.012, painted)
+        s.rod((x * 0.5, *CRANK[1:]), (x, *REAR[1:]), 0.011, frame_paint)
+        s.rod((x * 0.4, seat[1] + 0.02, seat[2] - 0.06), (x, *REAR[1:]), 0.009, frame_paint)
+        s.tube([(x * 0.9, low[1], low[2] - 0.01), (x, 0.47, 0.52), (x, *FRONT[1:])], 0.012, frame_paint)
     s.rod(seat, (0, -0.275, 0.94), 0.013, steel())
     saddle = [(-0.085, -0.40), (0.085, -0.40), (0.07, -0.27), (0.025, -0.13), (-0.025, -0.13), (-0.07, -0.27)]
     s.prism(saddle, (0.935, 0.985), paint("brown" if model.step_through else "black", dirt=0.1), "XY")

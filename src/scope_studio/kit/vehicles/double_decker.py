@@ -101,13 +101,13 @@ def double_decker(colour: str, *, plate: str, route: str, destination: str, oper
     ``poster`` is the text of an advertisement between the decks.
     """
     extra_parts, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
-    letters.append(bw.words(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))
-    letters.append(bw.words(route, 0.26, (0, REAR_M - 0.03, 2.66), "-Y", "white"))
-    letters += bw.both_sides(operator, 0.15, 0.0, 1.22, fittings.contrast(colour), x=HALF_M, width_m=3.2)
+    letters.append(bw.text_line(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))
+    letters.append(bw.text_line(route, 0.26, (0, REAR_M - 0.03, 2.66), "-Y", "white"))
+    letters += bw.text_on_both_sides(operator, 0.15, 0.0, 1.22, fittings.lettering_colour(colour), x=HALF_M, width_m=3.2)
     board = shading.plain("bus poster", (0.66, 0.60, 0.40), 0.4)
     for sign in (-1, 1):
         extra_parts.box((0.02, 5.2, 0.42), (sign * (HALF_M + 0.004), -0.4, 2.72), board, bevel_m=0.004)
-    letters += bw.both_sides(poster, 0.22, -0.4, 2.72, "dark blue", x=HALF_M + 0.014, width_m=4.8)
+    letters += bw.text_on_both_sides(poster, 0.22, -0.4, 2.72, "dark blue", x=HALF_M + 0.014, width_m=4.8)
     patches = [
         Patch(TRIM, z=(0.0, 0.42), roughness=0.6),
         Patch((0.62, 0.57, 0.42), x=(1.1, 9), z=(2.46, 2.98), roughness=0.3),

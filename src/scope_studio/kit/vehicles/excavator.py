@@ -13,7 +13,7 @@ from scope_studio.kit.vehicles import fittings
 from scope_studio.kit.vehicles import paintwork as pw
 
 
-def _turn(origin: Point, degrees: float) -> Matrix:
+def _rotated_frame(origin: Point, degrees: float) -> Matrix:
     """Return a frame at ``origin`` that is rotated about x. Positive angles tilt its +y axis upwards."""
     return Matrix.Translation(origin) @ Matrix.Rotation(math.radians(degrees), 4, "X")
 
@@ -44,16 +44,16 @@ def _track(parts: Parts, x: float, length: float, height: float, width: float) -
     shoes = 46
     outer = parts.matrix.copy()
     for k in range(shoes):
-        s = total * k / shoes
-        if s < straight:
-            y, z, a = -reach + s, 0.0, 0.0
-        elif s < straight + bend:
-            a = (s - straight) / radius
+        distance = total * k / shoes
+        if distance < straight:
+            y, z, a = -reach + distance, 0.0, 0.0
+        elif distance < straight + bend:
+            a = (distance - straight) / radius
             y, z = reach + radius * math.sin(a), radius - radius * math.cos(a)
-        elif s < 2 * straight + bend:
-            y, z, a = reach - (s - straight - bend), height, math.pi
+        elif distance < 2 * straight + bend:
+            y, z, a = reach - (distance - straight - bend), height, math.pi
         else:
-            a = math.pi + (s - 2 * straight - bend) / radius
+            a = math.pi + (distance - 2 * straight - bend) / radius
             y, z = -reach + radius * math.sin(a), radius - radius * math.cos(a)
         parts.matrix = outer @ Matrix.Translation((x, y, z)) @ Matrix.Rotation(a, 4, "X")
         parts.box((width, total / shoes * 0.90, 0.03), (0, 0, 0.035), fittings.worn_steel(), bevel_m=0.004)
@@ -178,8 +178,8 @@ def excavator(
     _arm(parts, upper, boom_deg, stick_deg, bucket_deg)
     letters = []
     for sign, facing in ((1, "+X"), (-1, "-X")):
-        letters.append(bw.words(number, 0.26, (sign * 1.255, -1.10, 1.64), facing, "black", width_m=0.80))
-    letters.append(bw.words(number, 0.30, (0, -2.304, 1.62), "-Y", "black", width_m=1.3))
+        letters.append(bw.text_line(number, 0.26, (sign * 1.255, -1.10, 1.64), facing, "black", width_m=0.80))
+    letters.append(bw.text_line(number, 0.30, (0, -2.304, 1.62), "-Y", "black", width_m=1.3))
     for line in letters:
         mark = line.mark
         line.points = [tuple(upper @ Vector(p)) for p in line.points]
@@ -238,7 +238,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
             paint,
             bevel_m=0.015,
         )
-    chord = _turn((0, 0, 0), boom_deg - 21.0)
+    chord = _rotated_frame((0, 0, 0), boom_deg - 21.0)
     boom = upper @ Matrix.Translation(foot) @ chord
     parts.matrix = boom
     # The boom is bent: its lower part is steeper than the line between its ends, and its upper part is less steep.
@@ -286,7 +286,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
         bevel_m=0.01,
     )
     parts.box((0.10, 0.08, 0.10), (0.24, bend[0] + 0.3, bend[1] - 0.05), pw.lamp("white"), bevel_m=0.02)
-    stick = Matrix.Translation(nose) @ upper.to_3x3().to_4x4() @ _turn((0, 0, 0), stick_deg)
+    stick = Matrix.Translation(nose) @ upper.to_3x3().to_4x4() @ _rotated_frame((0, 0, 0), stick_deg)
     parts.matrix = stick
     parts.prism(
         [
@@ -310,7 +310,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
     heel = stick @ Vector((0, 0.15, 0.42))
     crank = stick @ Vector((0, _STICK - 0.42, 0.30))
     parts.disc(0.11, -0.26, 0.26, (0, _STICK, 0), iron, steps=14)
-    bucket = Matrix.Translation(tip) @ upper.to_3x3().to_4x4() @ _turn((0, 0, 0), bucket_deg)
+    bucket = Matrix.Translation(tip) @ upper.to_3x3().to_4x4() @ _rotated_frame((0, 0, 0), bucket_deg)
     parts.matrix = bucket
     _bucket(parts)
     ear = bucket @ Vector((0, 0.10, 0.36))

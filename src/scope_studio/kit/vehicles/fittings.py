@@ -13,7 +13,7 @@ DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark g
 """Paint colours on which lettering is white."""
 
 
-def contrast(colour: str) -> str:
+def lettering_colour(colour: str) -> str:
     """Return the colour of lettering that is easiest to read on a paint."""
     return "white" if colour in DARK_PAINTS else "dark blue"
 

@@ -16,7 +16,7 @@ SEAT: tuple[float, float, float] = (0.0, -0.22, 1.02)
 def forklift(colour: str = "yellow", *, number: str = "3", fork_m: float = 0.10, lit: bool = True, beacon: bool = True) -> Built:
     """Build a 2.5-tonne forklift facing +y, with its forks at the height ``fork_m``.
 
-    ``lit`` turns on its lamps, including the blue spotlight on the floor.
+    ``lit`` turns on its front lamps, its tail lamps and, if ``beacon`` is set, its beacon.
     """
     s = Solid("forklift")
     body, dark, black = paint(colour, dirt=0.42), paint("dark grey", dirt=0.35), rubber()

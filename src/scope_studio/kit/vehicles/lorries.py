@@ -23,7 +23,7 @@ def _box_parts() -> Parts:
     parts.slot(pw.paint_slot(1))
     chassis.running_gear(parts, 2.35, [-2.35], -4.25, 3.6)
     chassis.cab(parts, 3.72)
-    chassis.stores(parts, 1.55)
+    chassis.tank_and_boxes(parts, 1.55)
     chassis.side_guards(parts, -1.55, 0.35)
     box = pw.paint_slot(1)
     parts.box((2.48, 6.10, 2.55), (0, -1.20, 2.42), box, bevel_m=0.03)
@@ -61,9 +61,9 @@ def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -
     """
     body = bw.body_mesh("box lorry", _box_parts)
     extra_parts, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
-    tint = fittings.contrast(box_colour)
-    letters += bw.both_sides(lettering, 0.42, -1.2, 2.55, tint, x=1.242, width_m=5.0)
-    letters.append(bw.words(lettering, 0.16, (0, -4.281, 3.30), "-Y", tint, width_m=0.30 * 7))
+    tint = fittings.lettering_colour(box_colour)
+    letters += bw.text_on_both_sides(lettering, 0.42, -1.2, 2.55, tint, x=1.242, width_m=5.0)
+    letters.append(bw.text_line(lettering, 0.16, (0, -4.281, 3.30), "-Y", tint, width_m=0.30 * 7))
     paints = [
         pw.paint("lorry cab", cab_colour, dirt_top_m=1.2),
         pw.paint("lorry box", box_colour, _SEAMS, dirt_top_m=1.9, dirt=0.35),
@@ -77,7 +77,7 @@ def _tipper_parts() -> Parts:
     parts.slot(pw.paint_slot(1))
     chassis.running_gear(parts, 2.55, [-1.35, -2.65], -3.95, 3.7)
     chassis.cab(parts, 3.85)
-    chassis.stores(parts, 1.75)
+    chassis.tank_and_boxes(parts, 1.75)
     body, dark = pw.paint_slot(1), chassis.chassis_paint()
     floor, top, y0, y1 = 1.30, 2.45, -4.15, 1.65
     parts.box((2.36, y1 - y0, 0.14), (0, (y0 + y1) / 2, floor), body)
@@ -110,11 +110,11 @@ def _tipper_parts() -> Parts:
     for x in (-0.8, 0.0, 0.8):
         parts.box((0.12, 0.08, top - floor - 0.08), (x, y0 - 0.05, (top + floor) / 2), body)
     parts.lathe([(0.11, 0.95), (0.11, 2.1), (0.09, 2.1), (0.09, 2.6)], (0, y1 + 0.22, 0), fittings.aluminium(), steps=16)
-    _load(parts, y0 + 0.06, y1 - 0.06, top - 0.32)
+    _stone_load(parts, y0 + 0.06, y1 - 0.06, top - 0.32)
     return parts
 
 
-def _load(parts: Parts, y0: float, y1: float, z: float) -> None:
+def _stone_load(parts: Parts, y0: float, y1: float, z: float) -> None:
     """Add a heap of crushed stone as the load of a tipper."""
     stone = bpy.data.materials.get("lorry aggregate")
     if stone is None:
@@ -156,10 +156,11 @@ def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
     return bw.finish("tipper", bw.body_mesh("tipper", _tipper_parts), paints, letters, extra_parts)
 
 
-def _tank_outline(grow: float = 0.0) -> list[Point2D]:
-    """Return the cross-section of the tank, enlarged by ``grow`` metres."""
+def _tank_outline(margin_m: float = 0.0) -> list[Point2D]:
+    """Return the cross-section of the tank, enlarged by ``margin_m`` metres."""
     return [
-        ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a)) for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
+        ((1.20 + margin_m) * math.cos(a), 2.12 + (0.90 + margin_m) * math.sin(a))
+        for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
     ]
 
 
@@ -169,7 +170,7 @@ def _tanker_parts() -> Parts:
     parts.slot(pw.paint_slot(1))
     chassis.running_gear(parts, 2.75, [-1.35, -2.70], -4.20, 3.9)
     chassis.cab(parts, 4.05)
-    chassis.stores(parts, 1.90)
+    chassis.tank_and_boxes(parts, 1.90)
     y0, y1 = -4.25, 1.90
     parts.prism(_tank_outline(), y0 + 0.12, y1 - 0.12, pw.paint_slot(1), axis="Y", smooth=True)
     for y, sign in ((y0 + 0.12, -1), (y1 - 0.12, 1)):
@@ -222,7 +223,7 @@ def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
     """Build a three-axle fuel tanker, 8.4 m long, with a silver tank and lettering on both sides."""
     body = bw.body_mesh("tanker", _tanker_parts)
     extra_parts, letters = bw.plates(plate, (4.19, 0.60), (-4.22, 0.98))
-    letters += bw.both_sides(
+    letters += bw.text_on_both_sides(
         lettering,
         0.40,
         -1.2,
@@ -231,6 +232,6 @@ def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
         width_m=4.4,
         onto=bw.Surface(body),
     )
-    letters += [bw.words("HIGHLY FLAMMABLE", 0.11, (0, -4.262, 2.3), "-Y", "red", width_m=1.4)]
+    letters += [bw.text_line("HIGHLY FLAMMABLE", 0.11, (0, -4.262, 2.3), "-Y", "red", width_m=1.4)]
     paints = [pw.paint("lorry cab", cab_colour, dirt_top_m=1.2), pw.paint("tank", "silver", dirt_top_m=2.0, dirt=0.4)]
     return bw.finish("tanker", body, paints, letters, extra_parts)

@@ -138,19 +138,19 @@ def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, materi
     parts.matrix = Matrix.Identity(4)
 
 
-def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float, front_end: float) -> None:
-    """Add frame rails, axles, wheels, mudguards, tank, battery box, and the rear bumper bar with its lamps."""
+def running_gear(parts: Parts, front_axle_y: float, rear_axles_y: list[float], rear_end: float, front_end: float) -> None:
+    """Add frame rails, axles, wheels, mudguards, mudflaps, and the rear bumper bar with its lamps."""
     dark = chassis_paint()
     for x in (-0.42, 0.42):
         parts.box((0.09, front_end - rear_end, 0.26), (x, (front_end + rear_end) / 2, 0.92), dark)
-    for y in (front, *rears):
+    for y in (front_axle_y, *rear_axles_y):
         parts.tube([(-0.95, y, 0.5), (0.95, y, 0.5)], 0.08, dark)
         for sign in (-1, 1):
-            driven = y != front
+            driven = y != front_axle_y
             wheels.lorry_wheel(parts, (sign * (1.06 if driven else 1.04), y, 0.50), 0.50, sign, twin=driven)
-        if y != front:
+        if y != front_axle_y:
             mudguard(parts, y, 0.5, 0.62, 1.20, dark)
-    mudguard(parts, front, 0.5, 0.80, 1.20, pw.black_trim())
+    mudguard(parts, front_axle_y, 0.5, 0.80, 1.20, pw.black_trim())
     parts.box((2.30, 0.10, 0.14), (0, rear_end + 0.06, 0.56), fittings.aluminium())
     for sign in (-1, 1):
         fittings.set_side(parts, sign)
@@ -158,7 +158,7 @@ def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float
         parts.box((0.44, 0.06, 0.15), (0.96, rear_end + 0.03, 0.74), wheels.shade(), bevel_m=0.015)
         for x, colour in ((1.09, "amber"), (0.95, "red"), (0.81, "red")):
             parts.box((0.12, 0.04, 0.12), (x, rear_end - 0.002, 0.74), pw.lamp(colour), bevel_m=0.015)
-        parts.box((0.50, 0.012, 0.40), (0.90, rears[-1] - 0.78, 0.36), wheels.rubber(), bevel_m=0.0)
+        parts.box((0.50, 0.012, 0.40), (0.90, rear_axles_y[-1] - 0.78, 0.36), wheels.rubber(), bevel_m=0.0)
     parts.matrix = Matrix.Identity(4)
 
 
@@ -173,7 +173,7 @@ def side_guards(parts: Parts, y0: float, y1: float) -> None:
     parts.matrix = Matrix.Identity(4)
 
 
-def stores(parts: Parts, y: float) -> None:
+def tank_and_boxes(parts: Parts, y: float) -> None:
     """Add the fuel tank on the right, and the battery and air boxes on the left, behind the cab."""
     parts.prism(
         [(0.62, 0.42), (1.16, 0.42), (1.20, 0.48), (1.20, 0.90), (1.14, 0.96), (0.62, 0.96)],

@@ -20,8 +20,8 @@ def roller(colour: str, *, number: str) -> Built:
     It has two steel drums, a roll-over frame with a canopy, and an operator's seat.
     """
     mesh = bw.body_mesh("roller", _roller_parts)
-    letters = bw.both_sides(number, 0.26, -0.14, 1.12, "black", x=0.765, width_m=0.7)
-    letters.append(bw.words(number, 0.22, (0, -2.36, 1.33), "-Y", "black", width_m=0.8))
+    letters = bw.text_on_both_sides(number, 0.26, -0.14, 1.12, "black", x=0.765, width_m=0.7)
+    letters.append(bw.text_line(number, 0.22, (0, -2.36, 1.33), "-Y", "black", width_m=0.8))
     return bw.finish("roller", mesh, [fittings.machine_paint("roller", colour)], letters)
 
 
@@ -104,7 +104,7 @@ def _roller_parts() -> Parts:
 def dumper(colour: str, *, number: str) -> Built:
     """Build a nine-tonne forward-tipping site dumper, 4.6 m long, with a skip full of earth, four big wheels and a roll bar."""
     mesh = bw.body_mesh("dumper", _dumper_parts)
-    letters = bw.both_sides(number, 0.24, 0.95, 1.40, "black", x=0.86, width_m=0.8)
+    letters = bw.text_on_both_sides(number, 0.24, 0.95, 1.40, "black", x=0.86, width_m=0.8)
     return bw.finish("dumper", mesh, [fittings.machine_paint("dumper", colour)], letters)
 
 

@@ -129,7 +129,7 @@ def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shadi
     """Mix two numbers: ``a`` where the factor is 0, ``b`` where it is 1."""
     node = sh.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        sh.feed(node.inputs[socket], value)
+        sh.set_input(node.inputs[socket], value)
     return node.outputs[0]
 
 
@@ -137,7 +137,7 @@ def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.
     """Return a mask that is 1 between the limits and 0 elsewhere. It has hard edges and fewer nodes than ``Shader.band``."""
     node = sh.node("ShaderNodeMath", operation="COMPARE")
     for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
-        sh.feed(node.inputs[socket], number)
+        sh.set_input(node.inputs[socket], number)
     return node.outputs[0]
 
 

@@ -105,11 +105,13 @@ def _led() -> bpy.types.Material:
     )
 
 
-def tram(colour: str, *, line: str, destination: str, number: str, company: str, second: str = "cream", lit: bool = True) -> Built:
+def tram(
+    colour: str, *, line: str, destination: str, number: str, company: str, second_colour: str = "cream", lit: bool = True
+) -> Built:
     """Build a three-part low-floor tram, 19.6 m long, with two colours, a pantograph, and lettering on its ends and sides."""
     s = Solid(f"{colour} tram")
     skin = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
-    band, dark = paint(second, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
+    band, dark = paint(second_colour, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
     half, joint = LENGTH_M / 2, 2.7
     for sign in (-1, 1):
         _hull(s, [(sign * (joint + 0.3), 1.0, False), (sign * (half - 1.9), 1.0, False), (sign * (half - 0.6), 0.93, True),

@@ -50,10 +50,10 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
     return s.built()
 
 
-def gate(open: bool = False) -> Built:  # noqa: A002
+def gate(is_open: bool = False) -> Built:
     """Build a double site gate, 6.2 m between posts and 2.2 m high.
 
-    If closed, the leaves are along x; with ``open``, they are turned back towards -y.
+    If closed, the leaves are along x; with ``is_open``, they are turned back towards -y.
     """
     s = Solid("site gate")
     leaf = 3.0
@@ -61,7 +61,7 @@ def gate(open: bool = False) -> Built:  # noqa: A002
         s.box((0.14, 0.14, 2.4), (sign * 3.1, 0, 1.2), steel(), 0.01)
         s.lathe([(0.085, 2.4), (0.06, 2.43)], steel(dark=True), (sign * 3.1, 0, 0), steps=4)
         s.box((0.5, 0.5, 0.10), (sign * 3.1, 0, 0.05), concrete(light=False), 0.02)
-        with s.at(sign * 3.02, 0, 0, turn=sign * (86.0 if open else 0.6)):
+        with s.at(sign * 3.02, 0, 0, turn=sign * (86.0 if is_open else 0.6)):
             frame(s, leaf, 0.16, 2.2, -sign * leaf / 2, 0.026)
             wire_mesh(s, leaf - 0.04, 0.18, 2.18, -sign * leaf / 2)
             s.rod((-sign * 0.02, 0, 0.18), (-sign * (leaf - 0.02), 0, 2.18), 0.014, steel())
@@ -73,7 +73,7 @@ def gate(open: bool = False) -> Built:  # noqa: A002
                 s.text(line, 0.085, (-sign * leaf / 2, 0.0405, 1.73 - 0.14 * i), paint("black", dirt=0.0))
             for z in (0.45, 1.9):
                 s.rod((0.06 * sign, 0, z - 0.05), (0.06 * sign, 0, z + 0.05), 0.03, steel(dark=True))
-    if not open:
+    if not is_open:
         s.tube(
             [(0.05 * math.cos(a), 0.05 * math.sin(a), 1.05) for a in (k * math.pi / 4 for k in range(8))],
             0.010,

@@ -1,4 +1,4 @@
-"""Works at buildings and in the street: scaffolding, a ladder, an open manhole."""
+"""Building works and street works: scaffolding, a ladder and an open manhole."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 
-def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_m: float = 2.6) -> Built:
+def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_lift_m: float = 2.6) -> Built:
     """Build tube scaffolding along x in front of a wall on y = 0: boarded lifts with guard rails, braces, base plates."""
     s = Solid("scaffolding")
     tube, r = steel(), 0.024
     bays = max(2, round(width_m / 2.0))
     xs = [-width_m / 2 + width_m * k / bays for k in range(bays + 1)]
-    top = first_m + 2.0 * (lifts - 1) + 1.15
+    top = first_lift_m + 2.0 * (lifts - 1) + 1.15
     for x in xs:
         for y in (0.25, 0.25 + depth_m):
             s.rod((x, y, 0.02), (x, y, top), r, tube, sides=8)
             s.box((0.15, 0.15, 0.012), (x, y, 0.012), steel(dark=True), 0.003)
             s.box((0.45, 0.22, 0.04), (x, y, 0.0), timber(fresh=False), 0.004)
     for k in range(lifts):
-        z = first_m + 2.0 * k
+        z = first_lift_m + 2.0 * k
         for y in (0.25, 0.25 + depth_m):
             s.rod((xs[0] - 0.25, y, z - 0.06), (xs[-1] + 0.25, y, z - 0.06), r, tube, sides=8)
         for rail in (0.5, 1.0):
@@ -36,7 +36,7 @@ def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_m
         s.box((width_m + 0.4, 0.03, 0.20), (0, 0.25 + depth_m + 0.02, z + 0.12), timber(), 0.004)
     for k in range(bays):
         x0, x1 = (xs[k], xs[k + 1]) if k % 2 == 0 else (xs[k + 1], xs[k])
-        s.rod((x0, 0.31 + depth_m, 0.15), (x1, 0.31 + depth_m, first_m + 2.0 * (lifts - 1)), r, tube, sides=8)
+        s.rod((x0, 0.31 + depth_m, 0.15), (x1, 0.31 + depth_m, first_lift_m + 2.0 * (lifts - 1)), r, tube, sides=8)
     return s.built()
 
 

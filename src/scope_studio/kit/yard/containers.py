@@ -28,8 +28,8 @@ def container_paint(colour: str) -> bpy.types.Material:
         return existing
     s = Shader(name)
     shifted = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(shifted.inputs[0], s.object_coords())
-    s.feed(shifted.inputs[1], s.math("MULTIPLY", s.random(), 53.0))
+    s.set_input(shifted.inputs[0], s.object_coords())
+    s.set_input(shifted.inputs[1], s.math("MULTIPLY", s.random(), 53.0))
     p = shifted.outputs[0]
     base = s.mix(s.ramp(s.noise(p, 1.1, 6.0), 0.3, 0.7, 0.0, 0.28), PALETTE[colour], (0.35, 0.34, 0.32))
     dirty = with_dirt(s, base, 0.34, 0.30)
@@ -111,7 +111,7 @@ def container(
     roof += [(d - 0.10, h - 0.03), (d - 0.10, h - 0.06), (-d + 0.10, h - 0.06)]
     s.prism(roof, (-w + 0.05, w - 0.05), skin, "YZ")
     s.box((WIDTH_M - 0.16, length - 0.14, 0.05), (0, 0, 0.15), timber(fresh=False), 0.0)
-    _doors(s, w, d, h, skin, iron, ink, code, opened=doors == "open")
+    _doors(s, w, d, h, skin, iron, ink, code, is_open=doors == "open")
     if load == "cartons":
         _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
@@ -134,13 +134,13 @@ def _doors(
     ink: bpy.types.Material,
     code: str,
     *,
-    opened: bool,
+    is_open: bool,
 ) -> None:
     """Add the two leaves of the doors, with four lock rods. The code is on the right-hand leaf."""
     width, height = w - 0.13, h - 0.36
     for side in (-1, 1):
-        turn = side * (-252.0 if opened else 0.0)
-        with s.at(side * (w + 0.02 if opened else w - 0.09), d - 0.035, 0.19 + height / 2, turn=turn):
+        turn = side * (-252.0 if is_open else 0.0)
+        with s.at(side * (w + 0.02 if is_open else w - 0.09), d - 0.035, 0.19 + height / 2, turn=turn):
             cx = -side * width / 2
             s.box((width, 0.05, height), (cx, 0, 0), skin, 0.008)
             for k in range(3):

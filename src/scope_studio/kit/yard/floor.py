@@ -1,4 +1,4 @@
-"""The floor of a freight yard: asphalt and jointed concrete, damp in places, and painted markings, which are thin meshes on it."""
+"""The floor of a freight yard: asphalt and jointed concrete, damp in places, and painted markings, which are thin meshes."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Mater
     value = s.math("MULTIPLY", value, s.ramp(_cracks(s, p), 0, 1, 1.0, 0.40, smooth=False))
     colour: Value = s.node("ShaderNodeCombineColor")
     for index, warmth in enumerate((1.03, 1.0, 0.97)):
-        s.feed(colour.inputs[index], s.math("MAXIMUM", s.math("MULTIPLY", value, warmth), 0.008))
-    return _damp(s, p, colour.outputs[0], blotch, s.math("ADD", s.math("MULTIPLY", grain, 0.5), fine))
+        s.set_input(colour.inputs[index], s.math("MAXIMUM", s.math("MULTIPLY", value, warmth), 0.008))
+    return _damp_floor(s, p, colour.outputs[0], blotch, s.math("ADD", s.math("MULTIPLY", grain, 0.5), fine))
 
 
 def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Material:
@@ -54,8 +54,8 @@ def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Mat
     cell = s.node("ShaderNodeTexWhiteNoise", noise_dimensions="2D")
     corner = s.node("ShaderNodeCombineXYZ")
     for index, axis in enumerate((x, y)):
-        s.feed(corner.inputs[index], s.math("FLOOR", s.math("DIVIDE", axis, joint_m)))
-    s.feed(cell.inputs["Vector"], corner.outputs[0])
+        s.set_input(corner.inputs[index], s.math("FLOOR", s.math("DIVIDE", axis, joint_m)))
+    s.set_input(cell.inputs["Vector"], corner.outputs[0])
     tone = s.math("ADD", s.math("MULTIPLY", s.ramp(blotch, 0.25, 0.75), 0.65), s.math("MULTIPLY", cell.outputs["Value"], 0.35))
     colour = s.mix(tone, (0.115, 0.112, 0.104), (0.245, 0.238, 0.222))
     colour = s.mix(s.ramp(fine, 0.3, 0.7, 0.0, 0.30), colour, (0.09, 0.088, 0.082))
@@ -67,30 +67,30 @@ def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Mat
         near = s.math("PINGPONG", s.math("ADD", axis, joint_m / 2), joint_m / 2)
         joint = s.ramp(s.math("SUBTRACT", joint_m / 2, near), 0.010, 0.022, 1.0, 0.0)
         colour = s.mix(joint, colour, (0.018, 0.018, 0.018))
-    return _damp(s, p, colour, blotch, fine)
+    return _damp_floor(s, p, colour, blotch, fine)
 
 
 def _cracks(s: Shader, p: Value) -> Value:
     warp = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(warp.inputs[0], p)
-    s.feed(warp.inputs[1], s.noise(p, 0.9, detail=5.0))
+    s.set_input(warp.inputs[0], p)
+    s.set_input(warp.inputs[1], s.noise(p, 0.9, detail=5.0))
     distance = s.voronoi(warp.outputs[0], 0.30, feature="DISTANCE_TO_EDGE")
     return s.math("MULTIPLY", s.ramp(distance, 0.0008, 0.0042, 1.0, 0.0), s.ramp(s.noise(p, 0.05, detail=3.0), 0.48, 0.58))
 
 
-def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> bpy.types.Material:
-    """Return the finished floor material. Hollows contain water, so they are darker and smoother than the rest."""
+def _damp_floor(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> bpy.types.Material:
+    """Return the floor material with damp hollows, which are darker and smoother than the rest."""
     hollow = s.noise(p, 0.13, detail=4.0, roughness=0.55)
-    wet = s.ramp(s.math("ADD", hollow, s.math("MULTIPLY", s.math("SUBTRACT", blotch, 0.5), 0.22)), 0.57, 0.63)
-    moist = s.ramp(hollow, 0.40, 0.60)
-    colour = s.mix(s.math("MULTIPLY", moist, 0.35), colour, (0.020, 0.020, 0.021))
-    colour = s.mix(s.math("MULTIPLY", wet, 0.55), colour, (0.012, 0.012, 0.013))
-    rough = s.ramp(moist, 0.0, 1.0, 0.80, 0.48, smooth=False)
-    rough = s.math("ADD", s.math("MULTIPLY", rough, s.math("SUBTRACT", 1.0, wet)), s.math("MULTIPLY", wet, 0.13))
+    puddle = s.ramp(s.math("ADD", hollow, s.math("MULTIPLY", s.math("SUBTRACT", blotch, 0.5), 0.22)), 0.57, 0.63)
+    damp = s.ramp(hollow, 0.40, 0.60)
+    colour = s.mix(s.math("MULTIPLY", damp, 0.35), colour, (0.020, 0.020, 0.021))
+    colour = s.mix(s.math("MULTIPLY", puddle, 0.55), colour, (0.012, 0.012, 0.013))
+    rough = s.ramp(damp, 0.0, 1.0, 0.80, 0.48, smooth=False)
+    rough = s.math("ADD", s.math("MULTIPLY", rough, s.math("SUBTRACT", 1.0, puddle)), s.math("MULTIPLY", puddle, 0.13))
     bump = s.node("ShaderNodeBump")
     bump.inputs["Distance"].default_value = 0.004
-    s.feed(bump.inputs["Strength"], s.ramp(wet, 0.0, 1.0, 0.30, 0.02))
-    s.feed(bump.inputs["Height"], height)
+    s.set_input(bump.inputs["Strength"], s.ramp(puddle, 0.0, 1.0, 0.30, 0.02))
+    s.set_input(bump.inputs["Height"], height)
     return s.surface(base_color=colour, roughness=rough, specular_ior_level=0.5, normal=bump.outputs[0])
 
 
@@ -158,7 +158,7 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
         line(s, a, b, 0.12, ink)
     steps = int((width + depth) / pitch)
     for k in range(1, steps):
-        c = -w - d + k * pitch  # the bar lies on x - y = c
+        c = -w - d + k * pitch  # the bar is on the line x - y = c
         ends = [
             (x, y) for x, y in ((-w, -w - c), (w, w - c), (-d + c, -d), (d + c, d)) if abs(x) <= w + 1e-6 and abs(y) <= d + 1e-6
         ]

@@ -17,7 +17,7 @@ PALLET_M = 0.144
 """Height of a pallet in metres."""
 
 
-def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
+def add_pallet(s: Solid, *, fresh: bool = False) -> None:
     """Add a pallet, 1.2 x 1.0 m, on z = 0 of the current frame."""
     wood = timber(fresh=fresh)
     for k in range(3):
@@ -36,7 +36,7 @@ def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
     rng = random.Random(f"stack {seed}")
     for k in range(count):
         with s.at(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), PALLET_M * k, turn=rng.uniform(-2, 2)):
-            lay_pallet(s, fresh=rng.random() < 0.25)
+            add_pallet(s, fresh=rng.random() < 0.25)
     return s.built()
 
 
@@ -47,7 +47,7 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
     """
     s = Solid(f"pallet of {kind}")
     rng = random.Random(f"load {kind} {seed}")
-    lay_pallet(s)
+    add_pallet(s)
     top = PALLET_M
     if kind == "cartons":
         tones = [
@@ -180,7 +180,7 @@ def tank(label: str = "LOAD 7") -> Built:
     """Build a 1000-litre liquid container: a white tank in a tube cage on a pallet, with its tap and label towards +y."""
     s = Solid("intermediate bulk container")
     milk = plain("milky plastic", (0.62, 0.64, 0.60), 0.35)
-    lay_pallet(s)
+    add_pallet(s)
     s.box((1.10, 0.92, 0.95), (0, 0, 0.65), milk, 0.08)
     s.lathe([(0.11, 1.12), (0.11, 1.16)], paint("black"), steps=20)
     cage = steel()
@@ -197,7 +197,7 @@ def tank(label: str = "LOAD 7") -> Built:
     return s.built()
 
 
-def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None = None) -> Built:  # noqa: A002
+def wheelie_bin(colour: str = "green", *, is_open: bool = False, label: str | None = None) -> Built:
     """Build an 1100-litre wheeled bin with its lid shut or folded back."""
     s = Solid(f"{colour} wheelie bin")
     skin = paint(colour, dirt=0.38, roughness=0.45)
@@ -221,7 +221,7 @@ def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None 
         for sy in (-1, 1):
             s.lathe([(0.10, -0.03), (0.10, 0.03)], rubber(), (sx * 0.42, sy * 0.30, 0.10), "X", 20)
             s.box((0.08, 0.10, 0.12), (sx * 0.42, sy * 0.30, 0.18), steel(), 0.01)
-    with s.at(0, -0.52, 1.17, pitch=105 if open else 0):
+    with s.at(0, -0.52, 1.17, pitch=105 if is_open else 0):
         arc = [
             (0.0, 0.0),
             (0.25, 0.10),
@@ -241,7 +241,7 @@ def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None 
     return s.built()
 
 
-def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
+def carton(*, seed: int = 0, is_open: bool = False) -> Built:
     """Build a cardboard box, 0.5 m, taped shut or with its flaps up."""
     s = Solid("cardboard box")
     rng = random.Random(f"carton {seed}")
@@ -249,7 +249,7 @@ def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
     w, d, h = rng.uniform(0.40, 0.55), rng.uniform(0.34, 0.45), rng.uniform(0.28, 0.42)
     s.box((w, d, h), (0, 0, h / 2), skin, 0.006)
     s.box((0.06, d + 0.003, h + 0.003), (0, 0, h / 2), plain("carton tape", (0.46, 0.34, 0.20), 0.35), 0.0)
-    if open:
+    if is_open:
         s.box((w - 0.03, d - 0.03, 0.004), (0, 0, h + 0.001), lens("black"), 0.0)
         for side in (-1, 1):
             with s.at(0, side * d / 2, h, pitch=side * 35):

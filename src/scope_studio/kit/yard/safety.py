@@ -13,7 +13,7 @@ from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import INK, board, disc, flat, stroke, write
-from scope_studio.kit.signs.stands import posts_at
+from scope_studio.kit.signs.stands import add_posts
 
 FENCE_M = 3.0
 """Length of a chain-link panel in metres."""
@@ -211,7 +211,7 @@ def notice(
             v = height / 2 - head - text_h / 2 + ((len(lines) - 1) / 2 - i) * 1.65 * cap
             write(s, line, cap, 0, v, INK.get(background, "black"))
     if post_height is not None:
-        posts_at(s, width * 0.3 if width > 0.8 else 0.0, post_height + height - 0.05, 0.035, -0.075)
+        add_posts(s, width * 0.3 if width > 0.8 else 0.0, post_height + height - 0.05, 0.035, -0.075)
     return s.built()
 
 
@@ -265,7 +265,7 @@ def assembly_point(letter: str = "A") -> Built:
             stroke(s, [(x, 0.18), (x, 0.11)], 0.035, white)
         write(s, "ASSEMBLY POINT", 0.072, 0, -0.20, "white")
         write(s, letter, 0.22, 0, -0.38, "white")
-    posts_at(s, 0.0, 2.5, 0.038, -0.075)
+    add_posts(s, 0.0, 2.5, 0.038, -0.075)
     return s.built()
 
 

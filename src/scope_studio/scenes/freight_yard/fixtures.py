@@ -86,18 +86,16 @@ def _gate(stage: Stage) -> None:
 
 
 def _fences(stage: Stage) -> None:
-    """Place the fences. Each side of the yard is one instance; the damaged panel in the west is a separate one."""
-    prototype = yard_safety.chain_link()
+    """Place the fences. Each run of panels is one instance, and the damaged panel in the west is a separate instance."""
+    prototypes = Prototypes()
     step = yard_safety.FENCE_M
-    fresh = [True]
 
     def run(name: str, x0: float, y0: float, dx: float, dy: float, count: int, bearing: float, skip: tuple[int, ...] = ()) -> None:
         parts = []
         for k in range(count):
             if k in skip:
                 continue
-            panel = prototype if fresh[0] else prototype.copy()
-            fresh[0] = False
+            panel = prototypes.get("panel", yard_safety.chain_link)
             stage.put(panel, (x0 + dx * step * (k + 0.5), y0 + dy * step * (k + 0.5), 0), bearing)
             parts += panel.objects
         built = Built.of(name, [])
@@ -127,16 +125,16 @@ def _shelters(stage: Stage) -> None:
     dusk.lamplight((-51.9, -34.0, 2.25), 40, dusk.LED, size_m=1.0)
     rows = [("red", "town", 1.9), ("blue", "town", 1.2), ("black", "town", -0.4), ("green", "town", -1.2), ("orange", "town", -1.9)]
     prototypes = Prototypes()
-    for colour, kind, along in rows:
+    for colour, kind, offset in rows:
         built = cycles.bicycle(colour, kind=kind)
         stage.place(
-            built, "bicycle", f"{colour} bicycle", (-52.15, -34.0 - along, 0), 270, colour=colour, state="parked", parent=shelter
+            built, "bicycle", f"{colour} bicycle", (-52.15, -34.0 - offset, 0), 270, colour=colour, state="parked", parent=shelter
         )
         stage.place(
             prototypes.get("hoop", cycles.bike_stand),
             "bike stand",
             "bike stand",
-            (-52.1, -34.0 - along - 0.22, 0),
+            (-52.1, -34.0 - offset - 0.22, 0),
             270,
             material="steel",
             parent=shelter,

@@ -15,17 +15,17 @@ IN_X, OUT_X = -1.2, 7.2
 BAY_M = 2.6
 """Width of a bay in metres."""
 ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""x coordinate of the middle, and number, of each bay in the row. Cars face north."""
+"""Bays of the northern row: x coordinate of the middle in metres, and number. Cars face north."""
 ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
-"""The same for the second row."""
+"""Bays of the southern row: x coordinate of the middle in metres, and number. Cars face south."""
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 """y coordinates of the two rows."""
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
-"""x coordinate of the middle, and number, of each bay for visitors. The cars face south."""
+"""Bays for visitors: x coordinate of the middle in metres, and number. Cars face south."""
 VISITORS_Y = -41.5
 """y coordinate of the row for visitors."""
 TRAILER_BAYS = [(3.5 + 4.2 * k, str(61 + k)) for k in range(5)]
-"""y coordinate of the middle, and number, of each trailer bay along the west fence."""
+"""Trailer bays along the west fence: y coordinate of the middle in metres, and number."""
 TRAILER_X = -48.5
 """x coordinate of the middle of the trailer bays."""
 
@@ -40,7 +40,7 @@ MASTS = (
     (-56.0, -30.0, 90.0, "sodium", 1, True, "L8"),
     (3.0, -45.0, 0.0, "sodium", 2, True, "L9"),
 )
-"""x, y, bearing, kind of lamp, number of lamps, whether they are lit, and number of each mast."""
+"""Masts: x, y, bearing, type of lamp, number of lamps, whether they are lit, and number on the plate."""
 
 
 def build(stage: Stage) -> None:
@@ -109,7 +109,7 @@ def _stop_line() -> yard_floor.Built:
 
 
 def _walkway() -> yard_floor.Built:
-    """Return a green pedestrian walkway between white lines."""
+    """Build a green pedestrian walkway between white lines."""
     s = yard_floor.Solid("walkway")
     yard_floor.flat(s, [(-0.7, -17.0), (0.7, -17.0), (0.7, 17.0), (-0.7, 17.0)], yard_floor.paint("green"), 0.003)
     for x in (-0.75, 0.75):
@@ -118,7 +118,7 @@ def _walkway() -> yard_floor.Built:
 
 
 def _lanes() -> yard_floor.Built:
-    """Return the lines that are not annotated: lane edges, dashes, dock approach lines."""
+    """Build the lines that are not annotated: lane edges, dashes, dock approach lines."""
     s = yard_floor.Solid("lane lines")
     white, yellow = yard_floor.paint("white"), yard_floor.paint("yellow")
     for y in range(-38, 6, 5):
@@ -132,14 +132,14 @@ def _lanes() -> yard_floor.Built:
 
 
 def _bays(stage: Stage) -> None:
-    taken = {number for _, number in [*ROW_A, *ROW_B, *VISITORS]} & set(OCCUPIED)
+    occupied = {number for _, number in [*ROW_A, *ROW_B, *VISITORS]} & set(OCCUPIED)
     for row, y, bearing in ((ROW_A, ROW_A_Y, 0.0), (ROW_B, ROW_B_Y, 180.0), (VISITORS, VISITORS_Y, 180.0)):
         for x, number in row:
             kind = "visitor bay" if row is VISITORS else "charging bay" if number in CHARGING else "car bay"
             stage.place(
                 yard_floor.bay(number, width=BAY_M - 0.05, colour="white"),
                 "parking space", f"parking bay {number}", (x, y, 0), bearing,
-                number=number, state="occupied" if number in taken else "empty", kind=kind,
+                number=number, state="occupied" if number in occupied else "empty", kind=kind,
             )  # fmt: skip
     for y, number in TRAILER_BAYS:
         stage.place(
@@ -156,7 +156,7 @@ OCCUPIED = {
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",
     "39": "beige", "61": "", "63": "", "64": "",
 }  # fmt: skip
-"""Colour of the car in each occupied bay, by the number of the bay."""
+"""Colour of the car in each occupied bay, by bay number. It is empty for trailer bays."""
 
 
 def _masts(stage: Stage) -> None:

@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""A carriageway that is not built but defines the terrain: a level strip with hills on both sides."""
+"""A carriageway that is not built. It only defines the terrain: a level strip with hills on both sides."""
 STREET_Y = -58.0
 """y coordinate of the middle of the road outside."""
 
@@ -212,16 +212,16 @@ def _trees(stage: Stage) -> None:
 def _background(stage: Stage, height) -> None:
     """Place lines of trees, blocks of flats, and lights that become sparser towards the hills. They are not annotated."""
     rng = random.Random("far town")
-    kinds = [
+    trees = [
         vegetation.tree(sp, 7 + k, detail=0.12)
         for k, sp in enumerate((vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE))
     ]
     hedge = vegetation.hedge(14.0, seed=3, detail=0.3)
-    used: set[int] = set()
+    placed: set[int] = set()
 
     def scatter(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = prototype.copy() if id(prototype) in used else prototype
-        used.add(id(prototype))
+        built = prototype.copy() if id(prototype) in placed else prototype
+        placed.add(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     for x in range(-180, 190, 14):
@@ -233,12 +233,12 @@ def _background(stage: Stage, height) -> None:
         bearing, r = rng.uniform(0, 2 * math.pi), rng.uniform(118, 520)
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         if abs(y - STREET_Y) > 12:
-            scatter(kinds[rng.choices(range(4), (5, 4, 1, 2))[0]], x, y, rng.uniform(0, 360), rng.uniform(0.7, 1.2))
+            scatter(trees[rng.choices(range(4), (5, 4, 1, 2))[0]], x, y, rng.uniform(0, 360), rng.uniform(0.7, 1.2))
     blocks = [
         skyline.flats(seed=k, floors=3 + k % 4, width=16 + 4 * (k % 3), colour=c)
         for k, c in enumerate(((0.20, 0.14, 0.11), (0.26, 0.25, 0.23), (0.17, 0.10, 0.08), (0.30, 0.28, 0.24)))
     ]
-    works = [
+    sheds = [
         skyline.industrial(width=34 + 6 * k, depth=20, height=7 + k, colour=(0.16 + 0.05 * k, 0.18, 0.20), seed=20 + k)
         for k in range(3)
     ]
@@ -246,7 +246,7 @@ def _background(stage: Stage, height) -> None:
         bearing, r = rng.uniform(0, 2 * math.pi), rng.uniform(150, 460)
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         if abs(y - STREET_Y) > 24:
-            scatter(rng.choice([*blocks, *works]), x, y, math.degrees(bearing) + 180 + rng.uniform(-30, 30), rng.uniform(0.9, 1.1))
+            scatter(rng.choice([*blocks, *sheds]), x, y, math.degrees(bearing) + 180 + rng.uniform(-30, 30), rng.uniform(0.9, 1.1))
     lights = []
     for _ in range(520):
         bearing, r = rng.uniform(0, 2 * math.pi), 170 + 1900 * rng.random() ** 1.4

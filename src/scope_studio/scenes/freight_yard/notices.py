@@ -10,20 +10,20 @@ from scope_studio.kit.yard import safety as yard_safety
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, OFFICE_X, OFFICE_Y, RECEIVING_X
 
 Row = tuple[Built, str, float, float, float, dict[str, str]]
-"""A notice: built object, name, position (x, y and bearing; on a wall: x, y and z), and attributes."""
+"""A notice: built object, name, x, y, a number, and attributes. The number is the bearing, or z for a notice on a wall."""
 
 
 def build(stage: Stage) -> None:
     """Place the notices, clocks and beacons."""
-    _standing(stage)
+    _on_posts(stage)
     _on_walls(stage)
 
 
-def _standing(stage: Stage) -> None:
-    n = yard_safety.notice
-    standing: list[Row] = [
+def _on_posts(stage: Stage) -> None:
+    notice = yard_safety.notice
+    rows: list[Row] = [
         (
-            n(["FORK LIFT", "TRUCKS"], header="yellow", background="yellow", cap=0.13, symbol="flt", post_height=1.5),
+            notice(["FORK LIFT", "TRUCKS"], header="yellow", background="yellow", cap=0.13, symbol="flt", post_height=1.5),
             "fork lift warning sign",
             13.4,
             -14.0,
@@ -31,7 +31,9 @@ def _standing(stage: Stage) -> None:
             {"kind": "warning", "colour": "yellow"},
         ),
         (
-            n(["FORK LIFT", "TRUCKS", "OPERATING"], header="yellow", background="yellow", cap=0.12, symbol="flt", post_height=1.5),
+            notice(
+                ["FORK LIFT", "TRUCKS", "OPERATING"], header="yellow", background="yellow", cap=0.12, symbol="flt", post_height=1.5
+            ),
             "fork lift warning sign",
             14.8,
             6.2,
@@ -39,7 +41,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "warning", "colour": "yellow"},
         ),
         (
-            n(["NO", "PEDESTRIANS"], header="white", cap=0.13, symbol="people", post_height=1.5),
+            notice(["NO", "PEDESTRIANS"], header="white", cap=0.13, symbol="people", post_height=1.5),
             "no pedestrians sign",
             -8.4,
             3.6,
@@ -47,7 +49,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "prohibition", "colour": "white"},
         ),
         (
-            n(["CCTV IN", "OPERATION"], header="yellow", cap=0.12, symbol="camera", post_height=1.4),
+            notice(["CCTV IN", "OPERATION"], header="yellow", cap=0.12, symbol="camera", post_height=1.4),
             "CCTV sign",
             -5.4,
             -26.6,
@@ -55,7 +57,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "yellow and white"},
         ),
         (
-            n(["ALL VISITORS", "REPORT TO", "GATEHOUSE"], background="blue", cap=0.16, post_height=1.2),
+            notice(["ALL VISITORS", "REPORT TO", "GATEHOUSE"], background="blue", cap=0.16, post_height=1.2),
             "visitors sign",
             -27.6,
             -43.0,
@@ -63,7 +65,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "blue"},
         ),
         (
-            n(["ALL DRIVERS", "SIGN OUT", "AT GATEHOUSE"], background="blue", cap=0.15, post_height=1.2),
+            notice(["ALL DRIVERS", "SIGN OUT", "AT GATEHOUSE"], background="blue", cap=0.15, post_height=1.2),
             "drivers sign",
             10.9,
             -32.4,
@@ -71,7 +73,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "blue"},
         ),
         (
-            n(["VISITOR", "PARKING"], background="green", cap=0.16, post_height=1.5),
+            notice(["VISITOR", "PARKING"], background="green", cap=0.16, post_height=1.5),
             "visitor parking sign",
             -46.6,
             -43.6,
@@ -79,7 +81,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "green"},
         ),
         (
-            n(["STAFF", "PARKING"], background="blue", cap=0.16, post_height=1.5),
+            notice(["STAFF", "PARKING"], background="blue", cap=0.16, post_height=1.5),
             "staff parking sign",
             -13.4,
             -24.6,
@@ -87,7 +89,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "blue"},
         ),
         (
-            n(["ELECTRIC VEHICLES", "ONLY"], background="green", cap=0.10, post_height=1.4),
+            notice(["ELECTRIC VEHICLES", "ONLY"], background="green", cap=0.10, post_height=1.4),
             "charging sign",
             -17.2,
             -9.9,
@@ -95,7 +97,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "green"},
         ),
         (
-            n(["SPEED RAMP", "AHEAD"], header="yellow", background="yellow", cap=0.11, symbol="warning", post_height=1.4),
+            notice(["SPEED RAMP", "AHEAD"], header="yellow", background="yellow", cap=0.11, symbol="warning", post_height=1.4),
             "speed ramp sign",
             -4.4,
             -19.6,
@@ -103,7 +105,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "warning", "colour": "yellow"},
         ),
         (
-            n(["STACK", "AREA C"], background="yellow", cap=0.20, post_height=1.6),
+            notice(["STACK", "AREA C"], background="yellow", cap=0.20, post_height=1.6),
             "stack area sign",
             16.4,
             -10.0,
@@ -111,7 +113,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "area", "colour": "yellow"},
         ),
         (
-            n(["STACK", "AREA D"], background="yellow", cap=0.20, post_height=1.6),
+            notice(["STACK", "AREA D"], background="yellow", cap=0.20, post_height=1.6),
             "stack area sign",
             17.0,
             -21.6,
@@ -119,7 +121,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "area", "colour": "yellow"},
         ),
         (
-            n(["DOCK 6", "OUT OF USE"], background="red", cap=0.14, post_height=1.0),
+            notice(["DOCK 6", "OUT OF USE"], background="red", cap=0.14, post_height=1.0),
             "out of use sign",
             3.0,
             24.6,
@@ -127,7 +129,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "prohibition", "colour": "red"},
         ),
         (
-            n(["GOODS IN", "WAIT HERE"], background="blue", cap=0.16, post_height=1.4),
+            notice(["GOODS IN", "WAIT HERE"], background="blue", cap=0.16, post_height=1.4),
             "waiting sign",
             17.6,
             13.0,
@@ -135,7 +137,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "blue"},
         ),
         (
-            n(["EMPTY", "CONTAINERS"], background="white", cap=0.16, post_height=1.4),
+            notice(["EMPTY", "CONTAINERS"], background="white", cap=0.16, post_height=1.4),
             "empty containers sign",
             17.2,
             -30.8,
@@ -143,7 +145,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "area", "colour": "white"},
         ),
         (
-            n(["DRIVERS MUST", "WEAR HI-VIS"], background="blue", cap=0.14, post_height=1.5),
+            notice(["DRIVERS MUST", "WEAR HI-VIS"], background="blue", cap=0.14, post_height=1.5),
             "hi-vis sign",
             -18.4,
             3.2,
@@ -151,7 +153,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "mandatory", "colour": "blue"},
         ),
         (
-            n(["LOADING CREW", "LOOK UP"], background="yellow", cap=0.20, post_height=1.4),
+            notice(["LOADING CREW", "LOOK UP"], background="yellow", cap=0.20, post_height=1.4),
             "look up sign",
             15.0,
             2.6,
@@ -159,7 +161,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "warning", "colour": "yellow"},
         ),
         (
-            n(["NO ENTRY", "TO STACKS"], background="red", cap=0.24, post_height=1.4),
+            notice(["NO ENTRY", "TO STACKS"], background="red", cap=0.24, post_height=1.4),
             "no entry sign",
             31.6,
             -5.6,
@@ -167,7 +169,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "prohibition", "colour": "red"},
         ),
         (
-            n(["TRAILERS ONLY", "BAYS 61 TO 65"], background="blue", cap=0.24, post_height=1.6),
+            notice(["TRAILERS ONLY", "BAYS 61 TO 65"], background="blue", cap=0.24, post_height=1.6),
             "trailer bays sign",
             -39.8,
             23.0,
@@ -175,7 +177,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "blue"},
         ),
         (
-            n(["PEDESTRIANS", "USE WALKWAY"], background="green", cap=0.20, post_height=1.4),
+            notice(["PEDESTRIANS", "USE WALKWAY"], background="green", cap=0.20, post_height=1.4),
             "walkway sign",
             -12.6,
             4.4,
@@ -183,7 +185,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "mandatory", "colour": "green"},
         ),
         (
-            n(["DOCKS 1 TO 4"], background="white", cap=0.24, post_height=1.5),
+            notice(["DOCKS 1 TO 4"], background="white", cap=0.24, post_height=1.5),
             "docks sign",
             -7.0,
             8.2,
@@ -191,7 +193,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "direction", "colour": "white"},
         ),
         (
-            n(["DOCKS 5 TO 8"], background="white", cap=0.24, post_height=1.5),
+            notice(["DOCKS 5 TO 8"], background="white", cap=0.24, post_height=1.5),
             "docks sign",
             12.6,
             17.2,
@@ -199,7 +201,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "direction", "colour": "white"},
         ),
         (
-            n(["NORTHGATE", "FREIGHT", "DISTRIBUTION CENTRE"], background="blue", cap=0.30, post_height=1.2),
+            notice(["NORTHGATE", "FREIGHT", "DISTRIBUTION CENTRE"], background="blue", cap=0.30, post_height=1.2),
             "company board",
             15.6,
             -44.6,
@@ -207,7 +209,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "company name", "colour": "blue"},
         ),
         (
-            n(["THANK YOU", "DRIVE SAFELY"], background="green", cap=0.18, post_height=1.3),
+            notice(["THANK YOU", "DRIVE SAFELY"], background="green", cap=0.18, post_height=1.3),
             "thank you sign",
             12.6,
             -40.2,
@@ -215,7 +217,7 @@ def _standing(stage: Stage) -> None:
             {"kind": "information", "colour": "green"},
         ),
     ]
-    for built, name, x, y, bearing, attributes in standing:
+    for built, name, x, y, bearing, attributes in rows:
         words = " ".join(t.text for t in built.texts).lower()
         stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **attributes)
     for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 8.2, 12.8, 0)):
@@ -243,11 +245,11 @@ def _standing(stage: Stage) -> None:
 
 
 def _on_walls(stage: Stage) -> None:
-    n = yard_safety.notice
-    glowing = warehouse.letters
+    notice = yard_safety.notice
+    letters = warehouse.letters
     rows: list[Row] = [
         (
-            glowing("GOODS IN", 0.42),
+            letters("GOODS IN", 0.42),
             "lit goods in sign",
             RECEIVING_X,
             FRONT_Y,
@@ -255,7 +257,7 @@ def _on_walls(stage: Stage) -> None:
             {"state": "lit", "kind": "name", "colour": "white"},
         ),
         (
-            glowing("RECEPTION", 0.26),
+            letters("RECEPTION", 0.26),
             "lit reception sign",
             OFFICE_X - 1.3,
             OFFICE_Y,
@@ -263,7 +265,7 @@ def _on_walls(stage: Stage) -> None:
             {"state": "lit", "kind": "name", "colour": "white"},
         ),
         (
-            n(["STAFF ONLY"], background="white", cap=0.10),
+            notice(["STAFF ONLY"], background="white", cap=0.10),
             "staff only sign",
             16.6,
             FRONT_Y - 0.02,
@@ -271,7 +273,7 @@ def _on_walls(stage: Stage) -> None:
             {"kind": "prohibition", "colour": "white"},
         ),
         (
-            n(["SOUND HORN"], background="yellow", cap=0.18),
+            notice(["SOUND HORN"], background="yellow", cap=0.18),
             "sound horn sign",
             26.3,
             FRONT_Y,
@@ -279,7 +281,7 @@ def _on_walls(stage: Stage) -> None:
             {"kind": "warning", "colour": "yellow"},
         ),
         (
-            n(["MAX HEIGHT", "4.5 m"], background="yellow", cap=0.17),
+            notice(["MAX HEIGHT", "4.5 m"], background="yellow", cap=0.17),
             "height sign",
             -11.0,
             FRONT_Y - 3.24,
@@ -287,7 +289,7 @@ def _on_walls(stage: Stage) -> None:
             {"kind": "limit", "colour": "yellow"},
         ),
         (
-            n(["ENGINES OFF", "WHILE LOADING"], background="red", cap=0.15),
+            notice(["ENGINES OFF", "WHILE LOADING"], background="red", cap=0.15),
             "engines off sign",
             0.4,
             FRONT_Y - 3.24,
@@ -295,14 +297,21 @@ def _on_walls(stage: Stage) -> None:
             {"kind": "prohibition", "colour": "red"},
         ),
         (
-            n(["CHOCK WHEELS"], background="blue", cap=0.17),
+            notice(["CHOCK WHEELS"], background="blue", cap=0.17),
             "chock wheels sign",
             -21.4,
             FRONT_Y - 3.24,
             4.96,
             {"kind": "mandatory", "colour": "blue"},
         ),
-        (n(["HOSE REEL"], background="red", cap=0.08), "hose reel sign", 27.3, FRONT_Y, 2.1, {"kind": "safety", "colour": "red"}),
+        (
+            notice(["HOSE REEL"], background="red", cap=0.08),
+            "hose reel sign",
+            27.3,
+            FRONT_Y,
+            2.1,
+            {"kind": "safety", "colour": "red"},
+        ),
     ]
     for built, name, x, y, z, attributes in rows:
         words = " ".join(t.text for t in built.texts).lower()

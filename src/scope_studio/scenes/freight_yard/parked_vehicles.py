@@ -22,7 +22,7 @@ PARKED_CARS = {
     "31": ("van", "GU19 NGF"), "33": ("hatchback", "FY68 JAM"), "34": ("pickup", "AK72 TOW"), "37": ("saloon", "WR66 VIS"),
     "39": ("suv", "DS21 HAT"),
 }  # fmt: skip
-"""Body style and number plate of the car in each occupied bay, by the number of the bay."""
+"""Body style and number plate of the car in each occupied bay, by bay number."""
 
 
 def build(stage: Stage) -> None:
@@ -44,14 +44,14 @@ def _combination(
 ) -> None:
     """Place a tractor unit and its trailer facing south, with the trailer's rear at ``rear_y``."""
     nose_y = rear_y - artics.TRAILER_M
-    king_y = nose_y + artics.KINGPIN_M
+    kingpin_y = nose_y + artics.KINGPIN_M
     name = str(trailer_attributes.pop("name"))
     stage.place(trailer, "trailer", name, (x, rear_y - artics.TRAILER_M / 2, 0), 180, facing="south", **trailer_attributes)
     stage.place(
         tractor,
         "lorry",
         f"{attributes['colour']} tractor unit",
-        (x, king_y + artics.COUPLING_Y, 0),
+        (x, kingpin_y + artics.COUPLING_Y, 0),
         180,
         facing="south",
         kind="tractor unit",
@@ -77,7 +77,7 @@ def _docked_lorries(stage: Stage) -> None:
         },
     )
     box = artics.trailer("white", kind="box", lettering="POLAR LINE", plate="NU69 ICE")
-    _waiting(stage)
+    _waiting_lorries(stage)
     stage.place(
         box,
         "trailer",
@@ -124,8 +124,8 @@ def _docked_lorries(stage: Stage) -> None:
     )
 
 
-def _waiting(stage: Stage) -> None:
-    """Place lorries that wait at the southern fence for a dock."""
+def _waiting_lorries(stage: Stage) -> None:
+    """Place the lorries that wait for a dock at the southern fence."""
     rows = [
         (
             lorries.tanker("dark red", plate="NU70 HKD", lettering="PETRONELL"),
@@ -247,17 +247,17 @@ def _cars(stage: Stage) -> None:
                 continue
             body, plate = PARKED_CARS[number]
             colour = ground.OCCUPIED[number]
-            turned = bearing + (180 if number in ("16", "28", "33") else 0) + (1.8 if k % 2 else -1.2)
-            facing = "north" if abs(turned % 360) < 20 or turned % 360 > 340 else "south"
+            car_bearing = bearing + (180 if number in ("16", "28", "33") else 0) + (1.8 if k % 2 else -1.2)
+            facing = "north" if abs(car_bearing % 360) < 20 or car_bearing % 360 > 340 else "south"
             attributes = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}
             if body == "van":
                 van = cars.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
-                stage.place(van, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **attributes)
+                stage.place(van, "van", f"{colour} van", (x, y + 0.1, 0), car_bearing, lettering="northgate freight", **attributes)
                 continue
             category = "pickup truck" if body == "pickup" else "car"
             noun = {"suv": "SUV", "pickup": "pickup truck"}.get(body, body)
             stage.place(
-                builders[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **attributes
+                builders[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), car_bearing, kind=body, **attributes
             )
     patrol = cars.van("white", plate="OB69 JNS", lettering="ARGUS\nSECURITY", roof_beacon=True)
     stage.place(
@@ -299,7 +299,7 @@ def _cars(stage: Stage) -> None:
 
 
 def driver(vest: str, helmet: str, seed: int) -> Built:
-    """Build a forklift driver. The hips are above the origin at seat height."""
+    """Build a sitting forklift driver with the hips over the origin."""
     pose = reaching(sitting(0.46, seed=seed), left=(-0.13, 0.44, 0.86), right=(0.13, 0.46, 0.84))
     return characters.worker(vest=vest, helmet=helmet, stance=pose, seed=seed)
 
@@ -351,6 +351,6 @@ def _forklifts(stage: Stage) -> None:
 
 
 def _rotate(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
-    """Return a point rotated from object coordinates to world axes, for an object with this bearing."""
+    """Rotate a point from the coordinates of an object with this bearing to world axes."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

@@ -10,7 +10,7 @@ from scope_studio.scenes.freight_yard.fixtures import GATEHOUSE
 def build(stage: Stage) -> None:
     """Place the workers, drivers and visitors."""
     _crew(stage)
-    _others(stage)
+    _visitors_and_drivers(stage)
 
 
 def _crew(stage: Stage) -> None:
@@ -47,7 +47,7 @@ def _crew(stage: Stage) -> None:
     )
 
 
-def _others(stage: Stage) -> None:
+def _visitors_and_drivers(stage: Stage) -> None:
     x, y = GATEHOUSE
     guard = characters.pedestrian(top="navy", trousers="black", hair="grey", pose="stand", seed=12)
     stage.place(

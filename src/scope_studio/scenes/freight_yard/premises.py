@@ -33,7 +33,7 @@ def build(stage: Stage) -> None:
 
 
 def _front_x(x: float) -> float:
-    """Convert a world x coordinate to the x coordinate that the builder of the warehouse uses."""
+    """Convert a world x coordinate to the x coordinate of the warehouse builder."""
     return MIDDLE_X - x
 
 
@@ -113,13 +113,13 @@ def _docks(stage: Stage) -> None:
         return prototypes.setdefault(key, make())
 
     for k, (x, state, light) in enumerate(zip(DOCK_X, DOCK_STATES, DOCK_LIGHTS, strict=True), start=1):
-        where = (x, FRONT_Y, 0.0)
+        position = (x, FRONT_Y, 0.0)
         inside = {"inside": "lit"} if state != "closed" else {}
         door = stage.place(
             get(f"door {state}", lambda state=state: docks.roller_door(state)),
             "roller door",
             f"dock door {k}",
-            where,
+            position,
             180,
             state=state,
             number=str(k),
@@ -127,9 +127,9 @@ def _docks(stage: Stage) -> None:
             kind="dock door",
             **inside,
         )
-        stage.place(get("shelter", docks.shelter), "dock shelter", "black dock shelter", where, 180, parent=door, colour="black")
+        stage.place(get("shelter", docks.shelter), "dock shelter", "black dock shelter", position, 180, parent=door, colour="black")
         stage.place(
-            get("leveller", docks.leveller), "dock leveller", "steel dock leveller", where, 180, parent=door, material="steel"
+            get("leveller", docks.leveller), "dock leveller", "steel dock leveller", position, 180, parent=door, material="steel"
         )
         stage.place(
             docks.number(str(k)),
@@ -141,12 +141,12 @@ def _docks(stage: Stage) -> None:
             colour="blue",
             number=str(k),
         )
-        word = {"red": "red dock light", "green": "green dock light", "unlit": "unlit dock light"}[light]
+        name = {"red": "red dock light", "green": "green dock light", "unlit": "unlit dock light"}[light]
         attributes = {"state": "unlit"} if light == "unlit" else {"state": "lit", "colour": light}
         stage.place(
             get(f"light {light}", lambda light=light: docks.signal(light)),
             "dock light",
-            word,
+            name,
             (x + 2.42, FRONT_Y - 0.03, 2.3),
             180,
             parent=door,
@@ -155,7 +155,7 @@ def _docks(stage: Stage) -> None:
         )
         if k in (1, 3, 8):
             stage.place(
-                get("guides", docks.wheel_guides), "wheel guide", "yellow wheel guides", where, 180, colour="yellow", dock=str(k)
+                get("guides", docks.wheel_guides), "wheel guide", "yellow wheel guides", position, 180, colour="yellow", dock=str(k)
             )
 
 
@@ -169,16 +169,16 @@ def _office(stage: Stage) -> None:
     )
     lit = {(-6.2, 5.0), (-3.7, 1.8), (-1.2, 5.0), (3.8, 1.8), (3.8, 5.0), (6.3, 1.8), (-6.2, 1.8)}
     for n, (x, z) in enumerate((x, z) for x in columns for z in (1.8, 5.0) if not (x == 1.3 and z < 2)):
-        on = (x, z) in lit
-        pane = offices.window(width=1.6, height=1.4, lit=on, blind=0.45 if n in (2, 7) else 0.0, seed=n)
+        is_lit = (x, z) in lit
+        pane = offices.window(width=1.6, height=1.4, lit=is_lit, blind=0.45 if n in (2, 7) else 0.0, seed=n)
         stage.place(
             pane,
             "window",
-            "lit office window" if on else "dark office window",
+            "lit office window" if is_lit else "dark office window",
             (OFFICE_X - x, OFFICE_Y, z),
             180,
             parent=office,
-            state="lit" if on else "unlit",
+            state="lit" if is_lit else "unlit",
             floor="upper" if z > 3 else "ground",
         )
     stage.place(

@@ -35,7 +35,7 @@ STACKS = (
     (20, 41.0, -26.7, (("light grey", "ORTU 226190 4", None),)),
     (40, 40.0, 0.5, (("dark green", "TSLU 187734 1", "TESSALINE"),)),
 )
-"""Length in feet, x, y, and the (colour, code, livery) of each container, from the ground up, of each stack."""
+"""Stacks: length in feet, x, y, and the (colour, code, livery) of each container from the ground up."""
 
 
 def build(stage: Stage) -> None:
@@ -51,13 +51,13 @@ def _containers(stage: Stage) -> None:
     for feet, x, y, tiers in STACKS:
         for level, (colour, code, livery) in enumerate(tiers):
             built = containers.container(colour, code, feet=feet, livery=livery)
-            where = (x + rng.uniform(-0.05, 0.05), y + rng.uniform(-0.04, 0.04), 0.004 + containers.HEIGHT_M * level)
+            position = (x + rng.uniform(-0.05, 0.05), y + rng.uniform(-0.04, 0.04), 0.004 + containers.HEIGHT_M * level)
             attributes = {"livery": livery.lower()} if livery else {}
             stage.place(
                 built,
                 "container",
                 f"{colour} container",
-                where,
+                position,
                 270 + (180 if feet == 40 else 0),
                 colour=colour,
                 number=code,
@@ -118,12 +118,12 @@ def _goods(stage: Stage) -> None:
         colour = "red" if k in (3, 7, 8) else "blue"
         fallen = k == 10
         built = prototypes.get(f"drum {colour}", lambda colour=colour: yard_goods.steel_drum(colour))
-        where = (15.8 + 0.72 * k, 8.4, 0.0) if not fallen else (24.2, 7.3, 0.29)
+        position = (15.8 + 0.72 * k, 8.4, 0.0) if not fallen else (24.2, 7.3, 0.29)
         stage.place(
             built,
             "drum",
             f"{colour} drum",
-            where,
+            position,
             170 + 17 * (k % 3) if not fallen else 40,
             lean_deg=(90, 0) if fallen else (0, 0),
             colour=colour,
@@ -144,7 +144,7 @@ def _goods(stage: Stage) -> None:
         stage.place(
             yard_goods.tyre_stack(count, seed=n), "tyre stack", "stack of tyres", (x, y, 0), 40 * n, tyres=count, colour="black"
         )
-    for n, (x, y, bearing, opened) in enumerate(
+    for n, (x, y, bearing, is_open) in enumerate(
         (
             (18.2, -25.2, 20, False),
             (18.9, -24.2, 70, True),
@@ -154,13 +154,13 @@ def _goods(stage: Stage) -> None:
         )
     ):
         stage.place(
-            yard_goods.carton(seed=n, open=opened),
+            yard_goods.carton(seed=n, is_open=is_open),
             "box",
             "cardboard box",
             (x, y, 0.004),
             bearing,
             material="cardboard",
-            state="open" if opened else "closed",
+            state="open" if is_open else "closed",
         )
     stage.place(yard_goods.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
 
@@ -192,7 +192,7 @@ def _equipment(stage: Stage) -> None:
     for built, category, name, x, y, bearing, attributes in rows:
         stage.place(built, category, name, (x, y, 0), bearing, **attributes)
     stage.place(yard_safety.hose_reel(), "hose reel", "red hose reel", (27.3, 30.0, 1.5), 180, colour="red")
-    for colour, x, y, opened, label in (
+    for colour, x, y, is_open, label in (
         ("green", 32.4, 29.4, False, "FOOD WASTE"),
         ("green", 34.0, 29.3, True, None),
         ("blue", 35.7, 29.5, False, "PAPER"),
@@ -201,13 +201,13 @@ def _equipment(stage: Stage) -> None:
     ):
         attributes = {"label": label.lower()} if label else {}
         stage.place(
-            yard_goods.wheelie_bin(colour, open=opened, label=label),
+            yard_goods.wheelie_bin(colour, is_open=is_open, label=label),
             "wheelie bin",
             f"{colour} wheelie bin",
             (x, y, 0),
             180,
             colour=colour,
-            state="open" if opened else "closed",
+            state="open" if is_open else "closed",
             **attributes,
         )
 

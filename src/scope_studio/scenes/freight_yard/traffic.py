@@ -17,8 +17,8 @@ FIRST_ACTOR = 9001
 """Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
 
 
-def _loaded_forklift(_phase: float) -> Built:
-    """Return the moving forklift with its driver and load as one object."""
+def _forklift_with_load(_phase: float) -> Built:
+    """Build the moving forklift with its driver and load as one object."""
     truck = forklift.forklift("orange", number="5", fork_m=0.30)
     for part, (x, y, z) in (
         (driver("yellow", "blue", 17), (0.0, forklift.SEAT[1], forklift.SEAT[2] - 0.46)),
@@ -43,7 +43,7 @@ def build(stage: Stage) -> None:
             FIRST_ACTOR,
             "forklift",
             "orange forklift",
-            _loaded_forklift,
+            _forklift_with_load,
             closed_loop(
                 [(21.4, 25.0), (21.2, 15.5), (18.5, 11.8), (2.0, 10.6), (-1.5, 11.8), (1.0, 13.6), (17.0, 14.2), (20.0, 17.0)], 1.9
             ),

@@ -17,7 +17,7 @@ Item = tuple[Callable[[], Built], str, str, dict[str, str]]
 
 
 def build(stage: Stage, shops: dict[int, str]) -> None:
-    """Place the goods of all shops. ``shops`` contains the object ids of the shops by house number."""
+    """Place the goods of all shops. ``shops`` contains the instance ids of the shops by house number."""
     _windows(stage, shops)
     _boards(stage, shops)
     _greengrocer(stage, shops[22])

@@ -67,19 +67,19 @@ def _paint() -> dict[str, list[Stencil]]:
     for y in (sum(JUNCTION) / 2, -sum(JUNCTION) / 2):
         white += [Stencil(x, x + 2.0, y - 0.05, y + 0.05) for x in _steps(-80.0, 80.0, 5.0)]
     yellow = []
-    for at in (0.25, 0.45):
+    for offset in (0.25, 0.45):
         yellow += [
-            Stencil(WEST_KERB + at - 0.04, WEST_KERB + at + 0.04, -47.0, ZEBRA[0] - 8.2),
-            Stencil(WEST_KERB + at - 0.04, WEST_KERB + at + 0.04, ZEBRA[1] + 8.2, 47.0),
-            Stencil(-80.0, -8.0, far - at - 0.04, far - at + 0.04),
-            Stencil(10.0, 80.0, far - at - 0.04, far - at + 0.04),
-            Stencil(-80.0, 80.0, -far + at - 0.04, -far + at + 0.04),
+            Stencil(WEST_KERB + offset - 0.04, WEST_KERB + offset + 0.04, -47.0, ZEBRA[0] - 8.2),
+            Stencil(WEST_KERB + offset - 0.04, WEST_KERB + offset + 0.04, ZEBRA[1] + 8.2, 47.0),
+            Stencil(-80.0, -8.0, far - offset - 0.04, far - offset + 0.04),
+            Stencil(10.0, 80.0, far - offset - 0.04, far - offset + 0.04),
+            Stencil(-80.0, 80.0, -far + offset - 0.04, -far + offset + 0.04),
         ]
     return {"white": white, "yellow": yellow}
 
 
 def _steps(start: float, stop: float, step: float) -> list[float]:
-    """Return positions at equal distances."""
+    """Return evenly spaced positions from ``start`` to ``stop``, without ``stop``."""
     return [start + step * k for k in range(max(0, int((stop - start) / step)))]
 
 
@@ -107,7 +107,7 @@ def _blocks() -> list[list[tuple[float, float]]]:
 
 
 def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
-    """Return a quarter circle that rounds the corner (x, y) of a convex outline. It is anticlockwise, starting at ``start_deg``."""
+    """Return an anticlockwise quarter circle, from ``start_deg``, that rounds the corner (x, y) of a convex outline."""
     cx = x - radius if start_deg in (270, 0) else x + radius
     cy = y + radius if start_deg in (270, 180) else y - radius
     angles = [math.radians(start_deg + 90 * k / 8) for k in range(9)]
@@ -167,7 +167,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses. It builds each prototype once and places linked copies of it afterwards."""
+    """A builder of rows of houses. It builds each prototype once and places linked copies of it afterwards."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -187,12 +187,12 @@ class _Row:
             x += side * width
 
     def house(self, plot: Plot, index: int | None = None) -> None:
-        """Place a house on a plot. ``index`` is its index in ``HOUSES``. By default, the houses are used in order."""
+        """Place a house on a plot. ``index`` selects it from ``HOUSES``; by default, the houses are used in order."""
         index = self._count % len(HOUSES) if index is None else index
         spec = HOUSES[index]
         built = self._prototypes[index].copy() if index in self._prototypes else self._prototypes.setdefault(index, terrace(spec))
         material = {"render": "painted render"}.get(spec.wall[0], spec.wall[0])
-        ident = self._stage.place(
+        house_id = self._stage.place(
             built, "building", f"{spec.wall[1]} {spec.wall[0]} house", plot.at(0, 0), plot.bearing_deg,
             colour=spec.wall[1], material=material, storeys=spec.storeys, kind="house",
         )  # fmt: skip
@@ -204,7 +204,7 @@ class _Row:
         pitch = spec.width_m / spec.columns
         self._stage.place(
             door, "door", f"{colour} front door", plot.at(pitch * (spec.columns - 0.5) - spec.width_m / 2, -0.09, 0.10),
-            plot.bearing_deg, parent=ident, colour=colour, state="closed", kind="house door",
+            plot.bearing_deg, parent=house_id, colour=colour, state="closed", kind="house door",
         )  # fmt: skip
 
 
@@ -254,8 +254,8 @@ def _gables(stage: Stage) -> None:
         )
     lamp = traditional.street_lamp(lit=True)
     far = FAR_FRONT - 3.4
-    spots = [(side * x, sign * far) for sign in (-1, 1) for side in (-1, 1) for x in (19.0, 45.0)]
-    for k, (x, y) in enumerate(spots):
+    positions = [(side * x, sign * far) for sign in (-1, 1) for side in (-1, 1) for x in (19.0, 45.0)]
+    for k, (x, y) in enumerate(positions):
         built = lamp if k == 0 else lamp.copy()
         stage.place(built, "lamp post", "street lamp", (x, y, wet_street.KERB_M), 0, colour="dark green", state="lit")
     tree = vegetation.tree(vegetation.BIRCH, 71, detail=0.55)

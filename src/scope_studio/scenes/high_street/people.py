@@ -17,7 +17,7 @@ UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = 
     ("purple", None, 7.6, 30.8, 176, 27, True), ("pink", None, -5.4, 40.6, 130, 28, False), ("navy", "white", 12.0, 61.2, 268,
     29, True),
 )  # fmt: skip
-"""People with umbrellas: colour and second colour of the umbrella, x, y, bearing, seed, whether the person walks."""
+"""People with umbrellas: the two colours of the umbrella, x, y, bearing, seed, and whether the person walks."""
 PEDESTRIANS: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178,
     "walk", 43, "bag", "walking"),
@@ -28,21 +28,21 @@ PEDESTRIANS: tuple[tuple[float, float, float, str, int, str | None, str], ...] =
     (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk",
     53, None, "walking"),
 )  # fmt: skip
-"""People without umbrellas: x, y, bearing, pose, seed, object that the person holds, activity."""
+"""People without umbrellas: x, y, bearing, pose, seed, held object, activity."""
 
 
 def build(stage: Stage) -> None:
     """Place people, dogs and pigeons."""
     _pedestrians(stage)
     _pairs(stage)
-    _sitters(stage)
-    _indoors(stage)
+    _sitting_people(stage)
+    _people_indoors(stage)
     _pigeons(stage)
 
 
 def _umbrella(stage: Stage, person: str, colour: str, second: str | None, plot: Plot) -> None:
     x, y, z = stances.UMBRELLA_GRIP
-    built = umbrellas.umbrella(colour, second=second)
+    built = umbrellas.umbrella(colour, second_colour=second)
     name = f"{colour} and {second} umbrella" if second else f"{colour} umbrella"
     stage.place(
         built,
@@ -67,10 +67,10 @@ def _pedestrians(stage: Stage) -> None:
             state="walking" if walking else "standing", holding="umbrella", umbrella=colour,
         )  # fmt: skip
         _umbrella(stage, person, colour, second, plot)
-    for x, y, bearing, pose, seed, holding, doing in PEDESTRIANS:
+    for x, y, bearing, pose, seed, holding, activity in PEDESTRIANS:
         built = characters.pedestrian(pose=pose, phase=(seed * 0.29) % 1.0, holding=holding, seed=seed)
         attributes = {"holding": holding} if holding else {}
-        stage.place(built, "pedestrian", f"pedestrian {doing}", (x, y, KERB_M), bearing, state=doing, **attributes)
+        stage.place(built, "pedestrian", f"pedestrian {activity}", (x, y, KERB_M), bearing, state=activity, **attributes)
     worker = characters.worker(vest="orange", helmet="white", pose="clipboard", seed=61)
     stage.place(
         worker, "worker", "worker in an orange vest", (-2.75, 31.9, 0.004), 130, vest="orange", helmet="white", state="standing"
@@ -115,24 +115,24 @@ def _pairs(stage: Stage) -> None:
     )
 
 
-def _sitters(stage: Stage) -> None:
+def _sitting_people(stage: Stage) -> None:
     rows = (
         (Plot(-6.42, -9.2, 90.0), 0.525, 71, True, "sitting at the bus stop"), (Plot(8.92, 1.0, 270.0), 0.47, 72, False,
         "sitting on a bench"),
         (Plot(-6.72, 20.5, 90.0), 0.47, 75, False, "sitting on a bench"),
     )  # fmt: skip
-    for place, seat, seed, crossed, doing in rows:
+    for place, seat, seed, crossed, activity in rows:
         built = characters.pedestrian(stance=stances.sitting(seat, seed=seed, crossed=crossed), seed=seed)
-        stage.place(built, "pedestrian", f"person {doing}", place.at(0, 0), place.bearing_deg, state="sitting")
+        stage.place(built, "pedestrian", f"person {activity}", place.at(0, 0), place.bearing_deg, state="sitting")
     plot = plots()[5]
     for x, side, seed in ((-2.4, 1, 73), (0.2, -1, 74)):
-        spot = plot.at(x + side * 0.72, 1.05 + 0.1 * side)
+        position = plot.at(x + side * 0.72, 1.05 + 0.1 * side)
         bearing = plot.bearing_deg - 90 * side + (20 if side > 0 else 160 % 90)
         built = characters.pedestrian(stance=stances.sitting(0.46, seed=seed), seed=seed)
-        stage.place(built, "pedestrian", "person sitting at the café", spot, bearing, state="sitting")
+        stage.place(built, "pedestrian", "person sitting at the café", position, bearing, state="sitting")
 
 
-def _indoors(stage: Stage) -> None:
+def _people_indoors(stage: Stage) -> None:
     """Place shopkeepers and customers behind glass."""
     for number, x, y, bearing, seed, role in (
         (3, 1.4, -1.6, 0, 81, "butcher"), (9, -1.6, -1.7, 10, 82, "baker"), (6, -1.0, -1.5, 30, 83, "hairdresser"), (5, 1.8,
@@ -170,15 +170,15 @@ def _pigeons(stage: Stage) -> None:
         ("dark grey", "stand"),
     )
     prototypes: dict[tuple[str, str], Built] = {}
-    spots = [(x, y, KERB_M, b, kinds[k % len(kinds)]) for k, (x, y, b) in enumerate(flock)]
+    pigeons = [(x, y, KERB_M, b, kinds[k % len(kinds)]) for k, (x, y, b) in enumerate(flock)]
     for number, xs in ((7, (-1.2, -0.8, 1.4)), (12, (2.0, 1.3))):
         plot = plots()[number]
-        spots += [
+        pigeons += [
             (*plot.at(x, 0.28, 3.50), plot.bearing_deg + 40 * (k - 1), ("grey", "rest") if k % 2 else ("dark grey", "stand"))
             for k, x in enumerate(xs)
         ]
-    spots += [(-5.6, -9.0 - 0.5 * k, KERB_M + 2.47, 80 + 60 * k, ("grey", "stand") if k else ("grey", "rest")) for k in range(2)]
-    for x, y, z, bearing, kind in spots:
+    pigeons += [(-5.6, -9.0 - 0.5 * k, KERB_M + 2.47, 80 + 60 * k, ("grey", "stand") if k else ("grey", "rest")) for k in range(2)]
+    for x, y, z, bearing, kind in pigeons:
         built = prototypes[kind].copy() if kind in prototypes else prototypes.setdefault(kind, birds.pigeon(kind[0], pose=kind[1]))
         state = {"stand": "standing", "peck": "pecking", "rest": "resting"}[kind[1]]
         stage.place(built, "pigeon", f"{kind[0]} pigeon", (x, y, z), bearing, colour=kind[0], state=state)

@@ -167,41 +167,43 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
     front = shopfronts.Front(shop.width_m, shop.colour, door_x(shop), shop.room, shop.lamps, shop.tiles)
     traits = {"state": "open" if shop.open else "closed", **shop.traits}
     name = shop.sign.title().replace("'S", "'s")
-    ident = stage.place(
+    shop_id = stage.place(
         shopfronts.shop_front(front), "shop", shop.noun, position, bearing, parent=building,
         colour=shop.colour, lights="on" if shop.lamps else "off", shop_name=name.lower(), **traits,
     )  # fmt: skip
     sign = shopfronts.fascia(shop.width_m, shop.sign, shop.colour, shop.ink, small=shop.small)
-    stage.place(sign, "shop sign", f"{name} sign", position, bearing, parent=ident, colour=shop.colour, lettering=shop.ink)
+    stage.place(sign, "shop sign", f"{name} sign", position, bearing, parent=shop_id, colour=shop.colour, lettering=shop.ink)
     door = shopfronts.shop_door(shop.door, number=str(shop.number))
-    spot = plot.at(door_x(shop), -0.03, 0.13)
+    door_position = plot.at(door_x(shop), -0.03, 0.13)
     stage.place(
-        door, "door", f"{shop.door} shop door", spot, bearing, parent=ident,
+        door, "door", f"{shop.door} shop door", door_position, bearing, parent=shop_id,
         colour=shop.door, state="closed", number=str(shop.number), kind="shop door",
     )  # fmt: skip
-    _notices(stage, shop, plot, ident)
+    _notices(stage, shop, plot, shop_id)
     if shop.awning:
-        first, second, out = shop.awning
-        awning = shop_displays.awning(shop.width_m - 0.5, first, second, open=out)
+        colour, second_colour, is_open = shop.awning
+        awning = shop_displays.awning(shop.width_m - 0.5, colour, second_colour, is_open=is_open)
         stage.place(
-            awning, "awning", f"{first} and {second} awning", plot.at(0, 0.24, 2.80), bearing, parent=ident,
-            colour=first, pattern="striped", state="open" if out else "rolled up",
+            awning, "awning", f"{colour} and {second_colour} awning", plot.at(0, 0.24, 2.80), bearing, parent=shop_id,
+            colour=colour, pattern="striped", state="open" if is_open else "rolled up",
         )  # fmt: skip
     if shop.hanging:
         board = shop_displays.hanging_sign(shop.hanging, shop.colour, shop.ink)
         x = shop.hanging_side * (shop.width_m / 2 - 0.35)
-        stage.place(board, "hanging sign", f"{name} hanging sign", plot.at(x, 0.0, 4.0), bearing, parent=ident, colour=shop.colour)
-    return ident
+        stage.place(
+            board, "hanging sign", f"{name} hanging sign", plot.at(x, 0.0, 4.0), bearing, parent=shop_id, colour=shop.colour
+        )
+    return shop_id
 
 
-def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
+def _notices(stage: Stage, shop: Shop, plot: Plot, shop_id: str) -> None:
     """Place the open or closed sign on the door, and a card with the opening hours next to it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")
         notice: Built = shopfronts.plate((word,), 0.075, "white", tint)
         stage.place(
-            notice, "door sign", f"{word.lower()} sign", plot.at(door_x(shop), 0.035, 1.68), bearing, parent=ident,
+            notice, "door sign", f"{word.lower()} sign", plot.at(door_x(shop), 0.035, 1.68), bearing, parent=shop_id,
             colour="white", lettering=tint, says=word.lower(),
         )  # fmt: skip
     if shop.card:
@@ -213,6 +215,6 @@ def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
             "notice in the window",
             plot.at(door_x(shop) + step, 0.015, 1.62),
             bearing,
-            parent=ident,
+            parent=shop_id,
             colour="white",
         )

@@ -18,7 +18,7 @@ LAMPS = (
     (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
     (EAST_X, -27.0, True), (EAST_X, -5.0, True), (EAST_X, 21.4, True), (EAST_X, 41.0, True),
 )  # fmt: skip
-"""x, y, and whether the lamp is lit."""
+"""Street lamps: x, y, and whether the lamp is lit."""
 BASKETS = (("red", "white"), ("purple", "pink"), ("yellow", "orange"), ("pink", "white"))
 """Flower colours of the hanging baskets."""
 
@@ -71,17 +71,17 @@ def _posts(stage: Stage) -> None:
         38.7, 270),
         ("dark green", EAST_X, 9.5, 90), ("dark green", 8.6, -59.6, 0),
     ):  # fmt: skip
-        stage.place(street.bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
+        stage.place(street.litter_bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
     bollard = roadside.bollard()
-    spots = [(WEST_X + 0.1, -47.6 + 1.5 * k) for k in range(5)] + [(EAST_X - 0.1, 42.6 + 1.4 * k) for k in range(5)]
-    for k, (x, y) in enumerate(spots):
+    positions = [(WEST_X + 0.1, -47.6 + 1.5 * k) for k in range(5)] + [(EAST_X - 0.1, 42.6 + 1.4 * k) for k in range(5)]
+    for k, (x, y) in enumerate(positions):
         stage.place(bollard if k == 0 else bollard.copy(), "bollard", "black bollard", (x, y, z), 0, colour="black")
     for x, y, bearing in ((EAST_X, -33.2, 90), (EAST_X, 28.6, 90)):
         stage.place(traditional.parking_meter(), "parking meter", "parking meter", (x, y, z), bearing, colour="dark grey")
-    planted = ((WEST_X - 0.1, -30.6, ("red", "yellow")), (WEST_X - 0.1, -21.5, ("purple", "white")), (EAST_X + 0.1, -20.0,
+    planters = ((WEST_X - 0.1, -30.6, ("red", "yellow")), (WEST_X - 0.1, -21.5, ("purple", "white")), (EAST_X + 0.1, -20.0,
     ("pink", "red")),
                (EAST_X + 0.1, 26.0, ("yellow", "purple")), (WEST_X - 0.1, 40.3, ("orange", "red")))  # fmt: skip
-    for k, (x, y, colours) in enumerate(planted):
+    for k, (x, y, colours) in enumerate(planters):
         built = traditional.planter(colours, seed=10 * k)
         stage.place(built, "planter", f"planter of {colours[0]} flowers", (x, y, z), 90, colour=colours[0], material="timber")
     drain = roadside.drain()
@@ -209,7 +209,7 @@ def _manhole(stage: Stage) -> None:
 
 def _scaffold(stage: Stage) -> None:
     plot: Plot = plots()[10]
-    frame = street_works.scaffolding(7.2, 3, first_m=3.75)
+    frame = street_works.scaffolding(7.2, 3, first_lift_m=3.75)
     scaffolding_id = stage.place(frame, "scaffolding", "scaffolding", plot.at(0, 0.12), plot.bearing_deg, material="steel")
     board = shopfronts.plate(("TURRET SCAFFOLDING", "01632 960171"), 0.15, "yellow", "black")
     stage.place(

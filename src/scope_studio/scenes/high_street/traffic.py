@@ -16,9 +16,9 @@ from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. It is greater than the numbers of all instances."""
+"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
 PERIOD_S = 40.0
-"""Period of all paths. It is the same for all actors, so that their relative positions repeat."""
+"""Period of all paths in seconds. All actors share it, so that their relative positions repeat."""
 PARKED = (
     (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
     (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
@@ -183,7 +183,7 @@ def _height(x: float, y: float) -> float:
 
 
 def _closed_path(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
-    """Return the waypoints of a closed path at constant speed that takes ``period_s``. The road is lower than the footways."""
+    """Return the waypoints of a closed path that takes ``period_s`` at constant speed. The road is lower than the footways."""
     ring = []
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
         ring.append((x0, y0))
@@ -199,6 +199,7 @@ def _closed_path(corners: list[tuple[float, float]], period_s: float) -> list[tu
 
 
 def _open_path(points: list[tuple[float, float]], speed_mps: float, start_s: float) -> list[tuple[float, float, float, float]]:
+    """Return the waypoints of a path on the road, at constant speed from ``start_s``."""
     waypoints, t = [(start_s, *points[0], 0.0)], start_s
     for a, b in itertools.pairwise(points):
         t += math.dist(a, b) / speed_mps
@@ -209,6 +210,6 @@ def _open_path(points: list[tuple[float, float]], speed_mps: float, start_s: flo
 def _companion_path(
     leader_corners: list[tuple[float, float]], corners: list[tuple[float, float]]
 ) -> list[tuple[float, float, float, float]]:
-    """Return the waypoints of a path through ``corners`` whose times are those of a leader's path through ``leader_corners``."""
+    """Return the waypoints of a path through ``corners``, in step with a leader who walks through ``leader_corners``."""
     times = [w[0] for w in _closed_path(leader_corners, PERIOD_S)]
     return [(t, *p, KERB_M) for t, p in zip(times, [*corners, corners[0]], strict=True)]

@@ -147,7 +147,7 @@ def _buildings(stage: Stage, height: Height) -> None:
 
 
 def _power_line(stage: Stage, height: Height) -> None:
-    """Place three pylons that cross the road far to the south, with sagging wires."""
+    """Place a line of pylons that crosses the road far to the south, with sagging wires."""
     prototype = structures.pylon()
     feet = [(-430.0, -160.0), (-185.0, -205.0), (75.0, -252.0), (330.0, -300.0)]
     bearing = math.degrees(math.atan2(-(feet[1][1] - feet[0][1]), feet[1][0] - feet[0][0]))

@@ -95,7 +95,7 @@ def _boundaries(stage: Stage, height: Height) -> None:
             for y in range(start, end - 8, 9):
                 stage.put(fence if first else fence.copy(), (x, y + 4.5, height(x, y)), 90)
                 first = False
-    hedge = [vegetation.hedge(8.4, seed=k, detail=0.8) for k in range(2)]
+    hedges = [vegetation.hedge(8.4, seed=k, detail=0.8) for k in range(2)]
     used = [False, False]
     rng = random.Random("hedges")
     lines = [
@@ -118,10 +118,10 @@ def _boundaries(stage: Stage, height: Height) -> None:
             t = (k + 0.5) * 8.0 / length
             x, y = x0 + (x1 - x0) * t, y0 + (y1 - y0) * t
             index = rng.randrange(2)
-            built = hedge[index].copy() if used[index] else hedge[index]
+            built = hedges[index].copy() if used[index] else hedges[index]
             used[index] = True
-            turned = bearing + (180 if rng.random() < 0.5 else 0)
-            stage.put(built, (x, y, height(x, y) - 0.05), turned, scale=rng.uniform(0.9, 1.15))
+            hedge_bearing = bearing + (180 if rng.random() < 0.5 else 0)
+            stage.put(built, (x, y, height(x, y) - 0.05), hedge_bearing, scale=rng.uniform(0.9, 1.15))
 
 
 def _countryside(stage: Stage, height: Height) -> None:
@@ -133,11 +133,11 @@ def _countryside(stage: Stage, height: Height) -> None:
     ]
     scrub = vegetation.tree(vegetation.BUSH, 5, detail=0.16)
     hedgerow = vegetation.hedge(16.0, seed=9, detail=0.16)
-    fresh = {id(m) for m in [*far, scrub, hedgerow]}
+    unplaced = {id(m) for m in [*far, scrub, hedgerow]}
 
     def scatter(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = prototype if id(prototype) in fresh else prototype.copy()
-        fresh.discard(id(prototype))
+        built = prototype if id(prototype) in unplaced else prototype.copy()
+        unplaced.discard(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     def any_tree() -> Built:
@@ -181,16 +181,16 @@ def _countryside(stage: Stage, height: Height) -> None:
 
 
 def _grass(stage: Stage) -> None:
-    """Place grass on the verges near the viewpoints, where it is visible in close-up."""
+    """Place grass on the verges near the viewpoints, where it is seen in close-up."""
     rng = random.Random("grass")
-    long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
+    unmown = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]
-    used: set[int] = set()
+    placed: set[int] = set()
 
     def scatter(prototypes: list[Built], x: float, y: float) -> None:
         prototype = rng.choice(prototypes)
-        built = prototype.copy() if id(prototype) in used else prototype
-        used.add(id(prototype))
+        built = prototype.copy() if id(prototype) in placed else prototype
+        placed.add(id(prototype))
         stage.put(built, (x, y, -0.03), 90 * rng.randrange(4) + rng.uniform(-8, 8), scale=rng.uniform(0.95, 1.2))
 
     def row(prototypes: list[Built], x: float, y: float, fraction: float = 1.0) -> None:
@@ -201,13 +201,13 @@ def _grass(stage: Stage) -> None:
     for y in range(-60, 76, 2):
         if not 8 < y < 58:
             row(mown, -16.8, y)
-            row(long, -18.6, y)
-            row(long, -20.2, y, 0.7)
+            row(unmown, -18.6, y)
+            row(unmown, -20.2, y, 0.7)
         if y < -26:
-            row(long, -22.2, y, 0.5)
-            row(long, -24.6, y, 0.3)
+            row(unmown, -22.2, y, 0.5)
+            row(unmown, -24.6, y, 0.3)
         row(mown, 16.8, y)
-        row(long, 18.7, y)
-        row(long, 20.6, y)
-        row(long, 22.8, y, 0.6)
-        row(long, 25.0, y, 0.35)
+        row(unmown, 18.7, y)
+        row(unmown, 20.6, y)
+        row(unmown, 22.8, y, 0.6)
+        row(unmown, 25.0, y, 0.35)

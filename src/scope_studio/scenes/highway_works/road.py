@@ -62,21 +62,21 @@ def _sign(
 
 
 def _direction_signs(stage: Stage) -> None:
-    ahead = road_signs.panel(("Services", "Petrol  Food  Beds"), width=3.9, height=1.8, background="blue", cap_height=0.28)
-    _sign(stage, ahead, "blue services sign", -20.4, 67.5, SOUTH, "services petrol food beds", "blue")
-    farm = road_signs.panel(("Wetland Centre", "next exit"), width=3.3, height=1.3, background="brown", cap_height=0.22)
-    _sign(stage, farm, "brown tourist sign", 19.2, 47.0, NORTH, "wetland centre next exit", "brown")
-    route = road_signs.panel(
+    services = road_signs.panel(("Services", "Petrol  Food  Beds"), width=3.9, height=1.8, background="blue", cap_height=0.28)
+    _sign(stage, services, "blue services sign", -20.4, 67.5, SOUTH, "services petrol food beds", "blue")
+    attraction = road_signs.panel(("Wetland Centre", "next exit"), width=3.3, height=1.3, background="brown", cap_height=0.22)
+    _sign(stage, attraction, "brown tourist sign", 19.2, 47.0, NORTH, "wetland centre next exit", "brown")
+    distances = road_signs.panel(
         ("Stoke Mallory\t9", "Ashdown\t17", "Linton\t23"), width=4.0, height=2.6, background="green", cap_height=0.30
     )
-    _sign(stage, route, "green distance sign", 19.6, 20.0, NORTH, "stoke mallory 9 ashdown 17 linton 23", "green")
-    later = road_signs.panel(
+    _sign(stage, distances, "green distance sign", 19.6, 20.0, NORTH, "stoke mallory 9 ashdown 17 linton 23", "green")
+    exit_sign = road_signs.panel(
         ("Linton B17", "Industrial Estate", "1/2 mile"), width=4.2, height=2.4, background="blue", cap_height=0.30
     )
-    _sign(stage, later, "blue exit sign", 19.4, -42.0, NORTH, "linton b17 industrial estate half mile", "blue")
-    board = message_sign.variable_message(("SLOW", "QUEUE", "AHEAD"), width=3.4, height=2.2)
+    _sign(stage, exit_sign, "blue exit sign", 19.4, -42.0, NORTH, "linton b17 industrial estate half mile", "blue")
+    queue_sign = message_sign.variable_message(("SLOW", "QUEUE", "AHEAD"), width=3.4, height=2.2)
     stage.place(
-        board,
+        queue_sign,
         "message sign",
         "variable message sign",
         (18.9, -15.0, 0),
@@ -85,9 +85,9 @@ def _direction_signs(stage: Stage) -> None:
         reads="slow queue ahead",
         facing="north",
     )
-    second = message_sign.variable_message(("50 MPH", "CAMERAS", "IN USE"), width=3.4, height=2.2)
+    camera_sign = message_sign.variable_message(("50 MPH", "CAMERAS", "IN USE"), width=3.4, height=2.2)
     stage.place(
-        second,
+        camera_sign,
         "message sign",
         "variable message sign",
         (-18.8, 60.5, 0),
@@ -257,11 +257,11 @@ def _small_signs(stage: Stage) -> None:
 
 def _guardrails(stage: Stage) -> None:
     length, prototype = 108.0, roadside.guardrail(108.0)
-    fresh = True
+    is_first = True
     for x, bearing in ((-0.95, 180.0), (0.95, 0.0)):
         for k in range(4):
-            built = prototype if fresh else prototype.copy()
-            fresh = False
+            built = prototype if is_first else prototype.copy()
+            is_first = False
             stage.place(
                 built, "guardrail", "steel guardrail", (x, -162.0 + length * k, 0.07), bearing, material="steel", colour="grey"
             )
@@ -292,7 +292,9 @@ def _equipment(stage: Stage) -> None:
         number="175",
     )
     stage.place(roadside.cabinet(), "cabinet", "grey roadside cabinet", (-18.9, 12.6, 0), 170, colour="grey", state="closed")
-    stage.place(roadside.cabinet(open=True), "cabinet", "open roadside cabinet", (-17.6, 44.6, 0), 190, colour="grey", state="open")
+    stage.place(
+        roadside.cabinet(is_open=True), "cabinet", "open roadside cabinet", (-17.6, 44.6, 0), 190, colour="grey", state="open"
+    )
     stage.place(
         roadside.cabinet(colour="dark green"),
         "cabinet",

@@ -19,11 +19,11 @@ LINE_X = -9.3
 """x coordinate of the line of cones and barriers between the works and the traffic."""
 
 TAPER = [(-15.1 + 5.8 * k / 9, -79.0 + 4.2 * k) for k in range(10)]
-"""Positions of the cones that lead traffic out of the closed lane."""
+"""Positions of the cones that guide traffic out of the closed lane."""
 CONES = [(LINE_X, y) for y in (-35.0, -28.5, -22.0, -15.5, -9.0, -2.5, 7.2, 10.8, 27.0, 31.0)]
 """Positions of the cones along the closed lane."""
 RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
-"""Cones on the central reserve, next to the works and a damaged guardrail.
+"""Positions of the cones on the central reserve, next to the works and a damaged guardrail.
 
 From the preset "highway", pan steps of 15 degrees to the right show two, four and seven of them. In these views, no cone is near
 the edge of the frame or partly hidden.
@@ -167,7 +167,7 @@ def _fence(stage: Stage) -> None:
     line(west, south, east, south, 0, {3: ("DANGER", "KEEP OUT")})
     line(west, north, GATE_X - 3.2, north, 180, {1: ("SITE TRAFFIC", "10 MPH")})
     line(GATE_X + 3.2, north, east, north, 180, {})
-    stage.place(fencing.gate(open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
+    stage.place(fencing.gate(is_open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
 
 
 def _compound(stage: Stage) -> None:

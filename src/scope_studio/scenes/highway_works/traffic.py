@@ -13,12 +13,12 @@ LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
 """Distances in metres between the lane centres and the middle of the road. In each direction, one lane has only moving vehicles."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. It is greater than the numbers of all instances."""
+"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
 
 Car = Callable[..., Built]
 
 CARS: list[tuple[Car, str, str, float, float]] = [
-    # northbound, lane 3 (and lane 1 before the taper); lane 2 is for the moving car
+    # Northbound: lane 3, and lane 1 before the taper. Only the moving car uses lane 2.
     (cars.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
     (cars.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
     (cars.suv, "black", "OE21 HXD", -LANE_3, 66.0),
@@ -26,7 +26,7 @@ CARS: list[tuple[Car, str, str, float, float]] = [
     (cars.hatchback, "yellow", "FN17 ZBE", -LANE_3, -66.0),
     (cars.saloon, "grey", "LD22 UMS", -LANE_3, -98.0),
     (cars.saloon, "dark red", "SR16 JVY", -LANE_1, -88.0),
-    # southbound
+    # Southbound
     (cars.suv, "green", "HG20 TPW", LANE_2, 58.0),
     (cars.saloon, "white", "VO69 EDK", LANE_2, 29.0),
     (cars.hatchback, "dark red", "CU15 NLR", LANE_2, 5.0),
@@ -40,16 +40,16 @@ NOUNS: dict[Car, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", car
 
 
 def build(stage: Stage) -> None:
-    """Place the standing vehicles and add the actors with their paths."""
+    """Place the vehicles that do not move, and add the actors with their paths."""
     _cars(stage)
     _lorries_and_coaches(stage)
     _yard(stage)
-    _at_the_works(stage)
+    _works_vehicles(stage)
     _actors(stage)
 
 
-def _course(x: float) -> tuple[float, dict[str, str | int]]:
-    """Return the bearing and the attributes of a vehicle in the lane at ``x``."""
+def _lane_attributes(x: float) -> tuple[float, dict[str, str | int]]:
+    """Return the bearing and attributes of a vehicle in the lane at ``x``."""
     lane = 1 + round((LANE_1 - abs(x)) / 3.5)
     heading = "north" if x < 0 else "south"
     return (0.0 if x < 0 else 180.0), {"state": "moving", "facing": heading, "lane": lane, "carriageway": f"{heading}bound"}
@@ -57,7 +57,7 @@ def _course(x: float) -> tuple[float, dict[str, str | int]]:
 
 def _cars(stage: Stage) -> None:
     for make, colour, plate, x, y in CARS:
-        bearing, attributes = _course(x)
+        bearing, attributes = _lane_attributes(x)
         noun = NOUNS[make]
         stage.place(
             make(colour, plate=plate),
@@ -74,7 +74,7 @@ def _cars(stage: Stage) -> None:
         ("blue", "EK66 PRB", "Corvane\nPLUMBING", -LANE_3, -13.0),
         ("grey", "RF20 LWS", "NORTHLINE\nCOURIERS", LANE_2, -22.0),
     ):
-        bearing, attributes = _course(x)
+        bearing, attributes = _lane_attributes(x)
         van = cars.van(colour, plate=plate, lettering=lettering)
         stage.place(van, "van", f"{colour} van", (x, y, 0), bearing, colour=colour, plate=plate, **attributes)
 
@@ -138,7 +138,7 @@ def _lorries_and_coaches(stage: Stage) -> None:
         ),
     ]
     for built, category, name, colour, kind, x, y in rows:
-        bearing, attributes = _course(x)
+        bearing, attributes = _lane_attributes(x)
         stage.place(built, category, name, (x, y, 0), bearing, colour=colour, kind=kind, **attributes)
 
 
@@ -167,7 +167,7 @@ def _yard(stage: Stage) -> None:
             state="parked",
             facing="east",
         )
-    docked = [
+    docked_lorries = [
         (
             lorries.box_lorry("yellow", "white", plate="NX20 GSM", lettering="MERIDIAN"),
             "yellow and white box lorry",
@@ -176,11 +176,11 @@ def _yard(stage: Stage) -> None:
         ),
         (lorries.box_lorry("blue", "blue", plate="NX20 GSP", lettering="MERIDIAN"), "blue box lorry", "blue", 24.9),
     ]
-    for built, name, colour, y in docked:
+    for built, name, colour, y in docked_lorries:
         stage.place(built, "lorry", name, (56.2, y, 0.01), -90, colour=colour, kind="box lorry", state="parked", facing="west")
 
 
-def _at_the_works(stage: Stage) -> None:
+def _works_vehicles(stage: Stage) -> None:
     tipper = lorries.tipper("orange", "yellow", plate="VK69 BRO")
     stage.place(
         tipper,
@@ -219,9 +219,9 @@ def _at_the_works(stage: Stage) -> None:
         facing="south",
         area="compound",
     )
-    second = cars.pickup("dark blue", plate="SH18 TEW")
+    second_pickup = cars.pickup("dark blue", plate="SH18 TEW")
     stage.place(
-        second,
+        second_pickup,
         "pickup truck",
         "dark blue pickup truck",
         (-13.9, -47.0, 0),

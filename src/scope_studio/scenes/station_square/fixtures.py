@@ -14,8 +14,9 @@ from scope_studio.kit.signs import town_signs
 from scope_studio.kit.vehicles import tram
 
 FOUNTAIN = (1.2, 6.2)
+"""Position (x, y) of the fountain in metres."""
 MAST = (4.0, -8.0)
-"""Positions (x, y) of the fountain and the camera mast in metres."""
+"""Position (x, y) of the camera mast in metres."""
 PLATFORM_TOP_M = 0.16
 """Height of the tram platform in metres."""
 BENCHES = [
@@ -28,7 +29,7 @@ BENCHES = [
     (-8.5, 22.0, 180.0, "bench before the station"),
     (7.6, -9.6, 0.0, "bench by the street"),
 ]
-"""x, y, bearing and name of each bench."""
+"""Benches: x, y, bearing, name."""
 TREES = [
     (16.6, 15.8),
     (20.3, 12.2),
@@ -41,7 +42,7 @@ TREES = [
     (-29.5, 16.0),
     (-28.0, 22.5),
 ]
-"""Positions (x, y) of the trees."""
+"""Positions (x, y) of the trees in metres."""
 
 
 def build(stage: Stage) -> None:
@@ -49,7 +50,7 @@ def build(stage: Stage) -> None:
     prototypes = Prototypes()
     _fountain(stage)
     _seats_and_bins(stage, prototypes)
-    _rows(stage, prototypes)
+    _bollards_planters_and_lanterns(stage, prototypes)
     _kiosk(stage)
     _signs(stage)
     _tram_stop(stage)
@@ -67,7 +68,7 @@ def _fountain(stage: Stage) -> None:
         parent=basin,
         material="stone",
     )
-    figure = fountain.bronze(characters.pedestrian(top="grey", trousers="black", pose="point", seed=904))
+    figure = fountain.apply_bronze(characters.pedestrian(top="grey", trousers="black", pose="point", seed=904))
     stage.place(
         figure,
         "statue",
@@ -87,8 +88,8 @@ def _seats_and_bins(stage: Stage, prototypes: Prototypes) -> None:
         state = "occupied" if k in (0, 3, 5) else "empty"
         stage.place(prototypes.get("bench", street.bench), "bench", name, (x, y, 0), bearing, material="timber", state=state)
     for x, y in ((15.6, -8.8), (17.2, 9.6), (-11.2, 20.8), (-26.2, -7.8), (6.4, 11.2)):
-        stage.place(prototypes.get("bin", street.bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
-    stage.place(street.bin(colour="red"), "litter bin", "red litter bin", (11.0, 4.4, 0), 205, colour="red")
+        stage.place(prototypes.get("bin", street.litter_bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
+    stage.place(street.litter_bin(colour="red"), "litter bin", "red litter bin", (11.0, 4.4, 0), 205, colour="red")
     stage.place(plaza.post_box(), "post box", "red post box", (12.0, 3.7, 0), 212, colour="red", material="iron")
     for k, (colour, word) in enumerate((("blue", "PAPER"), ("green", "GLASS"), ("yellow", "CANS"))):
         stage.place(
@@ -101,7 +102,7 @@ def _seats_and_bins(stage: Stage, prototypes: Prototypes) -> None:
         )
 
 
-def _rows(stage: Stage, prototypes: Prototypes) -> None:
+def _bollards_planters_and_lanterns(stage: Stage, prototypes: Prototypes) -> None:
     """Place bollards, planters and lanterns."""
     for k in range(12):
         stage.place(
@@ -118,8 +119,8 @@ def _rows(stage: Stage, prototypes: Prototypes) -> None:
         stage.place(
             prototypes.get("bollard", roadside.bollard), "bollard", "black bollard", (x, -11.2, 0), 0, colour="black", row="street"
         )
-    tints = [("red", "yellow"), ("pink", "white"), ("yellow", "purple"), ("red", "white")]
-    spots = [
+    flower_colours = [("red", "yellow"), ("pink", "white"), ("yellow", "purple"), ("red", "white")]
+    planters = [
         (-4.6, 1.6),
         (7.0, 1.6),
         (-4.6, 10.8),
@@ -131,15 +132,15 @@ def _rows(stage: Stage, prototypes: Prototypes) -> None:
         (14.4, -9.6),
         (-34.6, 3.9),
     ]
-    for k, (x, y) in enumerate(spots):
-        first, second = tints[k % 4]
+    for k, (x, y) in enumerate(planters):
+        colour, second_colour = flower_colours[k % 4]
         stage.place(
-            prototypes.get(f"planter {k % 4}", lambda a=first, b=second, k=k: plaza.planter(a, b, seed=k)),
+            prototypes.get(f"planter {k % 4}", lambda a=colour, b=second_colour, k=k: plaza.planter(a, b, seed=k)),
             "planter",
-            f"planter with {first} flowers",
+            f"planter with {colour} flowers",
             (x, y, 0),
             0,
-            colour=first,
+            colour=colour,
             material="timber",
         )
     for x, y, bearing in (

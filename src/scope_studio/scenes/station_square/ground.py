@@ -15,8 +15,11 @@ from scope_studio.kit.ground import paving
 ROAD_M = -0.10
 """Height in metres of the carriageways. The square and the pavements are at z = 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
+"""West, east, south and north edges of the square in metres."""
 APPROACH = (23.5, 32.5)
+"""x coordinates of the west and east edges of the station approach."""
 STREET = (-25.5, -11.8)
+"""y coordinates of the south and north edges of the street."""
 TRACKS = (-14.0, -17.4)
 """y coordinates of the eastbound and the westbound track."""
 
@@ -25,13 +28,13 @@ def build(stage: Stage) -> None:
     """Place paving, tracks, manhole covers and the land around the town."""
     _surfaces(stage)
     _tracks(stage)
-    _covers(stage)
+    _manhole_covers(stage)
     _hills()
 
 
 def _surfaces(stage: Stage) -> None:
     slabs, flags = paving.slab_material(), paving.flag_material()
-    setts, along = paving.sett_material(), paving.sett_material("approach setts", turn_deg=90.0)
+    setts, approach_setts = paving.sett_material(), paving.sett_material("approach setts", turn_deg=90.0)
     stage.put(paving.floor("square", [SQUARE], 0.0, slabs), (0, 0, 0))
     pavements = [
         (32.5, 48.0, -11.8, 40.0),
@@ -49,11 +52,11 @@ def _surfaces(stage: Stage) -> None:
     streets = [(-120.0, 120.0, STREET[0], STREET[1])]
     stage.put(paving.floor("street", streets, ROAD_M, setts), (0, 0, 0))
     lanes = [(*APPROACH, STREET[1], 40.0), (-43.8, -36.0, -90.0, STREET[0]), (38.0, 45.8, -90.0, STREET[0])]
-    stage.put(paving.floor("lanes", lanes, ROAD_M, along), (0, 0, 0))
-    e = SQUARE[1]
+    stage.put(paving.floor("lanes", lanes, ROAD_M, approach_setts), (0, 0, 0))
+    east = SQUARE[1]
     lines = [
-        ((-120.0, STREET[1] + 0.08), (e - 0.08, STREET[1] + 0.08)),
-        ((e - 0.08, STREET[1] + 0.08), (e - 0.08, 24.0)),
+        ((-120.0, STREET[1] + 0.08), (east - 0.08, STREET[1] + 0.08)),
+        ((east - 0.08, STREET[1] + 0.08), (east - 0.08, 24.0)),
         ((32.58, STREET[1] + 0.08), (32.58, 24.0)),
         ((32.58, STREET[1] + 0.08), (120.0, STREET[1] + 0.08)),
         ((-33.8, STREET[0] - 0.08), (35.8, STREET[0] - 0.08)),
@@ -77,7 +80,7 @@ def _tracks(stage: Stage) -> None:
             first = False
 
 
-def _covers(stage: Stage) -> None:
+def _manhole_covers(stage: Stage) -> None:
     for text, x, y in (("WATER", 5.4, -9.2), ("GAS", -9.6, 1.4), ("WATER", 18.2, 17.3), ("TELECOM", 7.2, -26.9)):
         stage.place(paving.manhole_cover(text), "manhole cover", "round manhole cover", (x, y, 0.002), 0, material="iron")
     grate = roadside.drain()

@@ -13,9 +13,10 @@ FRONT_BEARING_DEG = 150.0
 """Bearing in degrees that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
-"""Contents of a crate, and the text of its price card. Newlines separate its lines."""
+"""Contents of a crate, and the text of its price card, with lines separated by newlines."""
 
 Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
+"""A stall: name board, canvas colours, position and goods."""
 
 STALLS: list[Stall] = [
     (
@@ -99,18 +100,19 @@ STALLS: list[Stall] = [
         [("rolls", None), ("lemons", "LEMON\n2.50")],
     ),
 ]
-"""Name board, canvas colours, position and goods of each stall."""
+"""The stalls that have goods."""
 
 EMPTY_STALL = (-5.8, 15.8)
 """Position (x, y) of the stall without goods."""
 BLOOMS = ("red", "yellow", "pink", "white", "purple", "orange")
 TERRACE_ROWS = (-7.4, -4.4, -1.4, 1.6)
+"""y coordinates of the rows of café tables."""
 TERRACE_COLUMNS = (-32.2, -28.9)
-"""y coordinates of the rows, and x coordinates of the columns, of café tables."""
+"""x coordinates of the columns of café tables."""
 
 
 def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FRONT_BEARING_DEG) -> tuple[float, float]:
-    """Return the world position of a point that is given relative to a front.
+    """Convert a position relative to a front to world coordinates.
 
     ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
@@ -162,11 +164,11 @@ def build(stage: Stage) -> None:
 def _stall(
     stage: Stage, prototypes: Prototypes, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
 ) -> None:
-    first, second = canvas
-    striped = first != second
-    colour = f"{first} and {second}" if striped else first
+    canvas_colour, second_colour = canvas
+    striped = canvas_colour != second_colour
+    colour = f"{canvas_colour} and {second_colour}" if striped else canvas_colour
     stall_id = stage.place(
-        stalls.stall(first, second, sign=sign),
+        stalls.stall(canvas_colour, second_colour, sign=sign),
         "market stall",
         f"{colour} market stall",
         (*place, 0.0),
@@ -202,7 +204,7 @@ def _stall(
                 produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FRONT_BEARING_DEG, parent=crate,
             )  # fmt: skip
-    for k, right in enumerate((-1.0, 0.2, 1.1)):  # goods under and behind the counter
+    for k, right in enumerate((-1.0, 0.2, 1.1)):  # empty crates behind the counter
         if (k + len(sign)) % 2:
             x, y = at_front(place, right, -1.35)
             stage.place(
@@ -218,6 +220,7 @@ def _stall(
 
 
 def _goods_of(sign: str) -> str:
+    """Return the goods that a stall sells, from its name."""
     words = {
         "FISH": "fish",
         "FRUIT": "fruit",
@@ -268,10 +271,10 @@ def _carts(stage: Stage, prototypes: Prototypes) -> None:
 def _terrace(stage: Stage, prototypes: Prototypes) -> None:
     """Place eight tables in two columns, with three chairs at each table and parasols between the tables."""
     rng = random.Random("terrace")
-    taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
+    taken_seats = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
     for row, y in enumerate(TERRACE_ROWS):
         for column, x in enumerate(TERRACE_COLUMNS):
-            occupied = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
+            occupied = sorted(seat for c, r, seat in taken_seats if (c, r) == (column, row))
             table = stage.place(
                 prototypes.get("table", cafe.table),
                 "table",
@@ -282,13 +285,13 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
                 area="terrace",
             )
             for seat in range(3):
-                at, bearing = seat_place(column, row, seat)
+                position, bearing = seat_place(column, row, seat)
                 tint = "dark green" if column == 0 else "red"
                 stage.place(
                     prototypes.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
                     "chair",
                     f"{tint.removeprefix('dark ')} café chair",
-                    (*at, 0.0),
+                    (*position, 0.0),
                     bearing,
                     colour=tint.removeprefix("dark "),
                     state="occupied" if seat in occupied else "empty",
@@ -306,11 +309,11 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
                     colour="white",
                 )
     middle = sum(TERRACE_COLUMNS) / 2
-    shades = [("dark red", "cream", True), ("dark red", "cream", False), ("dark red", "cream", True), ("cream", "cream", True)]
-    for (first, second, is_open), y in zip(shades, TERRACE_ROWS, strict=True):
-        colour = "cream" if first == second else "red and cream"
+    parasols = [("dark red", "cream", True), ("dark red", "cream", False), ("dark red", "cream", True), ("cream", "cream", True)]
+    for (parasol_colour, second_colour, is_open), y in zip(parasols, TERRACE_ROWS, strict=True):
+        colour = "cream" if parasol_colour == second_colour else "red and cream"
         stage.place(
-            cafe.parasol(first, second, open=is_open, text="BELLAVISTA" if is_open else None),
+            cafe.parasol(parasol_colour, second_colour, is_open=is_open, text="BELLAVISTA" if is_open else None),
             "parasol",
             f"{colour} parasol",
             (middle, y + 0.1, 0.0),
@@ -318,7 +321,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
             colour=colour,
             state="open" if is_open else "closed",
         )
-    stage.place(cafe.parasol("navy", open=False), "parasol", "blue parasol", (-27.0, 4.4, 0.0), 0, colour="blue", state="closed")
+    stage.place(cafe.parasol("navy", is_open=False), "parasol", "blue parasol", (-27.0, 4.4, 0.0), 0, colour="blue", state="closed")
     menu = ["MENU", "SOUP 4.50", "OMELETTE 6.20", "FISH PIE 8.90", "PASTA 7.40", "APPLE TART 3.80"]
     stage.place(
         cafe.menu_board(menu, cap=0.085), "menu board", "chalk menu board", (-26.6, -4.6, 0.0), 98, colour="black", scale=1.1
@@ -328,6 +331,6 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
     """Return the position of a chair of the terrace, and the bearing that a person on it faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
-    towards = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
-    b = math.radians(towards)
-    return (x - 0.62 * math.sin(b), y - 0.62 * math.cos(b)), towards
+    bearing = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
+    b = math.radians(bearing)
+    return (x - 0.62 * math.sin(b), y - 0.62 * math.cos(b)), bearing

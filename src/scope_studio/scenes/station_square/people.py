@@ -17,13 +17,14 @@ CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
 """Position in metres of the right hand of a walking person who pulls a suitcase."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
+"""Colour of each stallholder's top, in the order of ``STALLS``."""
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (0, 0.4, 1.75, "navy", "stand", "bag"), (1, -0.9, 1.65, "dark red", "point", None), (1, 0.7, 1.8, "beige", "stand", "bag"),
     (2, 0.1, 1.7, "yellow", "stand", "bag"), (2, 1.3, 2.5, "grey", "phone", None), (3, 1.9, 1.2, "pink", "stand", None),
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Customers: index of the stall, position in front of the stall (right, out), coat, pose, object that the person holds."""
+"""Customers: index of the stall, position in front of the stall (right, out), coat, pose, held object."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -44,6 +45,7 @@ STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (34.8, -6.6, 182, "dark grey", "phone", None, "by the pharmacy"),
     (-34.8, 11.0, 176, "blue", "walk", None, "by the pink house"),
 ]  # fmt: skip
+"""People on foot: x, y, bearing, top, pose, held object, activity."""
 
 SITTERS: list[tuple[int, int, int, str, str]] = [
     (0, 0, 0, "navy", "cup"),
@@ -63,24 +65,26 @@ def build(stage: Stage) -> None:
     """Place the people and add the actors with their paths."""
     _market(stage)
     _strollers(stage)
-    _sitters(stage)
+    _sitting_people(stage)
     _companions(stage)
     stage.actors = [*traffic.actors(), *_walkers()]
     stage.actors[-1].period_s = stage.actors[-1].waypoints[-1][0]
 
 
-def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: str, top: str, seed: int, **attributes: Any) -> str:
+def _person(
+    stage: Stage, position: tuple[float, float, float], bearing: float, name: str, top: str, seed: int, **attributes: Any
+) -> str:
     pose: str = attributes.pop("pose", "stand")
     stance: Pose | None = attributes.pop("stance", None)
-    held: str | None = attributes.pop("holding", None)
-    built = characters.pedestrian(top=top, pose=pose, phase=0.08 + 0.13 * (seed % 7), holding=held, stance=stance, seed=seed)
+    holding: str | None = attributes.pop("holding", None)
+    built = characters.pedestrian(top=top, pose=pose, phase=0.08 + 0.13 * (seed % 7), holding=holding, stance=stance, seed=seed)
     state = {"walk": "walking", "sit": "sitting"}.get("sit" if attributes.pop("seated", False) else pose, "standing")
-    if held:
-        attributes["holding"] = held
+    if holding:
+        attributes["holding"] = holding
     if pose == "phone":
         attributes["holding"] = "phone"
     category = "stallholder" if attributes.get("role") == "stallholder" else "person"
-    return stage.place(built, category, name, at, bearing, top=top, state=state, **attributes)
+    return stage.place(built, category, name, position, bearing, top=top, state=state, **attributes)
 
 
 def _market(stage: Stage) -> None:
@@ -97,20 +101,20 @@ def _market(stage: Stage) -> None:
             role="stallholder",
             stall=trade,
         )
-    for k, (stall, right, out, top, pose, held) in enumerate(CUSTOMERS):
+    for k, (stall, right, out, top, pose, holding) in enumerate(CUSTOMERS):
         x, y = at_front(STALLS[stall][2], right, out)
         turn = FRONT_BEARING_DEG + 180 + (-14, 10, 22, -8)[k % 4]
-        _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=held, role="customer")
+        _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=holding, role="customer")
 
 
 def _strollers(stage: Stage) -> None:
-    for k, (x, y, bearing, top, pose, held, doing) in enumerate(STROLLERS):
-        z = PLATFORM_TOP_M if "tram" in doing else 0.0
+    for k, (x, y, bearing, top, pose, holding, activity) in enumerate(STROLLERS):
+        z = PLATFORM_TOP_M if "tram" in activity else 0.0
         name = f"person in {top}" if "white" not in top else "person in a white top"
-        _person(stage, (x, y, z), bearing, name, top, 380 + k, pose=pose, holding=held, activity=doing)
+        _person(stage, (x, y, z), bearing, name, top, 380 + k, pose=pose, holding=holding, activity=activity)
 
 
-def _sitters(stage: Stage) -> None:
+def _sitting_people(stage: Stage) -> None:
     stance = {"cup": seated.with_cup, "table": seated.at_table, "phone": seated.with_phone}
     for k, (column, row, seat, top, activity) in enumerate(SITTERS):
         (x, y), bearing = seat_place(column, row, seat)
@@ -157,22 +161,30 @@ def _companions(stage: Stage) -> None:
     )
     x, y = at_front((14.2, 14.0), 0.0, 0.86, 262)
     stage.place(prams.pram("navy"), "pram", "navy pram", (x, y, 0), 262, colour="navy")
-    for k, (at, bearing, top, case) in enumerate((((-3.6, 15.6), 20, "black", "green"), ((16.4, -0.6), 10, "dark red", "purple"))):
-        stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=CASE_GRIP)
-        _person(stage, (*at, 0), bearing, f"traveller in {top}", top, 470 + k, stance=stance, activity="pulling a suitcase")
+    for k, (position, bearing, top, case) in enumerate(
+        (((-3.6, 15.6), 20, "black", "green"), ((16.4, -0.6), 10, "dark red", "purple"))
+    ):
+        stance = stances.reaching(_walk_without_twist(0.3 + 0.3 * k), right=CASE_GRIP)
+        _person(stage, (*position, 0), bearing, f"traveller in {top}", top, 470 + k, stance=stance, activity="pulling a suitcase")
         stage.place(
-            luggage.trailing_case(case, CASE_GRIP), "suitcase", f"{case} suitcase", (*at, 0), bearing, colour=case, state="pulled"
+            luggage.trailing_case(case, CASE_GRIP),
+            "suitcase",
+            f"{case} suitcase",
+            (*position, 0),
+            bearing,
+            colour=case,
+            state="pulled",
         )
 
 
-def _free_walk(phase: float) -> Pose:
-    """Return a walking pose without rotation of the trunk, so that the right hand can hold an object."""
+def _walk_without_twist(phase: float) -> Pose:
+    """Return a walking pose without rotation of the trunk, which would move the hand that pulls a suitcase."""
     return replace(walking(phase), twist=0.0)
 
 
 def _with_case(phase: float) -> Built:
     walker = characters.pedestrian(
-        top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=CASE_GRIP)
+        top="orange", trousers="navy", seed=501, stance=stances.reaching(_walk_without_twist(phase), right=CASE_GRIP)
     )
     case = luggage.trailing_case("blue", CASE_GRIP)
     case.root.parent = walker.root
@@ -181,8 +193,17 @@ def _with_case(phase: float) -> Built:
 
 def _walkers() -> list[ActorPath]:
     """Return the walking actors: a traveller from the station, a person who walks to the trains, and a dog without an owner."""
-    traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
-    commuter = [
+    traveller_path = [
+        (0.4, 31.5),
+        (0.3, 24.0),
+        (-3.6, 19.6),
+        (-14.0, 16.4),
+        (-24.0, 17.4),
+        (-31.0, 18.8),
+        (-37.0, 18.9),
+        (-42.0, 19.0),
+    ]
+    commuter_path = [
         (47.5, 6.0),
         (47.0, 1.2),
         (42.0, 0.8),
@@ -195,40 +216,40 @@ def _walkers() -> list[ActorPath]:
         (-0.5, 24.0),
         (-0.4, 31.5),
     ]
-    trot = [(6.4, -4.6), (9.2, 1.6), (8.6, 11.8), (2.4, 14.4), (-2.3, 12.4), (-2.4, 1.6), (-1.6, -4.4), (6.4, -4.6)]
-    first = traffic.FIRST_ACTOR + 2
+    dog_path = [(6.4, -4.6), (9.2, 1.6), (8.6, 11.8), (2.4, 14.4), (-2.3, 12.4), (-2.4, 1.6), (-1.6, -4.4), (6.4, -4.6)]
+    number = traffic.FIRST_ACTOR + 2
     return [
         ActorPath(
             "moving-person-01",
-            first,
+            number,
             "person",
             "traveller with a blue suitcase",
             _with_case,
-            traffic.timed_path(traveller, 1.35),
+            traffic.timed_path(traveller_path, 1.35),
             52.0,
             {"top": "orange", "state": "walking", "with": "suitcase"},
             stride_m=poses.STRIDE_M,
         ),
         ActorPath(
             "moving-person-02",
-            first + 1,
+            number + 1,
             "person",
             "walking person in dark red",
             lambda phase: characters.pedestrian(
                 top="dark red", trousers="black", pose="walk", phase=phase, holding="bag", seed=502
             ),
-            traffic.timed_path(commuter, 1.45),
+            traffic.timed_path(commuter_path, 1.45),
             54.0,
             {"top": "dark red", "state": "walking", "holding": "bag"},
             stride_m=poses.STRIDE_M,
         ),
         ActorPath(
             "moving-dog-01",
-            first + 2,
+            number + 2,
             "dog",
             "black dog",
             lambda phase: dogs.dog("black", phase=phase),
-            traffic.timed_path(trot, 1.5),
+            traffic.timed_path(dog_path, 1.5),
             0.0,
             {"colour": "black", "state": "walking"},
             stride_m=0.62,

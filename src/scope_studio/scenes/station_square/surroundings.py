@@ -16,16 +16,16 @@ from scope_studio.scenes.station_square.town import walls
 
 def build(stage: Stage) -> None:
     """Place the houses along the side streets, the roofs behind the shops, and trees. They are not annotated."""
-    w = walls()
+    materials = walls()
     kinds = [
-        House(9.0, w["red brick"], 3, 3, seed=50),
-        House(8.0, w["cream"], 3, 3, shutters="brown", seed=51, roof=CLAY),
-        House(10.0, w["buff brick"], 3, 4, seed=52, door="blue"),
-        House(8.5, w["white"], 2, 3, shutters="green", seed=53, roof=CLAY, door="red"),
-        House(9.5, w["stone"], 4, 3, seed=54, storey_m=2.9, dormers=2, door="black"),
+        House(9.0, materials["red brick"], 3, 3, seed=50),
+        House(8.0, materials["cream"], 3, 3, shutters="brown", seed=51, roof=CLAY),
+        House(10.0, materials["buff brick"], 3, 4, seed=52, door="blue"),
+        House(8.5, materials["white"], 2, 3, shutters="green", seed=53, roof=CLAY, door="red"),
+        House(9.5, materials["stone"], 4, 3, seed=54, storey_m=2.9, dormers=2, door="black"),
     ]
     prototypes = [townhouses.town_house(h) for h in kinds]
-    used: set[int] = set()
+    placed: set[int] = set()
     rng = random.Random("beyond")
 
     def row(x: float, y: float, bearing: float, length: float, first: int) -> None:
@@ -41,8 +41,8 @@ def build(stage: Stage) -> None:
             k += rng.choice((1, 2, 3))
 
     def _house(index: int, x: float, y: float, bearing: float) -> None:
-        built: Built = prototypes[index].copy() if index in used else prototypes[index]
-        used.add(index)
+        built: Built = prototypes[index].copy() if index in placed else prototypes[index]
+        placed.add(index)
         stage.put(built, (x, y, 0.0), bearing)
 
     row(-45.4, -8.0, 180, 62, 0)  # north side of the street, west of the square
@@ -75,15 +75,15 @@ def build(stage: Stage) -> None:
 def _trees(stage: Stage, rng: random.Random) -> None:
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR)
     far = [vegetation.tree(sp, 7 + k, detail=0.16) for k, sp in enumerate(species)]
-    used: set[int] = set()
+    placed: set[int] = set()
     for _ in range(150):
         a, r = rng.uniform(0, 2 * math.pi), rng.uniform(70, 420)
         x, y = r * math.cos(a), r * math.sin(a)
         if (abs(y + 18) < 26 and abs(x) < 112) or (abs(x) < 48 and -95 < y < 74):
             continue
         index = rng.choices(range(3), weights=(5, 4, 1))[0]
-        built = far[index].copy() if index in used else far[index]
-        used.add(index)
+        built = far[index].copy() if index in placed else far[index]
+        placed.add(index)
         stage.put(built, (x, y, -0.4), rng.uniform(0, 360), scale=rng.uniform(0.8, 1.3))
 
 

@@ -15,7 +15,9 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import clocks
 
 STATION_Y = 27.0
+"""y coordinate of the front of the station."""
 WEST_X, EAST_X, SOUTH_Y = -36.0, 37.0, -30.0
+"""Coordinates of the house fronts on the western, eastern and southern sides of the square."""
 DEPARTURES = [
     ("09:44", "Harrowfield", "1"),
     ("09:52", "Port Ellis", "3"),
@@ -24,6 +26,7 @@ DEPARTURES = [
     ("10:15", "Lower Ashby", "4"),
     ("10:31", "Ashby Road", "2"),
 ]
+"""Departures: time, destination, platform."""
 
 
 def build(stage: Stage) -> None:
@@ -47,7 +50,7 @@ def _station(stage: Stage) -> None:
         (-4.3, "left station door", "closed"),
     ):
         stage.place(
-            station.double_door(open=state == "open"), "door", name, (x, STATION_Y + 0.38, 0.0), 180,
+            station.double_door(is_open=state == "open"), "door", name, (x, STATION_Y + 0.38, 0.0), 180,
             parent=front, state=state, colour="dark green",
         )  # fmt: skip
     for x, text in ((-15.2, "TICKETS"), (15.2, "WAY OUT")):
@@ -80,7 +83,7 @@ def walls() -> dict[str, bpy.types.Material]:
 def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: str, name: str, kind: str, storeys: int) -> str:
     x, y, bearing = place
     material = "brick" if "brick" in colour else "stone" if "stone" in colour else "render"
-    plain = {"stone": "beige", "grey stone": "grey", "red brick": "red", "buff brick": "buff"}.get(colour, colour)
+    plain_colour = {"stone": "beige", "grey stone": "grey", "red brick": "red", "buff brick": "buff"}.get(colour, colour)
     attributes = {"shutters": h.shutters} if h.shutters else {}
     return stage.place(
         townhouses.town_house(h),
@@ -88,7 +91,7 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
         name,
         (x, y, 0.0),
         bearing,
-        colour=plain,
+        colour=plain_colour,
         material=material,
         kind=kind,
         storeys=storeys,
@@ -97,7 +100,7 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
 
 
 def _at_front(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """Return the world position of a point that is given relative to a front.
+    """Convert a position relative to a front to world coordinates.
 
     ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
@@ -139,7 +142,7 @@ def shop(
     )  # fmt: skip
     dx, dy = _at_front(place, 0.0, 0.17)
     stage.place(
-        square_shops.shop_door(door_colour or colour, open=door == "open", notice=notice),
+        square_shops.shop_door(door_colour or colour, is_open=door == "open", notice=notice),
         "door",
         f"{name} door",
         (dx, dy, 0.02),
@@ -150,7 +153,7 @@ def shop(
     )
     if awning:
         ax, ay = _at_front(place, 0.0, 0.30)
-        canvas = square_shops.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
+        canvas = square_shops.awning(width - 0.3, *awning, text=awning_text, is_open=awning_open)
         pattern_colour = awning[0] if awning[0] == awning[1] else f"{awning[0]} and {awning[1]}"
         pattern = "plain" if awning[0] == awning[1] else "striped"
         stage.place(
@@ -160,10 +163,10 @@ def shop(
 
 
 def _rows(stage: Stage) -> None:
-    w = walls()
+    materials = walls()
     # West side, in the morning sun
     cafe = (WEST_X, -3.2, 90.0)
-    front = _house(stage, House(12.0, w["ochre"], 3, 4, shutters="dark green", dormers=2, roof=CLAY, seed=1), cafe, "ochre",
+    front = _house(stage, House(12.0, materials["ochre"], 3, 4, shutters="dark green", dormers=2, roof=CLAY, seed=1), cafe, "ochre",
                    "ochre house with green shutters", "town house", 3)  # fmt: skip
     shop(
         stage,
@@ -181,8 +184,8 @@ def _rows(stage: Stage) -> None:
         seed=1,
     )
     bakery = (WEST_X, 6.9, 90.0)
-    front = _house(stage, House(8.2, w["white"], 3, 3, shutters="blue", seed=2), bakery, "white", "white house with blue shutters",
-                   "town house", 3)  # fmt: skip
+    front = _house(stage, House(8.2, materials["white"], 3, 3, shutters="blue", seed=2), bakery, "white",
+                   "white house with blue shutters", "town house", 3)  # fmt: skip
     shop(
         stage,
         front,
@@ -199,7 +202,7 @@ def _rows(stage: Stage) -> None:
     )
     _house(
         stage,
-        House(6.4, w["pink"], 4, 2, storey_m=2.9, shutters="light grey", door="dark green", seed=3),
+        House(6.4, materials["pink"], 4, 2, storey_m=2.9, shutters="light grey", door="dark green", seed=3),
         (WEST_X, 14.2, 90.0),
         "pink",
         "pink house with grey shutters",
@@ -208,7 +211,13 @@ def _rows(stage: Stage) -> None:
     )
     bookshop = (WEST_X, 25.0, 90.0)
     front = _house(
-        stage, House(8.6, w["red brick"], 3, 3, dormers=2, seed=4), bookshop, "red brick", "red brick house", "town house", 3
+        stage,
+        House(8.6, materials["red brick"], 3, 3, dormers=2, seed=4),
+        bookshop,
+        "red brick",
+        "red brick house",
+        "town house",
+        3,
     )
     shop(
         stage,
@@ -226,11 +235,19 @@ def _rows(stage: Stage) -> None:
         seed=3,
     )
     _house(
-        stage, House(9.0, w["buff brick"], 3, 3, seed=5), (WEST_X, 33.8, 90.0), "buff brick", "buff brick house", "town house", 3
+        stage,
+        House(9.0, materials["buff brick"], 3, 3, seed=5),
+        (WEST_X, 33.8, 90.0),
+        "buff brick",
+        "buff brick house",
+        "town house",
+        3,
     )
     # East side
     pharmacy = (EAST_X, -5.4, 270.0)
-    front = _house(stage, House(9.4, w["green"], 3, 3, quoins=True, seed=6), pharmacy, "green", "green house", "town house", 3)
+    front = _house(
+        stage, House(9.4, materials["green"], 3, 3, quoins=True, seed=6), pharmacy, "green", "green house", "town house", 3
+    )
     shop(
         stage,
         front,
@@ -249,11 +266,11 @@ def _rows(stage: Stage) -> None:
     stage.place(
         square_shops.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit"
     )
-    _bank(stage, w["grey stone"])
+    _bank(stage, materials["grey stone"])
     grocer = (EAST_X, 19.7, 270.0)
     front = _house(
         stage,
-        House(8.0, w["cream"], 3, 3, shutters="brown", seed=8),
+        House(8.0, materials["cream"], 3, 3, shutters="brown", seed=8),
         grocer,
         "cream",
         "cream house with brown shutters",
@@ -275,10 +292,18 @@ def _rows(stage: Stage) -> None:
         notice="OPEN",
         seed=5,
     )
-    _house(stage, House(7.6, w["blue"], 3, 3, door="yellow", seed=9), (EAST_X, 27.5, 270.0), "blue", "blue house", "town house", 3)
     _house(
         stage,
-        House(9.0, w["red brick"], 4, 3, storey_m=2.9, seed=10),
+        House(7.6, materials["blue"], 3, 3, door="yellow", seed=9),
+        (EAST_X, 27.5, 270.0),
+        "blue",
+        "blue house",
+        "town house",
+        3,
+    )
+    _house(
+        stage,
+        House(9.0, materials["red brick"], 4, 3, storey_m=2.9, seed=10),
         (EAST_X, 35.8, 270.0),
         "red brick",
         "tall brick house",
@@ -286,18 +311,20 @@ def _rows(stage: Stage) -> None:
         4,
     )
     # South side, behind the tramway
-    _hotel(stage, w["cream"])
+    _hotel(stage, materials["cream"])
     south = [
-        (-29.7, 8.6, "buff brick", 3, {"dormers": 2}, "tobacconist", "GREEN & WEBB", "brown", "yellow", "TRAVEL AGENT"),
-        (-21.0, 8.8, "blue", 3, {"shutters": "white"}, "travel agent", "SUNWAY TRAVEL", "yellow", "navy", None),
-        (-12.3, 8.6, "white", 4, {"storey_m": 2.9, "balconies": True}, "shoe shop", "SOLE MATES", "purple", "white", None),
-        (18.2, 8.4, "red brick", 3, {"shutters": "cream"}, "optician", "CLEARVIEW OPTICIANS", "light blue", "navy", None),
-        (26.2, 7.6, "pink", 3, {"balconies": True}, "toy shop", "THE TOY BOX", "red", "yellow", None),
-        (32.9, 5.8, "stone", 4, {"storey_m": 2.9}, "watchmaker", "WATCHMAKER", "dark green", "yellow", None),
+        (-29.7, 8.6, "buff brick", 3, {"dormers": 2}, "tobacconist", "GREEN & WEBB", "brown", "yellow"),
+        (-21.0, 8.8, "blue", 3, {"shutters": "white"}, "travel agent", "SUNWAY TRAVEL", "yellow", "navy"),
+        (-12.3, 8.6, "white", 4, {"storey_m": 2.9, "balconies": True}, "shoe shop", "SOLE MATES", "purple", "white"),
+        (18.2, 8.4, "red brick", 3, {"shutters": "cream"}, "optician", "CLEARVIEW OPTICIANS", "light blue", "navy"),
+        (26.2, 7.6, "pink", 3, {"balconies": True}, "toy shop", "THE TOY BOX", "red", "yellow"),
+        (32.9, 5.8, "stone", 4, {"storey_m": 2.9}, "watchmaker", "WATCHMAKER", "dark green", "yellow"),
     ]  # fmt: skip
-    for k, (at, width, colour, storeys, more, kind, text, board, ink, _) in enumerate(south):
-        place = (at, SOUTH_Y, 0.0)
-        h = House(width, w[colour], storeys, 3 if width > 7 else 2, seed=20 + k, roof=CLAY if k % 3 == 2 else SLATE, **more)
+    for k, (front_x, width, colour, storeys, options, kind, text, board_colour, ink) in enumerate(south):
+        place = (front_x, SOUTH_Y, 0.0)
+        h = House(
+            width, materials[colour], storeys, 3 if width > 7 else 2, seed=20 + k, roof=CLAY if k % 3 == 2 else SLATE, **options
+        )
         noun = {"buff brick": "buff brick house", "red brick": "red brick house", "stone": "tall stone house"}.get(
             colour, f"{colour} house"
         )
@@ -310,7 +337,7 @@ def _rows(stage: Stage) -> None:
             kind=kind,
             text=text,
             width=width - 1.0,
-            colour=board,
+            colour=board_colour,
             ink=ink,
             notice="OPEN" if k % 2 else None,
             awning=(("yellow", "white") if k == 1 else ("red", "red")) if k in (1, 4) else None,

@@ -14,10 +14,12 @@ from scope_studio.kit.vehicles import cars, cycles, tram
 from scope_studio.scenes.station_square.ground import ROAD_M, TRACKS
 
 FIRST_ACTOR = 9001
+"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
 TAXI_ROOF_M = 1.445
+"""Height in metres of a taxi's roof."""
 
 TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"), ("black", "VE22 HGS", 6.9, "lit")]
-"""Colour, number plate, y coordinate and state of the roof sign of each taxi on the rank."""
+"""Taxis on the rank: colour, number plate, y coordinate, state of the roof sign."""
 
 PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
     (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
@@ -27,15 +29,16 @@ PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = 
     (cars.suv, "SUV", "dark green", "CE70 ZQA", -29.4, -24.3, 270.0),
     (cars.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
 ]
+"""Cars parked around the square: builder, noun, colour, plate, x, y, bearing."""
 
-DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
+STREET_CARS: list[tuple[Callable[..., Built], str, str, str, float]] = [
     (cars.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
     (cars.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
     (cars.suv, "SUV", "black", "BU22 ODA", 69.5),
     (cars.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
     (cars.saloon, "saloon", "silver", "MT71 ESG", -64.5),
 ]
-"""Cars parked farther along the street: colour, plate, x."""
+"""Cars parked farther along the street: builder, noun, colour, plate, x."""
 
 
 def build(stage: Stage) -> None:
@@ -111,7 +114,7 @@ def _parked(stage: Stage) -> None:
             state="parked",
             facing="south" if bearing == 180 else "west",
         )
-    for make, noun, colour, plate, x in DOWN_THE_STREET:
+    for make, noun, colour, plate, x in STREET_CARS:
         stage.place(
             make(colour, plate=plate),
             "car",
@@ -155,11 +158,11 @@ def timed_path(
     corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0
 ) -> list[tuple[float, float, float, float]]:
     """Return the waypoints (t_s, x, y, z) of a path on the ground through ``corners``, at constant speed."""
-    way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
+    waypoints, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps
-        way.append((t, x1, y1, _ground(x1, y1)))
-    return way
+        waypoints.append((t, x1, y1, _ground(x1, y1)))
+    return waypoints
 
 
 def _moving_taxi() -> Built:
@@ -170,7 +173,7 @@ def _moving_taxi() -> Built:
     return Built(cab.root, [*cab.objects, *sign.objects], [])
 
 
-def _rider() -> Built:
+def _cyclist() -> Built:
     bike = cycles.bicycle("red", kind="town", basket=True, crank_deg=70.0)
     person = characters.pedestrian(top="light blue", trousers="denim", seed=733, stance=stances.riding(70.0))
     person.root.parent = bike.root
@@ -179,7 +182,7 @@ def _rider() -> Built:
 
 def actors() -> list[ActorPath]:
     """Return the actors: a taxi that drives along the street, and a cyclist who crosses the square."""
-    taxi = [
+    taxi_path = [
         (-40.2, -58.0),
         (-40.2, -28.0),
         *_bend((-32.6, -28.0), 7.6, 270, 360),
@@ -187,7 +190,7 @@ def actors() -> list[ActorPath]:
         *_bend((33.4, -28.0), 7.6, 0, 90),
         (41.0, -58.0),
     ]
-    ride = [
+    cyclist_path = [
         (42.0, -50.0),
         (42.0, -24.0),
         (38.0, -17.0),
@@ -214,7 +217,7 @@ def actors() -> list[ActorPath]:
             "taxi",
             "yellow taxi",
             lambda _phase: _moving_taxi(),
-            timed_path(taxi, 7.5),
+            timed_path(taxi_path, 7.5),
             42.0,
             {"colour": "yellow", "state": "moving", "plate": "SD20 KWN"},
         ),
@@ -223,8 +226,8 @@ def actors() -> list[ActorPath]:
             FIRST_ACTOR + 1,
             "cyclist",
             "cyclist on a red bicycle",
-            lambda _phase: _rider(),
-            timed_path(ride, 3.6, 2.0),
+            lambda _phase: _cyclist(),
+            timed_path(cyclist_path, 3.6, 2.0),
             46.0,
             {"colour": "light blue", "state": "riding", "bicycle": "red"},
         ),

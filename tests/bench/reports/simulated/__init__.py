@@ -1,1 +1,1 @@
-"""Simulated evaluations of the paper's 19 pairs with known strengths. No model is run, and every name says so."""
+"""Simulated evaluations of the paper's 19 pairs with known strengths. No model is run, and all names are marked as simulated."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.reports.report_runs import SIMULATED
+from scope_ptz.bench.reports.report_runs import SIMULATED_PROVIDER
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Judgement, ModelCard, ObservationTime, RunCard, Trial
 from tests.bench.reports.simulated.items import Item, core_items
@@ -34,32 +34,32 @@ SPREAD = 0.35
 BASELINE = Pair(
     "grammar", "ground-truth", dict.fromkeys(paper_pairs()[0].accuracy, 0.95), 0.0, 0.004, 0.002, 1.6
 )  # fmt: skip
-"""A stand-in for the built-in planner."""
+"""The pair that represents the built-in planner."""
 FAILURE = "simulated: the planner's server ended"
 
 
 def full_sweep(seed: int = 0, items: Sequence[Item] | None = None) -> list[Evaluation]:
-    """The paper's 19 pairs, a rerun of each planner with ground-truth perception, and a baseline.
+    """Return the paper's 19 pairs, a rerun of each planner with ground-truth perception, and a baseline.
 
     The last rerun ended in an error before its last tasks.
     """
     pairs = paper_pairs()
-    planners = {pair.planner: pair for pair in pairs}  # With its last perception model.
+    planners = {pair.planner: pair for pair in pairs}  # each with its last perception model
     reruns = [pair.with_perfect_perception() for pair in planners.values()]
-    drawn = [evaluation(pair, seed, items) for pair in (*pairs, *reruns, BASELINE)]
+    evaluations = [evaluation(pair, seed, items) for pair in (*pairs, *reruns, BASELINE)]
     cut = len(pairs) + len(reruns) - 1
-    trials = drawn[cut].trials[: 9 * len(drawn[cut].trials) // 10]
-    drawn[cut] = drawn[cut].model_copy(update={"trials": trials, "failure": FAILURE})
-    return drawn
+    trials = evaluations[cut].trials[: 9 * len(evaluations[cut].trials) // 10]
+    evaluations[cut] = evaluations[cut].model_copy(update={"trials": trials, "failure": FAILURE})
+    return evaluations
 
 
 def store(evaluations: Sequence[Evaluation], folder: Path) -> list[Path]:
-    """Write evaluations as results that ``scope bench report`` reads. Their names say that they are simulated."""
+    """Write evaluations as results that ``scope bench report`` reads. Their names mark them as simulated."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
-    for made in evaluations:
-        paths.append(folder / f"simulated-{made.card.run_id}.json")
-        paths[-1].write_text(made.model_dump_json(), "utf-8")
+    for run in evaluations:
+        paths.append(folder / f"simulated-{run.card.run_id}.json")
+        paths[-1].write_text(run.model_dump_json(), "utf-8")
     return paths
 
 
@@ -73,72 +73,73 @@ def evaluation(pair: Pair, seed: int = 0, items: Sequence[Item] | None = None, p
         population: Difficulties over which the mean success is the known accuracy (default: those of the items).
     """
     chosen = tuple(items if items is not None else core_items())
-    chance = np.random.default_rng([seed, 2, *pair.label.encode()])
+    rng = np.random.default_rng([seed, 2, *pair.label.encode()])
     success = success_probabilities(pair, chosen, viewpoint_effects(chosen, seed), population)
-    trials = tuple(_trial(pair, item, p, chance) for item, p in zip(chosen, success.tolist(), strict=True))
+    trials = tuple(_trial(pair, item, p, rng) for item, p in zip(chosen, success.tolist(), strict=True))
     return Evaluation(card=card(pair, seed), trials=trials, wanted=len(trials))
 
 
 def card(pair: Pair, seed: int) -> RunCard:
-    """The run card of a pair. Its provider marks it as simulated."""
+    """Return the run card of a pair. Its provider marks it as simulated."""
     is_truth, is_baseline = pair.perception == "ground-truth", pair.planner == "grammar"
     return RunCard(
         run_id=f"{pair.planner}-{pair.perception}-{seed}", started="2026-01-01T00:00:00Z", package_version="0", engine_version="0",
         dataset="scope1", dataset_digest="0" * 64, split="core", max_steps=60, seed=seed, sampling={"temperature": 0.7},
         prompt_digest="0" * 64, concurrency=8 if pair.contended else 1, contended=pair.contended, host="simulated",
         planner=ModelCard(
-            name=f"simulated-{pair.planner}", registry=None if is_baseline else pair.planner, provider=SIMULATED,
+            name=f"simulated-{pair.planner}", registry=None if is_baseline else pair.planner, provider=SIMULATED_PROVIDER,
             deterministic=is_baseline,
         ),
         perception=ModelCard(
-            name=pair.perception_name, registry=None if is_truth else pair.perception, provider=SIMULATED, deterministic=is_truth
+            name=pair.perception_name, registry=None if is_truth else pair.perception, provider=SIMULATED_PROVIDER,
+            deterministic=is_truth,
         ),
     )  # fmt: skip
 
 
-def _trial(pair: Pair, item: Item, success: float, chance: np.random.Generator) -> Trial:
+def _trial(pair: Pair, item: Item, success: float, rng: np.random.Generator) -> Trial:
     facts = item.facts
-    headline = _headline(pair, success, chance)
-    mode = _mode(pair, facts.category, chance) if headline == "incorrect" else None
-    calls = 1 + int(chance.poisson(max(0.0, pair.tool_calls - 1)))
-    planner_s = pair.planner_s * float(chance.lognormal(0, SPREAD))
-    look_s = pair.perception_s * float(chance.lognormal(0, SPREAD)) * (PANORAMA_RATIO if facts.scope == "full" else 1.0)
+    headline = _headline(pair, success, rng)
+    mode = _mode(pair, facts.category, rng) if headline == "incorrect" else None
+    calls = 1 + int(rng.poisson(max(0.0, pair.tool_calls - 1)))
+    planner_s = pair.planner_s * float(rng.lognormal(0, SPREAD))
+    call_s = pair.perception_s * float(rng.lognormal(0, SPREAD)) * (PANORAMA_RATIO if facts.scope == "full" else 1.0)
     is_command = facts.category in COMMANDS
     tool = "count_objects" if facts.category == "counting" else "query_answer"
-    perception_s = 0.0 if is_command else look_s
+    perception_s = 0.0 if is_command else call_s
     return Trial(
         task=facts, sample=f"{facts.id}/1", headline=headline, reason="simulated", error_mode=mode, outcome="answered",
         answer="simulated", checks=(CheckRecord(name="answer", passed=headline == "correct", reason="simulated"),),
         steps=calls + 1, tool_calls={"go_to_preset": calls} if is_command else {tool: 1, "adjust_ptz": calls - 1},
-        collateral=bool(chance.random() < 0.03), input_tokens=1500 * (calls + 1), output_tokens=40 * (calls + 1), cost_usd=0.001,
+        collateral=bool(rng.random() < 0.03), input_tokens=1500 * (calls + 1), output_tokens=40 * (calls + 1), cost_usd=0.001,
         server_events={"timeout": 1} if headline == "infrastructure" else {},
         timings=Timings(
             planner_s=planner_s, perception_s=perception_s, camera_s=0.1, render_s=0.1, first_token_s=0.2 * planner_s,
             total_s=planner_s + perception_s + 0.25,
         ),
-        looks=() if is_command else (ObservationTime(view=facts.scope, eyes_s=look_s, capture_s=0.2, call_s=look_s + 0.25),),
-        judgements=() if pair.planner == "grammar" else (_judgement(headline, mode, chance),),
+        looks=() if is_command else (ObservationTime(view=facts.scope, eyes_s=call_s, capture_s=0.2, call_s=call_s + 0.25),),
+        judgements=() if pair.planner == "grammar" else (_judgement(headline, mode, rng),),
     )  # fmt: skip
 
 
-def _headline(pair: Pair, success: float, chance: np.random.Generator) -> Any:
-    if chance.random() < pair.lost:
+def _headline(pair: Pair, success: float, rng: np.random.Generator) -> Any:
+    if rng.random() < pair.lost:
         return "infrastructure"
-    if chance.random() < success:
+    if rng.random() < success:
         return "correct"
-    return "unscored" if chance.random() < UNSCORED_SHARE else "incorrect"
+    return "unscored" if rng.random() < UNSCORED_SHARE else "incorrect"
 
 
-def _mode(pair: Pair, category: str, chance: np.random.Generator) -> ErrorMode:
-    if chance.random() < pair.perception_share:
+def _mode(pair: Pair, category: str, rng: np.random.Generator) -> ErrorMode:
+    if rng.random() < pair.perception_share:
         return ErrorMode.VLM_COUNTING if category == "counting" else ErrorMode.VLM_QUERY
-    return PLANNER_MODES[int(chance.integers(len(PLANNER_MODES)))]
+    return PLANNER_MODES[int(rng.integers(len(PLANNER_MODES)))]
 
 
-def _judgement(headline: str, mode: ErrorMode | None, chance: np.random.Generator) -> Judgement:
-    agrees = bool(chance.random() < JUDGE_AGREEMENT)
+def _judgement(headline: str, mode: ErrorMode | None, rng: np.random.Generator) -> Judgement:
+    agrees = bool(rng.random() < JUDGE_AGREEMENT)
     verdict: Any = "correct" if (headline == "correct") == agrees else "incorrect"
-    if chance.random() < JUDGE_UNPARSEABLE:
+    if rng.random() < JUDGE_UNPARSEABLE:
         verdict = "unparseable"
     return Judgement(
         judge=JUDGE, prompt="simulated", verdict=verdict, reason="simulated", input_tokens=2000, output_tokens=150,

@@ -1,4 +1,4 @@
-"""The known strengths of the simulated pairs: those of the paper's tables, and rates that are chosen here."""
+"""The known strengths of the simulated pairs, from the paper's tables or chosen here."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ PANORAMA_RATIO = 1.224
 UNSCORED_SHARE = 0.01
 """Share of unsuccessful trials whose answer cannot be parsed."""
 JUDGE_AGREEMENT = 0.93
-"""Probability that the judge's verdict is that of the checks, of the trials with a verdict."""
+"""Probability that a verdict of the judge agrees with the checks."""
 JUDGE_UNPARSEABLE = 0.01
 """Share of trials on which the judge gives no verdict."""
 LOST_SHARE = 0.004
 """Share of trials that infrastructure breaks."""
 LOST_SHARE_OF_ONE_PAIR = 0.05
-"""The same, of the one pair in which it is high."""
+"""Share of trials that infrastructure breaks in the pair ``HIGH_LOSS``."""
 HIGH_LOSS = ("qwen3-32b", "moondream3")
 """The pair with many trials lost to infrastructure."""
 LOWEST, HIGHEST = 0.02, 0.985
-"""Limits of success probabilities, because nothing is impossible and nothing is certain."""
+"""Limits of success probabilities: no task always fails or always succeeds."""
 
 Numbers = NDArray[np.float64]
 
@@ -79,18 +79,18 @@ class Pair:
         return fmean(self.accuracy.values())
 
     def corrected(self, category: str) -> float:
-        """Expected accuracy in a category if failures of perception counted as correct. Unscored failures have no error mode."""
+        """Return the accuracy expected in a category if perception failures counted as correct. Unscored failures have no mode."""
         accuracy = self.accuracy[category]
         return accuracy + (1 - accuracy) * (1 - UNSCORED_SHARE) * self.perception_share
 
     def with_perfect_perception(self) -> Pair:
-        """The same planner with ground-truth perception."""
+        """Return the same planner with ground-truth perception."""
         accuracy = {name: min(HIGHEST, self.corrected(name)) for name in self.accuracy}
         return Pair(self.planner, "ground-truth", accuracy, 0.0, self.planner_s, 0.002, self.tool_calls)
 
 
 def paper_pairs() -> tuple[Pair, ...]:
-    """The 19 pairs of the paper, with the accuracies and latencies of its tables."""
+    """Return the 19 pairs of the paper, with the accuracies and latencies of its tables."""
     paper = load_paper()
     latency = {row.name: row for row in paper.latency}
     return tuple(
@@ -110,17 +110,17 @@ def paper_pairs() -> tuple[Pair, ...]:
 
 
 def perception_share(row: PaperAccuracy) -> float:
-    """Share of failures of perception: larger for larger planners, as in the paper."""
+    """Return the share of failures that are perception failures: larger for larger planners, as in the paper."""
     return 0.35 if row.planner.startswith("qwen3-4b") else 0.5 if row.planner == "qwen3-32b" else 0.6
 
 
 def success_probabilities(
     pair: Pair, items: tuple[Item, ...], effects: dict[str, float], population: Numbers | None = None
 ) -> Numbers:
-    """The probability of success on each item, of shape ``(items,)``.
+    """Return the probability of success on each item, of shape ``(items,)``.
 
-    The intercept of each category is chosen so that the mean over its items and over both values of a viewpoint's effect is the
-    known accuracy.
+    The intercept of each category is chosen so that the mean probability, over its items and both values of a viewpoint's effect,
+    is the known accuracy.
 
     Args:
         pair: The pair.
@@ -130,23 +130,23 @@ def success_probabilities(
     """
     probabilities = np.zeros(len(items))
     for category, accuracy in pair.accuracy.items():
-        own = [n for n, item in enumerate(items) if item.facts.category == category]
-        z = np.array([items[n].difficulty for n in own])
-        shift = np.array([effects[f"{items[n].facts.scene}/{items[n].facts.viewpoint}"] for n in own])
+        members = [n for n, item in enumerate(items) if item.facts.category == category]
+        z = np.array([items[n].difficulty for n in members])
+        shift = np.array([effects[f"{items[n].facts.scene}/{items[n].facts.viewpoint}"] for n in members])
         intercept = _intercept(z if population is None else population, accuracy)
-        probabilities[own] = _expit(intercept - SLOPE * z + shift)
+        probabilities[members] = _expit(intercept - SLOPE * z + shift)
     return probabilities
 
 
 def viewpoint_effects(items: tuple[Item, ...], seed: int) -> dict[str, float]:
-    """The effect of each viewpoint in one replicate. It is the same for all pairs."""
-    chance = np.random.default_rng([seed, 1])
+    """Return the effect of each viewpoint in one replicate. It is the same for all pairs."""
+    rng = np.random.default_rng([seed, 1])
     names = viewpoints_of(items)
-    return dict(zip(names, chance.choice([-VIEWPOINT_EFFECT, VIEWPOINT_EFFECT], len(names)).tolist(), strict=True))
+    return dict(zip(names, rng.choice([-VIEWPOINT_EFFECT, VIEWPOINT_EFFECT], len(names)).tolist(), strict=True))
 
 
 def normal_population() -> Numbers:
-    """Difficulties that represent the standard normal distribution."""
+    """Return difficulties that represent the standard normal distribution."""
     return np.array([NormalDist().inv_cdf((n + 0.5) / 200) for n in range(200)])
 
 

@@ -1,1 +1,1 @@
-"""Wrappers that run planners, perception and tools as Inspect models and tools, so that the log contains every request."""
+"""Wrappers that run planners, perception and tools through Inspect, so that the log contains every request."""

@@ -1,4 +1,4 @@
-"""A perception backend whose calls go through an Inspect model, so that the log contains each call with its picture."""
+"""A perception backend that makes its calls through an Inspect model, so that the log contains each call with its picture."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _Observation = TypeVar("_Observation", Caption, Answer, Detections, Points)
 
 
 class LoggedPerception(Perception):
-    """A perception backend whose calls go through an Inspect model, which counts, limits and logs them."""
+    """A perception backend that makes its calls through an Inspect model, which counts, limits and logs them."""
 
     def __init__(self, model: Model, api: ScopeModel, perception: Perception, *, pictures: bool) -> None:
         self._model, self._api, self._perception, self._pictures = model, api, perception, pictures
@@ -27,7 +27,7 @@ class LoggedPerception(Perception):
 
     @classmethod
     async def of(cls, model: Model, context: EvalContext, *, pictures: bool) -> LoggedPerception:
-        """Return the perception backend for an Inspect model. Raises ``ConfigError`` if the model is not a ``ScopeModel``."""
+        """Create the perception backend for an Inspect model. Raises ``ConfigError`` if the model is not a ``ScopeModel``."""
         if not isinstance(model.api, ScopeModel):
             raise ConfigError(f"The model in the role 'eyes' must be a SCOPE model (scope_ptz/...); got {model}.")
         return cls(model, model.api, await model.api.perception(context), pictures=pictures)

@@ -1,4 +1,4 @@
-"""A planner whose decisions come from an Inspect model, so that the log contains each decision as a model event."""
+"""A planner that gets its decisions from an Inspect model, so that the log contains each decision as a model event."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _DECISION: TypeAdapter[Decision] = TypeAdapter(Decision)
 class LoggedPlanner(Planner):
     """A planner that gets its decisions from an Inspect model.
 
-    The model is either a ``ScopeModel``, which runs one of SCOPE's planners, or a chat model of another Inspect provider.
+    The model is either a ``ScopeModel``, which runs one of SCOPE's planners, or a chat model from another Inspect provider.
     """
 
     def __init__(self, model: Model, planner: Planner | None) -> None:
-        """Initialize the planner. Use ``of`` to create one for a model.
+        """Initialize the planner. Use ``of`` to create a planner for a model.
 
         Args:
             model: The Inspect model.
-            planner: The planner that the model runs; None unless the model is a ``ScopeModel``.
+            planner: The planner that the model runs if it is a ``ScopeModel``, otherwise None.
         """
         self._model, self._planner = model, planner
         self.name = planner.name if planner is not None else str(model)
@@ -47,7 +47,7 @@ class LoggedPlanner(Planner):
 
     @classmethod
     async def of(cls, model: Model, context: EvalContext) -> LoggedPlanner:
-        """Create the planner for an Inspect model."""
+        """Create a planner for an Inspect model."""
         return cls(model, await model.api.planner(context) if isinstance(model.api, ScopeModel) else None)
 
     async def step(self, state: State) -> Decision:

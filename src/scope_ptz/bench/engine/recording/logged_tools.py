@@ -1,4 +1,4 @@
-"""Run tools through Inspect, so that the log contains each call as a tool event in a separate span."""
+"""Run tools through Inspect, so that the log contains a tool event in a separate span for each call."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.results import Result
 
 _ANY_ARGUMENTS = ToolParams(additionalProperties=True)
-"""Schema that accepts any arguments. The tool registry validates them, so that error messages do not depend on Inspect."""
+"""Schema that accepts any arguments. The tool registry validates arguments, so that error messages do not depend on Inspect."""
 
 
 class ToolLog:
-    """Runs tools and logs each call as a tool event with its result and the pictures that it took."""
+    """Runs tools, and logs each call as a tool event with its result and pictures."""
 
     def __init__(self, pictures: PictureStore | None) -> None:
         self._pictures = pictures
         self._calls = 0
 
     async def run(self, context: ToolContext, name: str, arguments: Any) -> Result:
-        """Run a tool. The arguments, the result and the errors are the same as for ``tools.registry.run_tool``."""
+        """Run a tool. Arguments, result and errors are the same as for ``tools.registry.run_tool``."""
         self._calls += 1
         call = ToolCall(id=f"call-{self._calls:03d}", function=name, arguments=arguments)
         outcome: list[Result | ScopeError] = []

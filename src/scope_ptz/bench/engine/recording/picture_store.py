@@ -1,4 +1,4 @@
-"""Store the pictures of a run in memory as JPEG data URLs, under their names in the trace."""
+"""Store the pictures of a run in memory as JPEG data URLs, by their names in the trace."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from scope_ptz.agent.store import PictureNames
 from scope_ptz.camera.base import Frame
 
 MAX_PANORAMA_SIDE_PX = 2560
-"""Maximum length of the longer side of a logged panorama. Perception receives the panorama at full size."""
+"""Maximum length in pixels of the longer side of a logged panorama. Perception receives panoramas at full size."""
 JPEG_QUALITY = 85
-"""JPEG quality of a logged panorama."""
+"""JPEG quality of logged panoramas."""
 _URL_PREFIX = "data:image/jpeg;base64,"
 
 
 async def data_url(frame: Frame) -> str:
-    """Return a frame as a JPEG data URL, encoded in a worker thread. Panoramas are scaled down."""
+    """Encode a frame as a JPEG data URL in a worker thread. Panoramas are scaled down."""
     if max(frame.width, frame.height) <= MAX_SIDE_PX:
         return (await picture(frame, "")).data_url
-    return await to_thread.run_sync(_reduced_data_url, frame)
+    return await to_thread.run_sync(_scaled_data_url, frame)
 
 
-def _reduced_data_url(frame: Frame) -> str:
+def _scaled_data_url(frame: Frame) -> str:
     scale = min(1.0, MAX_PANORAMA_SIDE_PX / max(frame.width, frame.height))
     small = cv2.resize(frame.image, (round(frame.width * scale), round(frame.height * scale)), interpolation=cv2.INTER_AREA)
     _, jpeg = cv2.imencode(".jpg", cv2.cvtColor(small, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
@@ -41,7 +41,7 @@ def jpeg_of(url: str) -> bytes:
 class PictureStore:
     """An image store that holds pictures in memory.
 
-    Frames are encoded in ``encode_pending``, so that encoding is not part of the measured times of a run.
+    Frames are not encoded until ``encode_pending`` is called, so that the measured times of a run do not include encoding.
 
     Attributes:
         urls: Data URLs of the encoded pictures by name.
@@ -63,7 +63,7 @@ class PictureStore:
         return name
 
     async def encode_pending(self) -> None:
-        """Encode the frames that were saved since the last call."""
+        """Encode the frames saved since the last call."""
         async with self._lock:
             for name in list(self._pending):
                 self.urls[name] = await data_url(self._pending[name])

@@ -1,4 +1,4 @@
-"""Record the requests to a planner's server and its replies for the log."""
+"""Record the requests to a planner's server and the replies, for the log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.planner.chat import ChatPlanner
 
 
 class Exchanges:
-    """The requests and replies of one planner step, as JSON data."""
+    """The server requests and replies in one planner step, as JSON data."""
 
     def __init__(self) -> None:
         self.requests: list[dict[str, Any]] = []
@@ -24,14 +24,14 @@ class Exchanges:
         self.replies.append(reply)
 
 
-def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
-    """Return a copy of a planner that records its server exchanges. The copy shares connections and state with the original.
+def recording_planner(planner: Planner, exchanges: Exchanges) -> Planner:
+    """Return a copy of a planner that records its exchanges with the server. The copy shares the original's connections and state.
 
-    A planner without a server is returned unchanged. A hybrid planner asks the planner in its attribute ``model``.
+    A planner without a server is returned unchanged. For a hybrid planner, the exchanges of its ``model`` are recorded.
     """
     if isinstance(model := getattr(planner, "model", None), Planner):
         hybrid: Any = copy(planner)
-        hybrid.model = recorded(model, exchanges)
+        hybrid.model = recording_planner(model, exchanges)
         return cast(Planner, hybrid)
     if not isinstance(planner, ChatPlanner):
         return planner
@@ -41,10 +41,10 @@ def recorded(planner: Planner, exchanges: Exchanges) -> Planner:
 
 
 class RecordedChat(ChatClient):
-    """A wrapper around a chat client that records each exchange. Headers are not recorded, because they contain keys."""
+    """A wrapper around a chat client that records each exchange. Headers are not recorded, because they may contain keys."""
 
     def __init__(self, client: ChatClient, exchanges: Exchanges) -> None:
-        # ``super().__init__`` is not called, because it would open connections. This object uses those of ``client``.
+        # ``super().__init__`` is not called, because it would open connections. This object uses the connections of ``client``.
         self.endpoint, self.caller = client.endpoint, client.caller
         self._wrapped, self._exchanges = client, exchanges
 

@@ -1,4 +1,4 @@
-"""Make SCOPE's planners, perception backends and judges available as Inspect models, such as ``scope_ptz/grammar``."""
+"""Provide SCOPE's planners, perception backends and judges as Inspect models, such as ``scope_ptz/grammar``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 from pydantic import BaseModel
 
 from scope_ptz.bench.engine.context import EvalContext, ModelRequest
-from scope_ptz.bench.engine.recording.recorded_chat import Exchanges, recorded
+from scope_ptz.bench.engine.recording.recorded_chat import Exchanges, recording_planner
 from scope_ptz.bench.engine.recording.transcript import call_id, state_of
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.errors import ConfigError
@@ -46,7 +46,7 @@ _Reply = TypeVar("_Reply", bound=BaseModel)
 class ScopeModel(ModelAPI):
     """An Inspect model that runs one of SCOPE's planners, perception backends or judges.
 
-    Its name is that of a model in the registry or of a built-in planner or perception backend.
+    The model name is the name of a registered model, or of a built-in planner or perception backend.
     """
 
     def __init__(
@@ -66,32 +66,32 @@ class ScopeModel(ModelAPI):
         self._pending: dict[str, _PendingCall] = {}
 
     async def planner(self, context: EvalContext) -> Planner:
-        """Return the planner with this name, created on the first call."""
+        """Return the planner with this model name. It is created on the first call."""
         async with self._lock:
             if self._planner is None:
                 self._planner = await context.make_planner(self.request)
             return self._planner
 
     async def perception(self, context: EvalContext) -> Perception:
-        """Return the perception backend with this name, created on the first call."""
+        """Return the perception backend with this model name. It is created on the first call."""
         async with self._lock:
             if self._perception is None:
                 self._perception = await context.make_perception(self.request)
             return self._perception
 
     async def judge(self, context: EvalContext, repeat: int) -> Complete:
-        """Return the connection to the judge with this name, opened on the first call. ``repeat`` is the index of the judgement."""
+        """Return the connection to the judge with this model name, opened on the first call. ``repeat`` is the judgement index."""
         async with self._lock:
             if repeat not in self._judges:
                 self._judges[repeat] = await context.make_judge(self.request, repeat)
             return self._judges[repeat]
 
     async def logged_call(self, model: Model, messages: list[ChatMessage], call: Callable[[], Awaitable[_Reply]]) -> _Reply:
-        """Make a call inside an Inspect model event, so that Inspect counts, limits and logs it.
+        """Make a call within an Inspect model event, so that Inspect counts, limits and logs it.
 
         Args:
-            model: The Inspect model whose API this object is.
-            messages: The input that the log shows.
+            model: The Inspect model that wraps this object.
+            messages: The input to show in the log.
             call: Function that makes the call.
 
         Returns:
@@ -123,7 +123,7 @@ class ScopeModel(ModelAPI):
                 "scope_ptz models run only in SCOPE's benchmark. Use `scope bench run` or `inspect eval scope_ptz/bench`."
             )
         exchanges = Exchanges()
-        decision = await recorded(self._planner, exchanges).step(state_of(input))
+        decision = await recording_planner(self._planner, exchanges).step(state_of(input))
         step = 1 + sum(isinstance(m, ChatMessageAssistant) and bool(m.tool_calls) for m in input)
         call = ModelCall.create({"requests": exchanges.requests}, {"replies": exchanges.replies})
         return output_of(decision, self.model_name, step), call
@@ -141,7 +141,7 @@ class ScopeModel(ModelAPI):
 
 
 class _PendingCall:
-    """A call for ``generate`` to make, and its reply."""
+    """A call that ``generate`` makes, and its reply."""
 
     def __init__(self, call: Callable[[], Awaitable[Any]]) -> None:
         self.call = call
@@ -150,7 +150,7 @@ class _PendingCall:
 
 @modelapi(name=PROVIDER)
 def scope_ptz() -> type[ModelAPI]:
-    """Return the Inspect provider of registered models and of the built-in planners and perception backends."""
+    """Return the Inspect provider for registered models and the built-in planners and perception backends."""
     return ScopeModel
 
 
@@ -158,17 +158,17 @@ def inspect_model(name: str, max_connections: int, *, url: str | None = None, **
     """Return the Inspect model for one of SCOPE's planners, perception backends or judges.
 
     Args:
-        name: Name in the registry, name of a built-in, or the model's name on its server.
+        name: Name of a registered or built-in model, or the model's name on its server.
         max_connections: Maximum number of concurrent calls.
         url: Base URL of the server.
-        model_args: Options of the model, which the log records.
+        model_args: Model options, which are recorded in the log.
     """
     config = GenerateConfig(max_connections=max_connections)
     return get_model(f"{PROVIDER}/{name}", base_url=url, config=config, memoize=False, **model_args)
 
 
 def output_of(decision: Decision, model: str, step: int) -> ModelOutput:
-    """Convert a decision to an Inspect model output, with the decision itself in the metadata."""
+    """Convert a decision to an Inspect model output whose metadata contains the decision."""
     text = decision.thought if isinstance(decision, CallTools) else decision.text
     content = [ContentReasoning(reasoning=decision.reasoning)] if decision.reasoning else []
     calls: list[ToolCall] | None = None

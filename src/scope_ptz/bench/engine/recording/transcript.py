@@ -1,7 +1,7 @@
 """Convert a planner's state to chat messages and back. The log shows these messages, and any chat model can plan from them.
 
-The texts are those of the chat planner. Exact values, such as poses and results, are in the metadata for planners that do not use
-the text.
+The texts are the same as in the chat planner. For planners that do not use the texts, the metadata contains exact values, such as
+poses and results.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from scope_ptz.planner.base import Briefing, CallTools, Exchange, Picture, State
 from scope_ptz.planner.chat.chat_messages import valid_tool_name
 from scope_ptz.planner.chat.observations import observation
 from scope_ptz.planner.chat.prompts import Prompt
-from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.planner.chat.schemas import simplify_schemas
 from scope_ptz.tools.registry import schemas
 
 Record = Started | Decided | Called | Ended
-"""A record of a trace."""
+"""A trace record."""
 
 _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
@@ -45,7 +45,7 @@ _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[ChatMessage]:
     """Convert a state to messages.
 
-    Each step appends messages to those of the previous step. The newest view replaces the previous view.
+    Each step appends messages to those of the previous step, except that the newest view replaces the previous one.
 
     Args:
         state: The state.
@@ -76,12 +76,12 @@ def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
 
 
 def call_id(step: int, index: int) -> str:
-    """Return the id of a call in messages. It has nine characters, because some chat templates require this length."""
+    """Return the id of a call in messages. Ids have nine characters, because some chat templates require this length."""
     return f"s{step:04d}c{index:03d}"
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """Convert the result of a call into a message for the planner, with the whole outcome in the metadata."""
+    """Convert the outcome of a call to a message for the planner whose metadata contains the outcome."""
     content: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
         content += _picture_content(outcome.picture)
@@ -104,7 +104,7 @@ def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> l
 
     Args:
         records: The records of the trace.
-        pictures: Data URLs of the pictures by name. Each picture is shown in the message of the call that took it.
+        pictures: Data URLs of the pictures by name. A picture is shown in the message of the call that took it.
     """
     messages: list[ChatMessage] = []
     for record in records:
@@ -143,13 +143,13 @@ def _images_named(names: Iterable[str | None], pictures: Mapping[str, str]) -> l
 
 @cache
 def _schemas() -> tuple[dict[str, Any], ...]:
-    """Return the schemas of the tools, which are the same for every camera."""
+    """Return the tool schemas, which are the same for every camera."""
     return tuple(schemas())
 
 
 @cache
 def _tool_infos() -> tuple[ToolInfo, ...]:
-    functions = (tool["function"] for tool in plain_schemas(_schemas()))
+    functions = (tool["function"] for tool in simplify_schemas(_schemas()))
     return tuple(
         ToolInfo(name=f["name"], description=f["description"], parameters=ToolParams.model_validate(f["parameters"]))
         for f in functions
@@ -157,12 +157,12 @@ def _tool_infos() -> tuple[ToolInfo, ...]:
 
 
 def tool_infos() -> list[ToolInfo]:
-    """Return the tools in the form in which Inspect passes them to a model."""
+    """Return the tools in Inspect's format."""
     return list(_tool_infos())
 
 
 def state_of(messages: Sequence[ChatMessage]) -> State:
-    """Convert messages to a state. Without a briefing, the camera points straight ahead and has no presets.
+    """Convert messages to a state. If there is no briefing, the camera points straight ahead and has no presets.
 
     Raises:
         PlannerError: The messages contain no instruction.

@@ -1,1 +1,1 @@
-"""Comparison of two evaluations: whether the candidate is significantly worse than the baseline."""
+"""Compare two evaluations to find out whether the newer one is significantly worse than the baseline."""

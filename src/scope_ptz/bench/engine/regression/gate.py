@@ -1,4 +1,4 @@
-"""A regression gate for continuous integration. It compares an evaluation with an earlier one, task by task."""
+"""A regression gate for continuous integration, which compares an evaluation with an earlier one task by task."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import fmean
 
-from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.statistics.paired import holm, mcnemar_exact
 from scope_ptz.errors import InputError
 
-ALL = "all"
+ALL_TASKS = "all"
 """Name of the group of all tasks."""
 
 
@@ -24,10 +24,10 @@ class Comparison:
         tasks: Number of tasks.
         before: Fraction of correct runs in the earlier evaluation.
         now: Fraction of correct runs in the new evaluation.
-        worse: The tasks that are correct less often than before.
-        better: The tasks that are correct more often than before.
-        p: Two-sided p value of McNemar's exact test; with repeats, of the sign test. For categories it is adjusted for multiple
-            tests by Holm's method.
+        worse: Ids of the tasks that are correct less often than before.
+        better: Ids of the tasks that are correct more often than before.
+        p: Two-sided p value of McNemar's exact test or, with repeats, of the sign test. For categories, it is adjusted for multiple
+            tests with Holm's method.
     """
 
     group: str
@@ -44,34 +44,34 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
-class Gate:
-    """The result of the gate.
+class GateResult:
+    """The result of a regression gate.
 
     Attributes:
-        overall: The comparison on all tasks.
+        overall: The comparison over all tasks.
         categories: The comparisons by category.
-        left_out: The tasks without a scored run in one of the evaluations, because infrastructure broke the runs or no judge gave a
-            verdict.
+        unscored_tasks: Ids of the tasks without a scored run in one of the evaluations, because of infrastructure failures or
+            missing verdicts of judges.
         alpha: Significance level.
     """
 
     overall: Comparison
     categories: tuple[Comparison, ...]
-    left_out: tuple[str, ...]
+    unscored_tasks: tuple[str, ...]
     alpha: float
 
     @property
     def regressions(self) -> tuple[Comparison, ...]:
-        """The groups of tasks that became significantly worse."""
+        """The comparisons of the task groups that became significantly worse."""
         return tuple(c for c in (self.overall, *self.categories) if c.regressed(self.alpha))
 
     @property
     def passed(self) -> bool:
-        """Whether no group of tasks became significantly worse."""
+        """Whether no task group became significantly worse."""
         return not self.regressions
 
 
-def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> Gate:
+def compare_evaluations(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> GateResult:
     """Compare two evaluations of the same tasks.
 
     Args:
@@ -104,8 +104,8 @@ def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> G
     by_category = tuple(
         replace(comparison, p=p if p is not None else 1.0) for comparison, p in zip(comparisons, adjusted, strict=True)
     )
-    left_out = sorted({t.task.id for t in (*baseline.trials, *evaluation.trials)} - set(both))
-    return Gate(_compare(ALL, both, before, now), by_category, tuple(left_out), alpha)
+    unscored_tasks = sorted({t.task.id for t in (*baseline.trials, *evaluation.trials)} - set(both))
+    return GateResult(_compare(ALL_TASKS, both, before, now), by_category, tuple(unscored_tasks), alpha)
 
 
 def _tasks(evaluation: Evaluation) -> str:
@@ -114,10 +114,10 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Return the fraction of correct runs of each task. Broken runs and runs without a judge's verdict are excluded."""
+    """Return the fraction of correct runs of each task. Runs with infrastructure failures or missing verdicts are excluded."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
-        if trial.headline != "infrastructure" and not without_verdict(trial):
+        if trial.headline != "infrastructure" and not lacks_verdict(trial):
             runs.setdefault(trial.task.id, []).append(trial.headline == "correct")
     return {task: fmean(correct) for task, correct in runs.items()}
 

@@ -1,15 +1,15 @@
-"""Format the comparison of two evaluations as lines of text."""
+"""Format a comparison of two evaluations as lines of text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from scope_ptz.bench.engine.regression.gate import Comparison, Gate
+from scope_ptz.bench.engine.regression.gate import Comparison, GateResult
 from scope_ptz.bench.judging.deciding_judge import reported_judge
 from scope_ptz.bench.scoring.trials import Evaluation
 
 MAX_TASKS_LISTED = 40
-"""Maximum number of tasks that the output lists as worse."""
+"""Maximum number of worse tasks to list."""
 
 
 def judge_change_note(now: Evaluation, before: Evaluation) -> str:
@@ -22,8 +22,8 @@ def judge_change_note(now: Evaluation, before: Evaluation) -> str:
     )
 
 
-def comparison_lines(result: Gate, now: Evaluation) -> Iterator[str]:
-    """Yield the lines of a table of task groups, the tasks that became worse, and the result of the gate."""
+def comparison_lines(result: GateResult, now: Evaluation) -> Iterator[str]:
+    """Yield the lines of a table with task groups, the tasks that became worse, and the result of the gate."""
     yield f"{'':<22}{'tasks':>6}{'before':>10}{'now':>10}{'worse':>7}{'better':>8}{'p':>9}"
     for row in (result.overall, *result.categories):
         yield _row(row, result.alpha)
@@ -33,8 +33,8 @@ def comparison_lines(result: Gate, now: Evaluation) -> Iterator[str]:
         yield f"worse  {task}{f': {trial.reason}' if trial is not None else ''}"
     if len(result.overall.worse) > MAX_TASKS_LISTED:
         yield f"       and {len(result.overall.worse) - MAX_TASKS_LISTED} more"
-    if result.left_out:
-        tasks = "1 task is" if len(result.left_out) == 1 else f"{len(result.left_out)} tasks are"
+    if result.unscored_tasks:
+        tasks = "1 task is" if len(result.unscored_tasks) == 1 else f"{len(result.unscored_tasks)} tasks are"
         yield f"{tasks} left out, because in one of the logs infrastructure broke the runs or no judge gave a verdict."
     groups = ", ".join("over all" if c.group == "all" else c.group.replace("_", " ") for c in result.regressions)
     yield f"REGRESSION: {groups} (alpha {result.alpha:g})" if groups else f"no significant regression (alpha {result.alpha:g})"

@@ -1,7 +1,7 @@
-"""Compare a stored frame with the frame that the simulator renders now.
+"""Compare a stored frame with a new rendering of the same view.
 
-The same version renders the same pixels, and both pictures are compressed in the same way. Other processors and JPEG libraries
-round differently, so a small difference is accepted. docs/evaluation.md states the measurements behind the tolerances.
+The same version of the simulator renders the same pixels, and both pictures are compressed in the same way. However, processors and
+JPEG libraries round differently, so small differences are accepted. docs/evaluation.md states how the tolerances were measured.
 """
 
 from __future__ import annotations
@@ -13,25 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAX_MEAN_DIFFERENCE = 4.0
-"""Largest accepted mean absolute difference of two frames, in levels of 256."""
+"""Maximum accepted mean absolute difference between two frames, on a scale of 0 to 255."""
 MIN_SSIM = 0.96
-"""Smallest accepted structural similarity (SSIM) of two frames in grey."""
+"""Minimum accepted structural similarity (SSIM) of two frames in greyscale."""
 MAX_BLOCK_DIFFERENCE = 18.0
-"""Largest accepted mean absolute difference within a block, in levels of 256. It finds things that were painted over."""
+"""Maximum accepted mean absolute difference within a block, on a scale of 0 to 255. It detects things that were painted over."""
 BLOCK_PX = 16
 """Width and height of a block in pixels."""
-_SIGMA_PX = 1.5  # of the Gaussian window of SSIM
+_SIGMA_PX = 1.5  # standard deviation of SSIM's Gaussian window
 _C1, _C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
 
 
 @dataclass(frozen=True, slots=True)
 class FrameDifference:
-    """The difference of two frames.
+    """The difference between two frames.
 
     Attributes:
-        mean: Mean absolute difference, in levels of 256.
-        ssim: Structural similarity in grey; 1 for equal frames.
-        worst_block: Largest mean absolute difference of a block, in levels of 256.
+        mean: Mean absolute difference, on a scale of 0 to 255.
+        ssim: Structural similarity in greyscale; 1 for equal frames.
+        worst_block: Largest mean absolute difference within a block, on a scale of 0 to 255.
     """
 
     mean: float
@@ -40,7 +40,7 @@ class FrameDifference:
 
     @property
     def accepted(self) -> bool:
-        """Whether the frames show the same within the tolerances."""
+        """Whether the difference is within all tolerances."""
         return self.mean <= MAX_MEAN_DIFFERENCE and self.ssim >= MIN_SSIM and self.worst_block <= MAX_BLOCK_DIFFERENCE
 
     def __str__(self) -> str:
@@ -51,7 +51,7 @@ EQUAL = FrameDifference(0.0, 1.0, 0.0)
 
 
 def compare_frames(stored: bytes, rendered: bytes) -> FrameDifference | None:
-    """Return the difference of two frames; None if the stored one is no picture or has another size.
+    """Return the difference between two frames; None if the stored data is not a picture or the sizes differ.
 
     Args:
         stored: The stored frame as JPEG.
@@ -59,14 +59,14 @@ def compare_frames(stored: bytes, rendered: bytes) -> FrameDifference | None:
     """
     if stored == rendered:
         return EQUAL
-    one, other = (cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None for data in (stored, rendered))
-    if one is None or other is None or one.shape != other.shape:
+    first, second = (cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None for data in (stored, rendered))
+    if first is None or second is None or first.shape != second.shape:
         return None
-    difference = cv2.absdiff(one, other).mean(axis=2).astype(np.float32)
+    difference = cv2.absdiff(first, second).mean(axis=2).astype(np.float32)
     height, width = (side - side % BLOCK_PX for side in difference.shape)
     blocks = difference[:height, :width].reshape(height // BLOCK_PX, BLOCK_PX, width // BLOCK_PX, BLOCK_PX).mean(axis=(1, 3))
     return FrameDifference(
-        float(difference.mean()), _ssim(_grey(one), _grey(other)), float(blocks.max(initial=float(difference.mean())))
+        float(difference.mean()), _ssim(_grey(first), _grey(second)), float(blocks.max(initial=float(difference.mean())))
     )
 
 
@@ -74,15 +74,15 @@ def _grey(image: NDArray[np.uint8]) -> NDArray[np.float32]:
     return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), np.float32)
 
 
-def _ssim(one: NDArray[np.float32], other: NDArray[np.float32]) -> float:
-    """Return the mean SSIM of two grey images, with the Gaussian window of Wang et al. (2004)."""
+def _ssim(first: NDArray[np.float32], second: NDArray[np.float32]) -> float:
+    """Return the mean SSIM of two greyscale images, with the Gaussian window of Wang et al. (2004)."""
 
     def blur(image: NDArray[np.float32]) -> NDArray[np.float32]:
         return np.asarray(cv2.GaussianBlur(image, (11, 11), _SIGMA_PX), np.float32)
 
-    mean_one, mean_other = blur(one), blur(other)
-    variance_one, variance_other = blur(one * one) - mean_one**2, blur(other * other) - mean_other**2
-    covariance = blur(one * other) - mean_one * mean_other
-    top = (2 * mean_one * mean_other + _C1) * (2 * covariance + _C2)
-    bottom = (mean_one**2 + mean_other**2 + _C1) * (variance_one + variance_other + _C2)
+    mean_first, mean_second = blur(first), blur(second)
+    variance_first, variance_second = blur(first * first) - mean_first**2, blur(second * second) - mean_second**2
+    covariance = blur(first * second) - mean_first * mean_second
+    top = (2 * mean_first * mean_second + _C1) * (2 * covariance + _C2)
+    bottom = (mean_first**2 + mean_second**2 + _C1) * (variance_first + variance_second + _C2)
     return float((top / bottom).mean())

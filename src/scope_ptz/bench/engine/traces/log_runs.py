@@ -1,4 +1,4 @@
-"""Iterate over the runs of a log with their stored data, for verification and for submissions."""
+"""Read the runs in a log with their stored data, for verification and submissions."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from typing import Any
 
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.recording.picture_store import jpeg_of
-from scope_ptz.bench.engine.sample_files import ATTACHMENT, reading, samples, stored_run_in
+from scope_ptz.bench.engine.sample_files import ATTACHMENT, convert_read_errors, samples, stored_run_in
 from scope_ptz.bench.engine.stored_run import StoredRun
 from scope_ptz.bench.engine.traces.scored_trials import published_entry
 from scope_ptz.bench.engine.traces.verification import RunToVerify
 
 
-def runs_of_log(path: Path) -> Iterator[RunToVerify]:
-    """Yield the runs of a log, one sample at a time. A published task replaces the copy of the task in the log.
+def read_runs(path: Path) -> Iterator[RunToVerify]:
+    """Yield the runs in a log, one sample at a time. A published task replaces its copy in the log.
 
     Raises:
         TraceError: The log does not exist or is damaged.
     """
-    with reading(path):
+    with convert_read_errors(path):
         for sample in samples(path):
             entry, _ = published_entry(Entry.of_metadata(sample["metadata"]))
             stored_run = stored_run_in(sample) or StoredRun("", {}, "")
@@ -29,13 +29,13 @@ def runs_of_log(path: Path) -> Iterator[RunToVerify]:
 
 
 class _Pictures:
-    """The pictures of a sample by their names in the trace."""
+    """The pictures of a sample, by their names in the trace."""
 
     def __init__(self, references: Mapping[str, Any], attachments: Mapping[str, str]) -> None:
         self._references, self._attachments = references, attachments
 
     def jpeg(self, name: str) -> bytes | None:
-        """Return a picture as JPEG; None if it was not stored or is damaged."""
+        """Return the JPEG data of a picture; None if the picture was not stored or is damaged."""
         data = self._attachments.get(str(self._references.get(name, "")).removeprefix(ATTACHMENT))
         try:
             return jpeg_of(data) if data is not None else None

@@ -1,6 +1,6 @@
-"""Compare the models on a run card with those that the traces name.
+"""Compare the models on a run card with the models named in traces.
 
-A result of the built-in planner or of ground truth must not appear under the name of a model.
+Results of the built-in planner or ground-truth perception must not be attributed to a model.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
 
 def models_of(stored_run: StoredRun) -> tuple[str, str]:
-    """Return the names of planner and perception in the first line of a trace; empty names if it cannot be read."""
+    """Return the names of planner and perception in the first line of a trace; empty names if the line cannot be read."""
     try:
         started = json.loads(stored_run.trace.partition("\n")[0])
         return str(started["planner"]), str(started["perception"])
@@ -23,14 +23,14 @@ def models_of(stored_run: StoredRun) -> tuple[str, str]:
 
 
 def card_contradictions(models: Sequence[tuple[str, str]], card: RunCard) -> Iterator[str]:
-    """Yield a sentence for each role in which the card names a model and traces name a built-in component, or the reverse.
+    """Yield a sentence for each role in which the card names a model but traces name a built-in component, or vice versa.
 
     Args:
         models: The names of planner and perception in each trace.
         card: The run card.
     """
     for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
-        names = [one[index] for one in models if one[index]]
-        others = [name for name in names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
+        role_names = [names[index] for names in models if names[index]]
+        others = [name for name in role_names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
         if others:
             yield f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"

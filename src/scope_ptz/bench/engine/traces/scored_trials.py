@@ -1,6 +1,6 @@
-"""Compute the trial of a run from its trace, with the published task and the published presets.
+"""Compute the trial of a run from its trace, the published task and the published presets.
 
-A trace that is missing, damaged or contradicts itself gives an unscored trial, which counts as not correct.
+A missing, damaged or contradictory trace results in an unscored trial, which does not count as correct.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ TIME_TOLERANCE_S = 1e-6
 
 
 def published_entry(entry: Entry, *, published_split: bool = False) -> tuple[Entry, bool]:
-    """Return an entry with the published task that it is, and whether the task or the facts in ``entry`` differ from it.
+    """Return the published version of an entry, and whether ``entry`` differs from it.
 
-    An entry whose task is not published is returned unchanged. A private task may have the id of a published one: it is the
-    published task only if the scene and the instruction are the same too.
+    An entry whose task is not published is returned unchanged. A private task may have the same id as a published one, so an entry
+    counts as published only if its scene and instruction are also the same.
 
     Args:
-        entry: The entry of a log or a submission.
-        published_split: Whether it belongs to a published split. Its id alone then decides.
+        entry: The entry from a log or a submission.
+        published_split: Whether the entry belongs to a published split. If so, only the id is compared.
     """
-    found = entry_of_published(entry.facts.id, entry.facts.viewpoint)
+    found = published_task_entry(entry.facts.id, entry.facts.viewpoint)
     if found is None:
         return entry, False
     same_wording = (entry.world, entry.facts.instruction) == (found.world, found.facts.instruction)
@@ -47,12 +47,12 @@ def published_entry(entry: Entry, *, published_split: bool = False) -> tuple[Ent
     return found, not (same_task and same_start)
 
 
-def entry_of_published(task_id: str, viewpoint: str = "") -> Entry | None:
-    """Return the entry of a published task; None if there is none.
+def published_task_entry(task_id: str, viewpoint: str = "") -> Entry | None:
+    """Return the entry for a published task; None if the id is not that of a published task.
 
     Args:
         task_id: The id of the task.
-        viewpoint: The viewpoint of its preset, which is used only if the package does not contain the scene.
+        viewpoint: The viewpoint of the task's preset. It is used only if the package does not contain the scene.
     """
     task = published_tasks().get(task_id)
     if task is None:
@@ -63,8 +63,8 @@ def entry_of_published(task_id: str, viewpoint: str = "") -> Entry | None:
     return Entry(facts=facts_of(task, viewpoint), world=task.world, time_s=task.time_s, task=task)
 
 
-def published_run(stored_run: StoredRun, world: str) -> StoredRun:
-    """Return the data of a run with the presets of the scene in the package, if the package contains the scene."""
+def with_packaged_presets(stored_run: StoredRun, world: str) -> StoredRun:
+    """Return a run's data with the presets of the packaged scene, or unchanged if the package does not contain the scene."""
     known = preset_viewpoints(world)
     return stored_run if known is None else replace(stored_run, presets=known[0], home=known[1])
 
@@ -72,38 +72,38 @@ def published_run(stored_run: StoredRun, world: str) -> StoredRun:
 def scored_trial(
     entry: Entry, stored_run: StoredRun, epoch: int, path: Path, judgements: tuple[Judgement, ...] = (), *, failed: bool = False
 ) -> tuple[Trial, LogFinding | None]:
-    """Return the trial of a run, computed from its trace, and the fault of the trace if it has one.
+    """Compute the trial of a run from its trace. Return the trial, and a finding if the trace is faulty.
 
     Args:
         entry: The entry that was run.
         stored_run: The stored data of the run.
         epoch: Number of the run of this entry, from 1.
-        path: The log. Error messages name it.
+        path: The log, for error messages.
         judgements: The judgements of the run.
-        failed: Whether the log records that the run ended with an error. The trace of such a run may be missing or cut off.
+        failed: Whether the run ended with an error according to the log. The trace of such a run may be missing or incomplete.
     """
     name = sample_name(entry.facts.id, epoch)
     try:
         trace = trace_of(stored_run.trace, path)
         if trace is None or trace.ended is None:
             if not failed:
-                what = "has no trace" if trace is None else "has a trace without an end"
-                return unusable(entry, epoch, judgements, "trace-missing", f"the run {what} although it did not fail")
+                problem = "has no trace" if trace is None else "has a trace without an end"
+                return unusable_trial(entry, epoch, judgements, "trace-missing", f"the run {problem} although it did not fail")
         elif fault := next(_faults(trace, entry, stored_run), None):
-            return unusable(entry, epoch, judgements, "trace-damaged", fault)
+            return unusable_trial(entry, epoch, judgements, "trace-damaged", fault)
         return trial_of(entry, stored_run, epoch, path, judgements), None
     except TraceError:
-        return unusable(entry, epoch, judgements, "trace-damaged", f"the trace of {name} cannot be read")
+        return unusable_trial(entry, epoch, judgements, "trace-damaged", f"the trace of {name} cannot be read")
     except (ScopeError, ValidationError, ValueError, TypeError, KeyError, AttributeError) as error:
         detail = f"the checks cannot be executed on the trace ({type(error).__name__})"
-        return unusable(entry, epoch, judgements, "trace-damaged", detail)
+        return unusable_trial(entry, epoch, judgements, "trace-damaged", detail)
 
 
 def _faults(trace: Trace, entry: Entry, stored_run: StoredRun) -> Iterator[str]:
-    """Yield the contradictions in a trace, and those between the trace and the task that it should be a run of."""
+    """Yield the contradictions within a trace, and between the trace and its task."""
     started, facts = trace.started, entry.facts
     if started.instruction != facts.instruction.encode("utf-8", "replace").decode().strip():
-        yield "the trace is of another instruction"
+        yield "the trace is for a different instruction"
     if started.simulated and (started.scene, started.viewpoint) != (entry.world, facts.viewpoint):
         yield f"the trace begins at {started.viewpoint} of {started.scene}, and not at {facts.viewpoint} of {entry.world}"
     if (started.frame_width, started.frame_height) != (FRAME_WIDTH_PX, FRAME_HEIGHT_PX):
@@ -115,16 +115,18 @@ def _faults(trace: Trace, entry: Entry, stored_run: StoredRun) -> Iterator[str]:
     yield from trace_faults(trace)
 
 
-def unusable(entry: Entry, epoch: int, judgements: tuple[Judgement, ...], kind: LogFault, detail: str) -> tuple[Trial, LogFinding]:
-    """Return an unscored trial and the finding about it."""
+def unusable_trial(
+    entry: Entry, epoch: int, judgements: tuple[Judgement, ...], kind: LogFault, detail: str
+) -> tuple[Trial, LogFinding]:
+    """Return an unscored trial and a finding that states the reason."""
     name = sample_name(entry.facts.id, epoch)
-    return unscored(entry, epoch, detail, judgements), LogFinding(kind=kind, sample=name, detail=detail)
+    return unscored_trial(entry, epoch, detail, judgements), LogFinding(kind=kind, sample=name, detail=detail)
 
 
-def unscored(entry: Entry, epoch: int, reason: str, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """Return a trial without a verdict, which counts as not correct.
+def unscored_trial(entry: Entry, epoch: int, reason: str, judgements: tuple[Judgement, ...] = ()) -> Trial:
+    """Return a trial without a verdict, which does not count as correct.
 
-    It is scored by the checks even if only a judge could score it, because a missing verdict of a judge would exclude it.
+    ``scored_by`` is left at "checks": with "judge", the trial would be treated as awaiting a verdict and left out of the accuracy.
     """
     return Trial(
         task=entry.facts, epoch=epoch, sample=sample_name(entry.facts.id, epoch), headline="unscored", reason=reason, outcome=None,

@@ -1,6 +1,6 @@
-"""Verify runs: their calls are made again with the simulator, and poses, ground-truth replies and frames must come out as recorded.
+"""Verify runs: repeat their calls in the simulator, and compare poses, ground-truth replies and frames with the recorded ones.
 
-Verification shows that a trace is possible. It cannot show that the named planner made its decisions.
+Verification shows that a trace is possible. It cannot show that the planner named in the trace made the decisions.
 """
 
 from __future__ import annotations
@@ -30,22 +30,22 @@ from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.views import RENDERING_VERSION
 
 CONCURRENCY = 2
-"""Number of runs that are repeated at a time. Each renders frames in worker threads."""
-MAX_NAMED = 3
-"""Maximum number of differences that are named for each run."""
+"""Number of runs that are verified concurrently. Each run renders frames in worker threads."""
+MAX_DIFFERENCES_LISTED = 3
+"""Maximum number of differences to list per run."""
 PictureOf = Callable[[str], bytes | None]
-"""Returns a stored picture as JPEG by its name in the trace; None if it was not stored."""
+"""Function that returns the JPEG data of a stored picture by its name in the trace, or None if it was not stored."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunToVerify:
-    """A run with its stored data.
+    """A run to verify, with its stored data.
 
     Attributes:
         entry: The entry that was run.
         epoch: Number of the run of this entry, from 1.
         stored_run: The stored data.
-        picture: Returns the stored pictures; None if the source of the run contains no pictures.
+        picture: Function that returns stored pictures; None if the source of the run contains no pictures.
     """
 
     entry: Entry
@@ -61,12 +61,12 @@ class RunToVerify:
 
 @dataclass(frozen=True, slots=True)
 class VerificationContext:
-    """What verification needs from its caller.
+    """The resources for verification, which the caller provides.
 
     Attributes:
         open_scene: Opens a scene, or a variation of one, by name.
-        make_perception: Creates the backend with a name and a seed whose replies can be computed again; None for other backends.
-        true_count: Returns the true counts for perception calls.
+        make_perception: Creates a perception backend from a name and a seed; returns None if replies cannot be recomputed.
+        true_count: Returns the true count for a perception call.
     """
 
     open_scene: OpenScene
@@ -80,8 +80,8 @@ async def verify_runs(
     """Verify runs, a few at a time.
 
     Args:
-        runs: The runs. They are read one after the other, because their pictures take much memory.
-        context: Scenes and perception.
+        runs: The runs. They are read one after the other, because their pictures take a lot of memory.
+        context: The resources for verification.
         progress: Called after each run with the number of verified runs.
     """
     results: dict[int, RunVerification] = {}
@@ -102,7 +102,7 @@ async def verify_runs(
 
 
 async def verify_run(run: RunToVerify, context: VerificationContext) -> RunVerification:
-    """Make the calls of a run again and compare the result with its trace and pictures."""
+    """Repeat the calls of a run, and compare the results with its trace and pictures."""
     try:
         trace = trace_of(run.stored_run.trace, Path(run.name))
     except TraceError as error:
@@ -122,17 +122,17 @@ async def verify_run(run: RunToVerify, context: VerificationContext) -> RunVerif
 
 
 def _perception(trace: Trace, context: VerificationContext) -> tuple[Perception | None, str]:
-    """Return the backend that repeats the replies of a trace (None for a model), and why the trace cannot be verified, if so."""
+    """Return the perception backend for recomputing replies (None for a model), and the reason if the trace is not verifiable."""
     started = trace.started
     if not started.simulated:
         return None, "the run used a camera that is not simulated"
     if started.rendering != RENDERING_VERSION:
-        made = "an older version" if started.rendering is None else f"version {started.rendering}"
-        return None, f"the run was rendered by {made} of the simulator, and this is version {RENDERING_VERSION}"
+        version = "an older version" if started.rendering is None else f"version {started.rendering}"
+        return None, f"the run was rendered by {version} of the simulator, and this is version {RENDERING_VERSION}"
     backend = context.make_perception(started.perception, started.labels.seed)
     if backend is not None and started.perception_version != backend.version:
-        made = "an older version" if started.perception_version is None else f"version {started.perception_version}"
-        return None, f"the run used {made} of ground-truth perception, and this is version {backend.version}"
+        version = "an older version" if started.perception_version is None else f"version {started.perception_version}"
+        return None, f"the run used {version} of ground-truth perception, and this is version {backend.version}"
     return backend, ""
 
 
@@ -146,16 +146,16 @@ async def _verify(run: RunToVerify, trace: Trace, perception: Perception | None,
     with clock.hold():
         await camera.go_to_preset(entry.facts.preset)
     store = PictureStore() if with_frames else None
-    repeated = await resimulate(trace, camera, perception, store or NoImages(), snapshots=started.frame is not None)
-    differences = [*_place_differences(stored_run, scene), *repeated.differences]
+    resimulation = await resimulate(trace, camera, perception, store or NoImages(), snapshots=started.frame is not None)
+    differences = [*_place_differences(stored_run, scene), *resimulation.differences]
     frames = 0
     if store is not None and run.picture is not None:
         await store.encode_pending()
-        found, frames = await _frame_differences(run.picture, trace, repeated, store.urls)
-        differences += found
-    differences += [found async for found in _count_differences(entry, stored_run, trace, context.true_count)]
+        frame_differences, frames = await _frame_differences(run.picture, trace, resimulation, store.urls)
+        differences += frame_differences
+    differences += [text async for text in _count_differences(entry, stored_run, trace, context.true_count)]
     status: Status = "differs" if differences else "verified"
-    return RunVerification(run.name, status, tuple(differences[:MAX_NAMED]), frames, replies=perception is not None)
+    return RunVerification(run.name, status, tuple(differences[:MAX_DIFFERENCES_LISTED]), frames, replies=perception is not None)
 
 
 def _place_differences(stored_run: StoredRun, scene: Any) -> Iterator[str]:
@@ -165,21 +165,21 @@ def _place_differences(stored_run: StoredRun, scene: Any) -> Iterator[str]:
 
 
 async def _frame_differences(
-    picture: PictureOf, trace: Trace, repeated: Resimulation, urls: Mapping[str, str]
+    picture: PictureOf, trace: Trace, resimulation: Resimulation, urls: Mapping[str, str]
 ) -> tuple[list[str], int]:
-    """Return the differences of the frames, and the number of frames that were compared."""
+    """Return the differences between stored and rendered frames, and the number of compared frames."""
     differences, compared = list[str](), set[str]()
-    for where, name, again in picture_pairs(trace, repeated.repeated):
+    for where, name, new_name in picture_pairs(trace, resimulation.repeated):
         if name in compared:
             continue
         compared.add(name)
         stored = picture(name)
         if stored is None:
             differences.append(f"the picture {name} {where} is missing")
-        elif again not in urls:
+        elif new_name not in urls:
             differences.append(f"the picture {name} {where} was never taken")
         else:
-            difference = await to_thread.run_sync(compare_frames, stored, jpeg_of(urls[again]))
+            difference = await to_thread.run_sync(compare_frames, stored, jpeg_of(urls[new_name]))
             if difference is None:
                 differences.append(f"the picture {name} {where} is damaged or has another size")
             elif not difference.accepted:
@@ -188,12 +188,12 @@ async def _frame_differences(
 
 
 async def _count_differences(entry: Entry, stored_run: StoredRun, trace: Trace, true_count: TrueCount) -> AsyncIterator[str]:
-    """Yield differences of the stored true counts, by which the error mode of a failed run is decided."""
+    """Yield the differences between stored and recomputed true counts, which affect the error mode of a failed run."""
     if not stored_run.truths:
         return
     for number, call in enumerate(stored_run.episode(trace).calls):
         for observation in call.observations:
-            if observation.how == "count":
+            if observation.kind == "count":
                 stored, computed = stored_run.truths.get(str(number)), await true_count(entry.world, observation)
                 if stored != computed:
                     yield f"the true count of call {number + 1} was recorded as {stored}, but is {computed}"

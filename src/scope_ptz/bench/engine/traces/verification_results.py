@@ -1,4 +1,4 @@
-"""The results of verifying runs, and their description."""
+"""The results of verifying runs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ class RunVerification:
 
     Attributes:
         run: Name of the run's sample.
-        status: Whether the run came out as recorded, differs, or cannot be verified.
-        differences: What differs, or why the run cannot be verified.
-        frames: Number of frames that were compared.
-        replies: Whether perception replies were computed again. Those of models cannot be.
+        status: Whether the run matches its record, differs from it, or cannot be verified.
+        differences: The differences, or the reason why the run cannot be verified.
+        frames: Number of compared frames.
+        replies: Whether perception replies were recomputed. Replies from models cannot be recomputed.
     """
 
     run: str
@@ -35,12 +35,12 @@ class VerificationResult:
     runs: tuple[RunVerification, ...] = ()
 
     def of(self, status: Status) -> list[RunVerification]:
-        """Return the results with a status."""
+        """Return the results with the given status."""
         return [run for run in self.runs if run.status == status]
 
     @property
     def summary(self) -> Iterator[str]:
-        """The result as lines of text."""
+        """The results as lines of text."""
         frames = sum(run.frames for run in self.runs)
         yield (
             f"{len(self.of('verified'))} of {len(self.runs)} runs verified, {len(self.of('differs'))} differ, "
@@ -56,7 +56,7 @@ class VerificationResult:
         yield from (f"not verifiable: {reason} ({number} runs)" for reason, number in reasons.items())
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the result as JSON data."""
+        """Return the results as JSON data."""
         return {
             "runs": len(self.runs),
             **{status.replace("-", "_"): len(self.of(status)) for status in ("verified", "differs", "not-verifiable")},

@@ -1,1 +1,1 @@
-"""The first screen of a report: which pair to choose for which accuracy, latency and memory."""
+"""The first screen of a report, which helps to choose a pair by accuracy, latency and memory."""

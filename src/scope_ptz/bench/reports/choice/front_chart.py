@@ -1,4 +1,4 @@
-"""The chart of accuracy against latency, with memory as area, the Pareto front and the 2 Hz bar."""
+"""The chart of accuracy against latency, with memory as marker area, the Pareto front and the 2 Hz bar."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.reports.chart_style import GREY, INK, as_chart, canvas, colours, wrap_label
+from scope_ptz.bench.reports.chart_style import GREY, INK, canvas, create_chart, run_colours, wrap_label
 from scope_ptz.bench.reports.choice.candidates import REAL_TIME_S, Candidate
 from scope_ptz.bench.reports.choice.label_places import place_labels
 from scope_ptz.bench.reports.report_runs import ReportRun
@@ -17,31 +17,31 @@ if TYPE_CHECKING:
     from matplotlib.collections import PathCollection
 
 MARKERS = "os^Dvph"
-"""Marker shapes of the perception models, so that colour is not the only difference."""
+"""Marker shapes for perception models, so that they differ not only in colour."""
 MIN_AREA, AREA_PER_GB = 60.0, 2.6
-"""Area of a marker in square points: at least ``MIN_AREA``, and ``AREA_PER_GB`` for each GB of memory."""
+"""Marker area in square points: ``MIN_AREA`` plus ``AREA_PER_GB`` for each GB of memory."""
 SIZE_EXAMPLES_GB = (10, 40, 160)
-"""Memory sizes that the legend shows."""
+"""Memory sizes shown in the legend."""
 COARSE_TICKS, FINE_TICKS = (1.0, 2.0, 5.0), (1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
-"""Ticks of the latency axis within each decade."""
+"""Ticks on the latency axis within each decade."""
 NARROW_RATIO = 5.0
-"""The fine ticks are used if the longest turn takes less than this many times the shortest one."""
+"""The fine ticks are used if the range of the latency axis spans less than this factor."""
 NEAR_REAL_TIME_S = 2 * REAL_TIME_S
-"""The 2 Hz bar is drawn if a pair's turns are at most this long."""
+"""The 2 Hz bar is drawn if the fastest turn takes at most this many seconds."""
 
 
 def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] = ()) -> Chart:
-    """Draw accuracy against latency. The area of a marker shows the memory; filled markers are on the Pareto front.
+    """Draw accuracy against latency. Marker areas show memory, and filled markers are on the Pareto front.
 
-    The number next to a marker refers to the legend and to the table. Vertical lines are the confidence intervals of accuracy. The
-    stepped line joins the pairs for which no other pair is both faster and more accurate.
+    The number next to a marker refers to the legend and the table. Vertical lines are confidence intervals of the accuracy. The
+    stepped line connects the pairs for which no other pair is both faster and more accurate.
 
     Args:
-        candidates: The pairs, in the order of their numbers.
-        baselines: Runs of built-in planners with ground truth, whose accuracy is drawn as horizontal lines.
+        candidates: The pairs in the order of their numbers.
+        baselines: Runs of the built-in planner with ground truth, whose accuracies are drawn as horizontal lines.
     """
-    complete = [(number, c) for number, c in enumerate(candidates, 1) if c.complete]
-    colour_of_run = colours([c.run for c in candidates])
+    complete = [(number, c) for number, c in enumerate(candidates, 1) if c.is_complete]
+    colour_of_run = run_colours([c.run for c in candidates])
     perception = list(dict.fromkeys(c.run.perception_name for c in candidates))
     labels = [wrap_label(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB", 52) for number, c in complete]
     lines = sum(1 + label.count("\n") for label in labels)
@@ -64,10 +64,10 @@ def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] 
         _legends(figure, keys, labels)
 
         def place() -> None:
-            figure.canvas.draw()  # Fixes the layout, which the labels' places depend on.
+            figure.canvas.draw()  # Finalises the layout, on which the label positions depend.
             place_labels(axes, [(str(number), _position(c), sqrt(_area(c.memory_gb or 0.0)) / 2) for number, c in complete])
 
-        return as_chart("chart-front", _title(complete, has_bar), _alt(complete, baselines), figure, place)
+        return create_chart("chart-front", _title(complete, has_bar), _alt(complete, baselines), figure, place)
 
 
 def _position(candidate: Candidate) -> tuple[float, float]:
@@ -79,7 +79,7 @@ def _area(memory_gb: float) -> float:
 
 
 def _draw_baselines(axes: Axes, baselines: Sequence[ReportRun]) -> None:
-    """Draw the accuracy of the baselines as horizontal lines, because markers at their latencies would stretch the axis."""
+    """Draw the accuracies of the baselines as horizontal lines, because markers at their latencies would stretch the axis."""
     for run in baselines:
         if run.macro is not None:
             level = 100 * run.macro.value
@@ -91,7 +91,7 @@ def _draw_baselines(axes: Axes, baselines: Sequence[ReportRun]) -> None:
 
 
 def _draw_steps(axes: Axes, candidates: Sequence[Candidate]) -> None:
-    """Draw the front of accuracy and latency as steps."""
+    """Draw the Pareto front of accuracy and latency as a stepped line."""
     points = sorted(_position(c) for c in candidates)
     front = [
         (x, y)
@@ -112,7 +112,7 @@ def _draw_interval(axes: Axes, candidate: Candidate, colour: str) -> None:
 def _draw_marker(
     axes: Axes, points: Sequence[tuple[float, float]], area: float, colour: str, marker: str, candidate: Candidate
 ) -> PathCollection:
-    """Draw a marker, filled if the pair is on the Pareto front, and with a dashed edge if it was timed under contention."""
+    """Draw a marker. It is filled if the pair is on the Pareto front, and has a dashed edge if it was timed under contention."""
     x, y = [point[0] for point in points], [point[1] for point in points]
     line_style: Any = (0, (2.2, 1.4)) if candidate.contended else "-"
     fill = colour if candidate.on_front else "none"

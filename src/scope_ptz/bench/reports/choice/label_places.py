@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LABEL_HALF_PT = (7.0, 6.0)
-"""Half of a label's width and height in points, for a number of two digits."""
+"""Half of the width and height of a two-digit label, in points."""
 DIRECTIONS, DISTANCES_PT = 16, (9.0, 15.0, 22.0, 30.0)
-"""The places that are tried around a point: directions, and distances from the point's edge."""
+"""Label positions to try around a marker: the number of directions, and the distances from the marker's edge in points."""
 
 Point = tuple[str, tuple[float, float], float]
-"""The label of a point, its position in data coordinates, and its radius in points."""
+"""The label of a marker, its position in data coordinates, and its radius in points."""
 
 
 def place_labels(axes: Axes, points: Sequence[Point]) -> None:
-    """Write the label of each point next to it, with a thin line to the point if it is far away.
+    """Write a label next to each marker. If the label is far away, connect it to the marker with a thin line.
 
     Args:
         axes: Axes whose layout is final.
-        points: The points.
+        points: The labelled markers.
     """
     scale = 72 / PX
     centres = [tuple(scale * value for value in axes.transData.transform(position)) for _, position, _ in points]
@@ -45,13 +45,13 @@ def place_labels(axes: Axes, points: Sequence[Point]) -> None:
 def label_offsets(
     points: Sequence[tuple[tuple[float, float], float]], limits: Sequence[float]
 ) -> list[tuple[float, float]]:  # fmt: skip
-    """Return the offset of each label from its point in points (1/72 inch).
+    """Return the offset of each label from its marker, in points (1/72 inch).
 
-    Each label in turn is put at the place with the least overlap with points, earlier labels and the border; of equal places, the
-    nearest is used.
+    Labels are placed one by one, each where it overlaps least with markers, earlier labels and the border. Ties go to the position
+    nearest to the marker.
 
     Args:
-        points: Centre and radius of each point.
+        points: Centre and radius of each marker.
         limits: Left, bottom, right and top border.
     """
     placed, offsets = list[tuple[float, float]](), list[tuple[float, float]]()
@@ -74,7 +74,7 @@ def _overlap(
     placed: Sequence[tuple[float, float]],
     limits: Sequence[float],
 ) -> float:
-    """Return how far a label overlaps points, other labels and the border, as a weighted sum of lengths in pt."""
+    """Return the overlap of a label with markers, other labels and the border, as a weighted sum of lengths in points."""
     (x, y), (half_x, half_y) = label, LABEL_HALF_PT
     total = 0.0
     for (px, py), radius in points:

@@ -1,24 +1,24 @@
-"""Evaluations whose results are incomplete: ended by an error, interrupted, or with many trials lost to infrastructure."""
+"""Describe evaluations with incomplete results: those that ended in an error, were interrupted, or had many failures."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.judging.judgement_tally import lacks_verdict
 from scope_ptz.bench.reports.report_runs import ReportRun, macro, scores_of
 from scope_ptz.bench.reports.tables import cell_text
 from scope_ptz.bench.scoring.trials import Trial
 
-MAX_INFRASTRUCTURE_SHARE = 0.02
-"""A larger share of trials lost to infrastructure is stated at the top of the report."""
+MAX_UNREPORTED_LOSS_FRACTION = 0.02
+"""Fraction of trials lost to infrastructure failures above which the report states the loss at the top."""
 MAX_MESSAGE_CHARS = 160
-"""Longer error messages are truncated."""
+"""Maximum length of an error message in characters. Longer messages are truncated."""
 
 
-def problems(runs: Sequence[ReportRun]) -> tuple[str, ...]:
-    """Return a sentence on each evaluation that ended in an error, is unfinished, or lost more than 2% of its trials.
+def describe_problems(runs: Sequence[ReportRun]) -> tuple[str, ...]:
+    """Return a description of each evaluation that ended in an error, is unfinished, or lost more than 2% of its trials.
 
-    Each sentence states bounds: the accuracy if all lost trials were incorrect, and if all of them were correct.
+    Each description states bounds: the accuracy if all lost trials were incorrect, and if all of them were correct.
     """
     return tuple(text for run in runs if (text := _problem(run)))
 
@@ -28,34 +28,34 @@ def _problem(run: ReportRun) -> str:
     missing = max(0, evaluation.wanted - len(evaluation.trials))
     # It is not known which of the missing trials would have been included in accuracy.
     included = evaluation.trials if missing else run.main_trials or evaluation.trials
-    trials = [t for t in included if not without_verdict(t)]
+    trials = [t for t in included if not lacks_verdict(t)]
     lost = [t for t in trials if t.headline == "infrastructure"]
     causes = []
     if evaluation.failure:
-        causes.append(f"the log ended in an error ({_shortened(evaluation.failure)})")
+        causes.append(f"the log ended in an error ({_shorten(evaluation.failure)})")
     if missing:
         causes.append(f"it is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials were run")
-    if trials and len(lost) / len(trials) > MAX_INFRASTRUCTURE_SHARE:
+    if trials and len(lost) / len(trials) > MAX_UNREPORTED_LOSS_FRACTION:
         share = cell_text(len(lost) / len(trials), "share")
         causes.append(f"{len(lost)} of {len(trials)} trials ({share}%) were lost to infrastructure failures")
-    return f"{run.label}: {'; '.join(causes)}. {_bounds(trials, lost, missing)}" if causes else ""
+    return f"{run.label}: {'; '.join(causes)}. {_bounds_text(trials, lost, missing)}" if causes else ""
 
 
-def _bounds(trials: Sequence[Trial], lost: Sequence[Trial], missing: int) -> str:
+def _bounds_text(trials: Sequence[Trial], lost: Sequence[Trial], missing: int) -> str:
     """State the accuracy without the lost trials, and its bounds.
 
-    The category of a trial that was not run is unknown, so that the bounds are those of the micro average if there are such trials.
+    If trials are missing, the bounds apply to micro accuracy, because the categories of missing trials are unknown.
     """
-    kept = [t for t in trials if t.headline != "infrastructure"]
+    scored = [t for t in trials if t.headline != "infrastructure"]
     if not lost and not missing:
-        return "No trial is lost."
-    if not kept:
-        return "No trial can be scored, so that the accuracy is unknown (0.0% to 100.0%)."
+        return "No trials were lost."
+    if not scored:
+        return "No trial can be scored, so the accuracy is unknown (0.0% to 100.0%)."
     if missing:
-        correct, total = sum(t.headline == "correct" for t in kept), len(trials) + missing
-        name, values = "Micro", (correct / len(kept), correct / total, (correct + len(lost) + missing) / total)
+        correct, total = sum(t.headline == "correct" for t in scored), len(trials) + missing
+        name, values = "Micro", (correct / len(scored), correct / total, (correct + len(lost) + missing) / total)
     else:
-        measured = macro(scores_of(kept))
+        measured = macro(scores_of(scored))
         lowest, highest = (
             macro(scores_of(trials, [t.headline == "correct" or (t.headline == "infrastructure" and right) for t in trials]))
             for right in (False, True)
@@ -69,6 +69,6 @@ def _bounds(trials: Sequence[Trial], lost: Sequence[Trial], missing: int) -> str
     )
 
 
-def _shortened(message: str) -> str:
+def _shorten(message: str) -> str:
     line = " ".join(message.split())
     return line if len(line) <= MAX_MESSAGE_CHARS else line[: MAX_MESSAGE_CHARS - 1] + "…"

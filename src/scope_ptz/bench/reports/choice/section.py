@@ -1,19 +1,19 @@
-"""The first section of a report: one picture and one table with accuracy, latency and memory of each pair."""
+"""The first section of a report: a chart and a table with the accuracy, latency and memory of each pair."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from scope_ptz.bench.reports.choice.candidates import REAL_TIME_S, Candidate, candidate, candidates
+from scope_ptz.bench.reports.choice.candidates import REAL_TIME_S, Candidate, create_candidate, rank_candidates
 from scope_ptz.bench.reports.choice.front_chart import front_chart
-from scope_ptz.bench.reports.choice.ties import ROUNDING, Leaders, listed
+from scope_ptz.bench.reports.choice.ties import ROUNDING, Leaders, join_names
 from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, cell_text
 from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
-Corrected = Callable[[ReportRun], IntervalEstimate | float | None]
-"""Returns the chance-corrected accuracy of a run; None if it is not known."""
+CorrectedAccuracy = Callable[[ReportRun], IntervalEstimate | float | None]
+"""Function that returns the chance-corrected accuracy of a run, or None if it is unknown."""
 COLUMNS = (
     Column("run", "Pair"),
     Column("number", "No.", "count"),
@@ -28,15 +28,15 @@ COLUMNS = (
     Column("isolation", "Agent"),
 )
 NOTES = (
-    "Accuracy: macro average with its 95% interval. Against the highest: “not told apart” means that the paired comparisons do not "
-    "show a difference from the highest accuracy. The order of such pairs has no meaning. A turn is one instruction, from start to "
-    "answer, without the camera; “contended” means that other runs used the machine or the servers at the same time. Seconds per "
-    "inference: the median of a planner step or of a perception call, whichever is slower; a control loop of 2 Hz needs at most "
-    f"{REAL_TIME_S} s. Memory: computed from the registry for both models, not measured. "
+    "Accuracy: macro average with its 95% interval. Against the highest: “not distinguishable” means that the paired comparisons "
+    "do not show a difference from the highest accuracy. The order of these pairs has no meaning. A turn is one instruction, from "
+    "start to answer, without the camera; “contended” means that other runs used the machine or the servers at the same time. "
+    "Seconds per inference: the median of a planner step or of a perception call, whichever is slower; a control loop of 2 Hz "
+    f"needs at most {REAL_TIME_S} s. Memory: computed from the registry for both models, not measured. "
     "Choose it for: a pair is on the Pareto front if no other pair is at least as good in accuracy, latency and memory, and better "
     "in one of them.",
-    "Agent: “built in” is SCOPE's own loop. External agents run in-process (they can read the answers), isolated (in a process of "
-    "their own), sandboxed (without the network and the dataset's files) or hosted (the answers are on another machine). "
+    "Agent: “built in” is SCOPE's own loop. External agents run in-process (they can read the answers), isolated (in a separate "
+    "process), sandboxed (without the network and the dataset's files) or hosted (the answers are on another machine). "
     "Baselines are not ranked.",
 )
 
@@ -47,19 +47,19 @@ def choice_section(
     baselines: Sequence[ReportRun],
     all_runs: Sequence[ReportRun],
     best: Leaders | None,
-    corrected: Corrected | None = None,
+    corrected: CorrectedAccuracy | None = None,
 ) -> Section:
-    """Return the first section, which shows what to choose for which latency and memory.
+    """Return the first section, which shows the best pairs by accuracy, latency and memory.
 
     Args:
-        ranked: The runs of model pairs over the same tasks.
-        others: The runs of model pairs over other tasks of the same task set.
-        baselines: The runs of the same task set that are not ranked.
-        all_runs: All runs of the report. Latencies are taken from a run without contention if there is one.
-        best: The pairs with the highest accuracy, and those that are not told apart from them.
+        ranked: The runs of model pairs on the same tasks.
+        others: The runs of model pairs on other tasks in the same task set.
+        baselines: The unranked runs in the same task set.
+        all_runs: All runs in the report. Latencies are taken from a run without contention, if there is one.
+        best: The pairs with the highest accuracy, and the pairs that are not distinguishable from them.
         corrected: Returns the chance-corrected accuracy of a run.
     """
-    pairs = sorted(candidates(ranked, all_runs), key=lambda c: (-round(c.accuracy or 0.0, 9), c.latency_s or 0.0))
+    pairs = sorted(rank_candidates(ranked, all_runs), key=lambda c: (-round(c.accuracy or 0.0, 9), c.latency_s or 0.0))
     reasons = _reasons(pairs, best)
     rows = [
         _row(c, number, _choice(c, reasons), best.standing(c.run) if best else None, corrected) for number, c in enumerate(pairs, 1)
@@ -68,19 +68,19 @@ def choice_section(
     for title, choose, runs in (("On other tasks, not comparable", "other tasks", others), ("Not ranked", "baseline", baselines)):
         if rows and runs:
             groups[len(rows)] = title
-        rows += [_row(candidate(run, all_runs), None, choose, None, corrected) for run in runs]
-    charts = (front_chart(pairs, [run for run in baselines if run.built_in]),) if any(c.complete for c in pairs) else ()
+        rows += [_row(create_candidate(run, all_runs), None, choose, None, corrected) for run in runs]
+    charts = (front_chart(pairs, [run for run in baselines if run.built_in]),) if any(c.is_complete for c in pairs) else ()
     table = ReportTable("choice", "Accuracy, latency and memory of each pair", COLUMNS, tuple(rows), NOTES, groups)
     return Section("choice", "Which pair to choose", _answers(pairs, best), charts, (table,))
 
 
 def _choice(candidate: Candidate, reasons: Mapping[str, Sequence[str]]) -> str:
-    """Return what to choose a pair for."""
+    """Return the criteria by which a pair is a good choice."""
     return "; ".join(reasons.get(candidate.run.label, ())) or ("Pareto front" if candidate.on_front else "–")
 
 
 def _row(
-    candidate: Candidate, number: int | None, choose: str, standing: str | None, corrected: Corrected | None
+    candidate: Candidate, number: int | None, choose: str, standing: str | None, corrected: CorrectedAccuracy | None
 ) -> tuple[CellValue, ...]:
     run = candidate.run
     return (
@@ -109,51 +109,55 @@ def _inference(candidate: Candidate) -> CellValue:
 
 
 def isolation_title(run: ReportRun) -> str:
-    """Return how the agent of a run was isolated from the answers."""
+    """Return a text that states how a run's agent was isolated from the answers."""
     if run.kind == "person":
         return "a person"
     return run.evaluation.card.isolation or "built in"
 
 
 def _reasons(pairs: Sequence[Candidate], best: Leaders | None) -> dict[str, list[str]]:
-    """Return what each pair is the first choice for, by its label. Pairs with equal values share a reason."""
+    """Return the criteria by which each pair is best, by run label. Pairs with equal values share a criterion."""
     reasons: dict[str, list[str]] = {}
 
     def add(reason: str, among: Sequence[Candidate], value: Callable[[Candidate], float | None]) -> None:
         values = [(v, c) for c in among if (v := value(c)) is not None]
         lowest = min((v for v, _ in values), default=0.0)
         first = [c for v, c in values if v < lowest + ROUNDING]
-        if len(values) > len(first):  # If all values are equal, there is nothing to choose.
+        if len(values) > len(first):  # If all values are equal, the criterion does not help to choose.
             for c in first:
                 reasons.setdefault(c.run.label, []).append(reason + (" (equal)" if len(first) > 1 else ""))
 
     add("highest accuracy", pairs, lambda c: None if c.accuracy is None else -c.accuracy)
     if best is not None and best.close:
         top = [c for c in pairs if c.run in (*best.highest, *best.close)]
-        add("fastest of those not told apart from the highest", top, lambda c: c.latency_s)
-        add("least memory of those not told apart from the highest", top, lambda c: c.memory_gb)
+        add("fastest of those not distinguishable from the highest", top, lambda c: c.latency_s)
+        add("least memory of those not distinguishable from the highest", top, lambda c: c.memory_gb)
     add("lowest latency", pairs, lambda c: c.latency_s)
     add("least memory", pairs, lambda c: c.memory_gb)
-    return {label: _without_weaker(own) for label, own in reasons.items()}
+    return {label: _omit_implied(criteria) for label, criteria in reasons.items()}
 
 
-def _without_weaker(reasons: Sequence[str]) -> list[str]:
-    """Leave out a reason that another one implies: the fastest of all pairs is also the fastest of the most accurate ones."""
+def _omit_implied(reasons: Sequence[str]) -> list[str]:
+    """Omit criteria that other criteria imply: the fastest of all pairs is also the fastest of the most accurate pairs."""
     implied = {"lowest latency": "fastest of", "least memory": "least memory of"}
     weaker = tuple(start for reason, start in implied.items() if reason in reasons)
     return [reason for reason in reasons if not weaker or not reason.startswith(weaker)]
 
 
 def _answers(pairs: Sequence[Candidate], best: Leaders | None) -> tuple[str, ...]:
-    """Return the sentences that name the pairs to choose."""
+    """Return sentences that recommend pairs."""
     if best is None:
         return ("These runs include no pair of models, so nothing is ranked.",)
     lines = [accuracy_sentence(best)]
     top = [c for c in pairs if c.run in (*best.highest, *best.close)]
     if len(top) > 1:
         choices = [
-            _first("the fastest is", top, lambda c: c.latency_s, lambda c: f"{cell_text(c.latency_s, 'seconds')} s per turn"),
-            _first("the least memory is needed by", top, lambda c: c.memory_gb, lambda c: f"{cell_text(c.memory_gb, 'gb')} GB"),
+            _lowest_sentence(
+                "the fastest is", top, lambda c: c.latency_s, lambda c: f"{cell_text(c.latency_s, 'seconds')} s per turn"
+            ),
+            _lowest_sentence(
+                "the least memory is needed by", top, lambda c: c.memory_gb, lambda c: f"{cell_text(c.memory_gb, 'gb')} GB"
+            ),
         ]
         if text := "; ".join(filter(None, choices)):
             lines.append(f"Among these {len(top)} pairs, {text}.")
@@ -168,10 +172,10 @@ def _answers(pairs: Sequence[Candidate], best: Leaders | None) -> tuple[str, ...
     return tuple(lines)
 
 
-def _first(
-    words: str, pairs: Sequence[Candidate], value: Callable[[Candidate], float | None], shown: Callable[[Candidate], str]
+def _lowest_sentence(
+    words: str, pairs: Sequence[Candidate], value: Callable[[Candidate], float | None], format_value: Callable[[Candidate], str]
 ) -> str:
-    """Name the pairs with the lowest value and the value itself; empty if it is unknown, or equal for all pairs."""
+    """Name the pairs with the lowest value. Return an empty string if the value is unknown, or equal for all pairs."""
     values = [(v, c) for c in pairs if (v := value(c)) is not None]
     if not values:
         return ""
@@ -179,26 +183,26 @@ def _first(
     first = [c for v, c in values if v < lowest + ROUNDING]
     if len(first) == len(values) > 1:
         return ""
-    return f"{words} {listed([c.run.label for c in first])} ({shown(first[0])})"
+    return f"{words} {join_names([c.run.label for c in first])} ({format_value(first[0])})"
 
 
 def accuracy_sentence(best: Leaders) -> str:
-    """State which pairs have the highest accuracy, and which are not told apart from them."""
+    """Return sentences that name the pairs with the highest accuracy and those that are not distinguishable from them."""
     highest, number = best.highest, len(best.highest) + len(best.close) + len(best.others)
     value = _accuracy(highest[0])
     if number == 1:
         return f"Macro accuracy of the only model pair, {highest[0].label}: {value}."
     if len(highest) == number:
         return f"All {number} model pairs have the same macro accuracy, {value}, so none is ahead."
-    names = listed([run.label for run in highest])
+    names = join_names([run.label for run in highest])
     lead = f"Highest macro accuracy: {names}, {value}" + (" each." if len(highest) > 1 else ".")
     if not best.close:
         return f"{lead} The paired comparisons show that every other pair is less accurate."
-    close = listed([f"{run.label} ({cell_text(run.macro.value, 'share')}%)" for run in best.close if run.macro])
+    close = join_names([f"{run.label} ({cell_text(run.macro.value, 'share')}%)" for run in best.close if run.macro])
     rest = {0: "", 1: " The remaining pair is shown to be less accurate."}.get(
         len(best.others), f" The remaining {len(best.others)} are shown to be less accurate."
     )
-    return f"{lead} Not told apart from this by the paired comparisons: {close}.{rest}"
+    return f"{lead} Not distinguishable from this in the paired comparisons: {close}.{rest}"
 
 
 def _accuracy(run: ReportRun) -> str:

@@ -1,1 +1,1 @@
-"""The sections of a report below its first screen, one module each."""
+"""The report sections below the first screen."""

@@ -1,4 +1,4 @@
-"""The accuracy section: accuracy by category as in the paper's table, its bounds, and a comparison of the judge with the checks."""
+"""The accuracy section: accuracy by category as in the paper's table, bounds, and a comparison of the judge with the checks."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.choice.ties import ROUNDING, Leaders
-from scope_ptz.bench.reports.report_judge import judge_name, verdicts
-from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macro, of_main_set, scores_of
+from scope_ptz.bench.reports.report_judge import select_judge, trials_judged_by
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macro, runs_of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, cell_value
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, proportion
 
@@ -30,16 +30,16 @@ INTERVALS_NOTE = (
 MARKS_NOTE = (
     "Bold: the highest value with this perception model. Underlined: the highest value on these tasks. Equal values are marked "
     "alike, and values that are all equal have no mark. A mark does not mean that the value differs from the others: macro "
-    "averages that the paired comparisons do not tell apart from the highest have a note, and values by category are not tested."
+    "averages that the paired comparisons do not distinguish from the highest have a note, and values by category are not tested."
 )
 
 
 def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> Section:
-    """Return the section on the accuracy of every run with core tasks. Model pairs and other runs have separate tables.
+    """Return the section on the accuracy of all runs with core tasks. Model pairs and other runs have separate tables.
 
     Args:
-        runs: The runs of the report.
-        best: The model pairs with the highest macro accuracy on the main task set, and those that are not told apart from them.
+        runs: The runs in the report.
+        best: The model pairs with the highest macro accuracy on the main task set, and the pairs not distinguishable from them.
     """
     scored_runs = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in scored_runs if r.ranked], [r for r in scored_runs if not r.ranked]
@@ -52,7 +52,7 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
     text = [
         "The macro average is the unweighted mean over categories; the paper calls it the average. The micro average is the share "
         "of all trials; a trial is one run of one task. Both count correct trials among those without an infrastructure failure. "
-        "An unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a "
+        "An unscored trial does not count as correct. Trials that only a judge can score are left out until a judge has given a "
         "verdict."
     ]
     if len({(run.task_set, run.tasks) for run in scored_runs}) > 1:
@@ -72,7 +72,7 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
             "visible, except in its noisy variant. Both understand a limited language and may misunderstand an instruction or a "
             "question. Runs with either of them, blind baselines and human baselines are in a separate table and are not ranked."
         )
-    main = of_main_set(runs)
+    main = runs_of_main_set(runs)
     charts = (drawing.accuracy_chart(main),) if main else ()
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
@@ -80,23 +80,23 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
 def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool, best: Leaders | None = None) -> ReportTable:
     """Return a table with one row per run, grouped by perception model.
 
-    With ``rank``, the highest value of each perception model is bold, and the highest value over the same tasks is underlined.
-    Values that are all equal have no marks. Macro averages that are not told apart from the highest have a note.
+    With ``rank``, the highest value for each perception model is bold, and the highest value on the same tasks is underlined.
+    Values that are all equal have no marks. Macro averages that are not distinguishable from the highest have a note.
     """
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
     columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
     columns.append(Column("tasks", "Tasks", "count"))
-    raw = [(run, [run.macro, run.micro, *(_category_share(run, name) for name in CATEGORY_TITLES)]) for run in runs]
+    values_by_run = [(run, [run.macro, run.micro, *(_category_share(run, name) for name in CATEGORY_TITLES)]) for run in runs]
     rows, groups = [], {}
     previous = None
-    for number, (run, values) in enumerate(raw):
+    for number, (run, values) in enumerate(values_by_run):
         group = f"{run.perception_name} ({' '.join(run.task_set)})"
         if group != previous:
             groups[number], previous = group, group
-        cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
-        cells[0] = _partial_macro(cells[0], run)
+        cells = [_mark_best(value, index, run, values_by_run) if rank else value for index, value in enumerate(values)]
+        cells[0] = _note_partial_macro(cells[0], run)
         if best is not None and run in best.close:
-            cells[0] = _with_note(cells[0], "not told apart from the highest")
+            cells[0] = _add_note(cells[0], "not distinguishable from the highest")
         rows.append((run.label, *cells, len(run.tasks)))
     notes = (INTERVALS_NOTE, MARKS_NOTE)
     return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS_NOTE,), groups)
@@ -106,32 +106,35 @@ def _category_share(run: ReportRun, name: str) -> IntervalEstimate | None:
     return proportion(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
-def _marked(
-    value: IntervalEstimate | None, index: int, run: ReportRun, raw: Sequence[tuple[ReportRun, list[IntervalEstimate | None]]]
+def _mark_best(
+    value: IntervalEstimate | None,
+    index: int,
+    run: ReportRun,
+    values_by_run: Sequence[tuple[ReportRun, list[IntervalEstimate | None]]],
 ) -> CellValue:
     if value is None:
         return None
-    same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
+    same_tasks = [(r, v[index]) for r, v in values_by_run if r.task_set == run.task_set and r.tasks == run.tasks]
     same_perception = [v.value for r, v in same_tasks if v and r.perception_name == run.perception_name]
     all_values = [v.value for _, v in same_tasks if v]
     return MarkedCell(value, _is_best(value.value, same_perception), _is_best(value.value, all_values))
 
 
 def _is_best(value: float, values: Sequence[float]) -> bool:
-    """Return whether a value is the maximum of several values that are not all equal."""
+    """Return whether a value is the maximum of values that are not all equal."""
     return max(values) - min(values) > ROUNDING and value > max(values) - ROUNDING
 
 
-def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
+def _note_partial_macro(value: CellValue, run: ReportRun) -> CellValue:
     """Add a note to a macro average that does not cover all categories."""
     number = len({t.task.category for t in run.scored_trials})
     if number == len(CATEGORY_TITLES):
         return value
-    return _with_note(value, f"over {number} of {len(CATEGORY_TITLES)} categories")
+    return _add_note(value, f"over {number} of {len(CATEGORY_TITLES)} categories")
 
 
-def _with_note(value: CellValue, note: str) -> MarkedCell:
-    marks = value if isinstance(value, MarkedCell) else MarkedCell(unmarked(value))
+def _add_note(value: CellValue, note: str) -> MarkedCell:
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(cell_value(value))
     return replace(marks, note="; ".join(filter(None, (marks.note, note))))
 
 
@@ -172,14 +175,14 @@ def _judge_table(runs: Sequence[ReportRun]) -> ReportTable:
         "unparseable and failed judgements. Trials that only a judge can score are excluded from the macro average by checks and "
         "from the fraction of same verdicts.",
     )
-    return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judged_row(run) for run in runs), notes)
+    return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judge_row(run) for run in runs), notes)
 
 
-def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
-    name = judge_name([run])
+def _judge_row(run: ReportRun) -> tuple[CellValue, ...]:
+    name = select_judge([run])
     if name is None:
         return run.label, None, 0, 0, 0, None, None, None
-    judged = verdicts(run.scored_trials, name)
+    judged = trials_judged_by(run.scored_trials, name)
     counts = Counter(judgement.verdict for _, judgement in judged)
     decided = [(t, j.verdict == "correct") for t, j in judged if j.verdict in ("correct", "incorrect")]
     trials = [t for t, _ in decided]

@@ -1,27 +1,27 @@
-"""The section on chance: what constant answers win on the tasks of the runs, and accuracy corrected for it."""
+"""The section on chance: the scores of constant answers on the tasks of the runs, and chance-corrected accuracy."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.reports.report_runs import MAIN_STRATA, ReportRun, of_main_set, scores_of
+from scope_ptz.bench.reports.report_runs import MAIN_STRATA, ReportRun, runs_of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable, interval
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable, interval_texts
 from scope_ptz.bench.scoring.constant_agents import chance_level
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.bench.statistics.chance import ChanceCorrected, ChanceLevel, ConstantAgentScore, chance_corrected, whole_pairs
+from scope_ptz.bench.statistics.chance import ChanceCorrected, ChanceLevel, ConstantAgentScore, chance_corrected, pair_consistent
 from scope_ptz.bench.tasks.task import Task
 
 _ABOUT = (
     "A constant answer is the same text for every task. It is scored by the checks on synthetic runs. “Without a call” makes no "
-    "tool call, so that the check of coverage rejects almost all of its answers; “accepted” ignores all checks but that of the "
-    "answer. “Move, look once” makes the moves of the reference program and one perception call about the whole instruction. Its "
-    "moves after the look are also those of the reference program, so its scores are upper bounds. “By category” uses the best "
-    "answer of each category. Shares are of the tasks that expect an answer, a question back or a refusal.",
+    "tool call, so the coverage check rejects almost all of its answers; “accepted” ignores all checks except the answer check. "
+    "“Move, look once” makes the moves of the reference program and one perception call with the whole instruction. Its later "
+    "moves are also those of the reference program, so its scores are upper bounds. “By category” uses the best answer of each "
+    "category. Shares are fractions of the tasks that expect an answer, a clarifying question or a refusal.",
     "In a contrast pair, two tasks have similar wording; the thing in question is present in one and absent in the other. In "
     "pair-consistent shares, a task of a pair counts only if both tasks of the pair are correct (contrast consistency, Gardner et "
-    "al. 2020). Tasks without a pair, or whose twin was not run, count as they are.",
+    "al. 2020). Tasks without a pair, or whose twin was not run, are counted individually.",
     "Chance-corrected accuracy is the mean over the categories of (p - c) / (1 - c), where p is the pair-consistent accuracy in "
     "the category and c is that of the best constant answer after moving and looking once (Abbott 1925). It is 0% for the best "
     "constant answers, 100% if every trial is correct, and negative below chance.",
@@ -30,12 +30,12 @@ _ABOUT = (
 
 @dataclass(frozen=True, slots=True)
 class RunChance:
-    """A run with the chance level of its tasks.
+    """A run and the chance level of its tasks.
 
     Attributes:
         run: The run.
-        level: What constant answers win on all of its tasks.
-        corrected: Its accuracy, corrected for chance; None without scored core tasks.
+        level: The scores of constant answers on all tasks of the run.
+        corrected: The chance-corrected accuracy; None without scored core tasks.
     """
 
     run: ReportRun
@@ -44,14 +44,14 @@ class RunChance:
 
 
 def run_chance(run: ReportRun, tasks: Mapping[str, Task]) -> RunChance | None:
-    """Return a run with the chance level of its tasks.
+    """Compute the chance level of a run's tasks.
 
     Args:
         run: The run.
-        tasks: The known tasks, by id.
+        tasks: The known tasks by id.
 
     Returns:
-        None if the run has no tasks or one of its tasks is not known.
+        The run with its chance level; None if the run has no tasks, or one of them is unknown.
     """
     ids = list(dict.fromkeys(trial.task.id for trial in run.evaluation.trials))
     if not ids or any(name not in tasks for name in ids):
@@ -66,46 +66,49 @@ def run_chance(run: ReportRun, tasks: Mapping[str, Task]) -> RunChance | None:
 
 
 def consistent_outcomes(trials: Sequence[Trial]) -> list[bool]:
-    """Return whether each trial is correct, with pairs counted whole within each repeat."""
+    """Return the pair-consistent outcome of each trial. Pairs are formed within each repeat."""
     outcomes = [False] * len(trials)
     for epoch in dict.fromkeys(trial.epoch for trial in trials):
         places = [i for i, trial in enumerate(trials) if trial.epoch == epoch]
         rows = [trials[i] for i in places]
-        whole = whole_pairs([t.headline == "correct" for t in rows], [t.task.id for t in rows], [t.task.pair for t in rows])
-        for place, value in zip(places, whole, strict=True):
+        consistent = pair_consistent(
+            [t.headline == "correct" for t in rows], [t.task.id for t in rows], [t.task.pair for t in rows]
+        )
+        for place, value in zip(places, consistent, strict=True):
             outcomes[place] = value
     return outcomes
 
 
 def chance_section(runs: Sequence[ReportRun], tasks: Mapping[str, Task]) -> Section | None:
-    """Return the section on chance; None if the tasks of no run are known."""
-    known = [each for run in runs if (each := run_chance(run, tasks)) is not None]
+    """Return the section on chance; None if the tasks are unknown for every run."""
+    known = [entry for run in runs if (entry := run_chance(run, tasks)) is not None]
     if not known:
         return None
     text = list(_ABOUT)
-    if left_out := [run.label for run in runs if run not in [each.run for each in known] and run.evaluation.trials]:
-        text.append(f"The tasks of these runs are not known, so they are left out: {'; '.join(left_out)}.")
+    if excluded := [run.label for run in runs if run not in [entry.run for entry in known] and run.evaluation.trials]:
+        text.append(f"These runs are excluded because their tasks are unknown: {'; '.join(excluded)}.")
     return Section("chance", "Chance", tuple(text), (), (_corrected_table(known), _constant_table(known)))
 
 
 def chance_lines(runs: Sequence[ReportRun], tasks: Mapping[str, Task]) -> Iterator[str]:
-    """Yield the summary: chance-corrected accuracy of the best run, and what constant answers win on the main tasks."""
-    known = [each for run in of_main_set(runs) if (each := run_chance(run, tasks)) is not None and each.corrected is not None]
+    """Yield summary lines: the chance-corrected accuracy of the best run, and the best constant answers on the main tasks."""
+    known = [
+        entry for run in runs_of_main_set(runs) if (entry := run_chance(run, tasks)) is not None and entry.corrected is not None
+    ]
     if not known:
         return
-    ranked = [each for each in known if each.run.ranked] or known
-    best = max(ranked, key=lambda each: each.run.macro.value if each.run.macro else 0.0)
+    ranked = [entry for entry in known if entry.run.ranked] or known
+    best = max(ranked, key=lambda entry: entry.run.macro.value if entry.run.macro else 0.0)
     if best.corrected is not None:
-        bounds, _ = interval(best.corrected.corrected, "share")
+        bounds, _ = interval_texts(best.corrected.corrected, "share")
         yield (
             f"Chance-corrected macro accuracy of {best.run.label}: {100 * best.corrected.corrected.value:.1f}%"
             + (f" (95% interval {bounds})." if bounds else ".")
         )
     level = best.level
     yield (
-        f"On these tasks, the best constant answer wins {_percent(level.without_calls)} without a tool call, and "
-        f"{_percent(level.looking)} after moving and looking once ({100 * level.looking.consistent_share:.1f}% with pairs counted "
-        "whole)."
+        f"On these tasks, the best constant answer scores {_percent(level.without_calls)} without a tool call, and "
+        f"{_percent(level.looking)} after moving and observing once ({100 * level.looking.consistent_share:.1f}% pair-consistent)."
     )
 
 
@@ -121,9 +124,9 @@ def _corrected_table(known: Sequence[RunChance]) -> ReportTable:
         Column("corrected", "Chance-corrected (%)", "share"),
     )  # fmt: skip
     rows: list[tuple[CellValue, ...]] = [
-        (each.run.label, each.run.macro, each.corrected.consistent, each.corrected.chance, each.corrected.corrected)
-        for each in known
-        if each.corrected is not None
+        (entry.run.label, entry.run.macro, entry.corrected.consistent, entry.corrected.chance, entry.corrected.corrected)
+        for entry in known
+        if entry.corrected is not None
     ]
     notes = ("All values are macro averages over the categories. The chance level is the mean of the values c of the categories.",)
     return ReportTable("chance_corrected", "Accuracy corrected for chance (%)", columns, tuple(rows), notes)
@@ -136,8 +139,8 @@ def _constant_table(known: Sequence[RunChance]) -> ReportTable:
         Column("share", "Share (%)", "share"), Column("consistent", "Pair-consistent share (%)", "share"),
     )  # fmt: skip
     rows: dict[tuple[CellValue, ...], None] = {}
-    for each in known:
-        level, split = each.level, each.run.task_set[1]
+    for entry in known:
+        level, split = entry.level, entry.run.task_set[1]
         agents = {
             "accepted as an answer": level.accepted, "without a call": level.without_calls,
             "move, look once": level.looking, "move, look once, by category": level.adaptive,
@@ -145,4 +148,4 @@ def _constant_table(known: Sequence[RunChance]) -> ReportTable:
         for name, score in agents.items():
             answer = score.answer if score.correct else None
             rows[(split, level.tasks, score.tasks, name, answer, score.correct, score.share, score.consistent_share)] = None
-    return ReportTable("constant_answers", "What constant answers win", columns, tuple(rows))
+    return ReportTable("constant_answers", "Scores of constant answers", columns, tuple(rows))

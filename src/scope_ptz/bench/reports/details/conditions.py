@@ -1,4 +1,4 @@
-"""The section on the conditions of the runs: their models, their tasks, and their run cards."""
+"""The section on the conditions of the runs: models, tasks and run cards."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from scope_ptz.bench.reports.details.accuracy import KIND_TITLES
 from scope_ptz.bench.reports.details.difficulty import CLASSES
-from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, is_mixture, of_main_set
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, is_mixture, runs_of_main_set
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
 from scope_ptz.registry import Model
@@ -58,13 +58,16 @@ def _model_table(runs: Sequence[ReportRun]) -> ReportTable:
         for run in runs:
             if not getattr(run.evaluation.card, role).deterministic and run.kind != "person":
                 by_name.setdefault(getattr(run, f"{role}_name"), []).append(run)
-        rows += [(name, role, *_facts(getattr(own[0], role)), len(own)) for name, own in sorted(by_name.items())]
-    notes = ("A mixture of experts has fewer active than total parameters. Models that are not in the registry have no facts.",)
+        rows += [(name, role, *_model_cells(getattr(own[0], role)), len(own)) for name, own in sorted(by_name.items())]
+    notes = (
+        "A mixture of experts has fewer active than total parameters. Models that are not in the registry are listed without "
+        "details.",
+    )
     return ReportTable("models", "Models of these runs", columns, tuple(rows), notes)
 
 
-def _facts(model: Model | None) -> tuple[CellValue, ...]:
-    """Return the facts about a model: title, parameters, active parameters, precision, kind and memory."""
+def _model_cells(model: Model | None) -> tuple[CellValue, ...]:
+    """Return the table cells for a model: title, parameters, active parameters, precision, kind and memory."""
     if model is None:
         return (None,) * 6
     kind = "mixture of experts" if is_mixture(model) else "dense"
@@ -72,8 +75,8 @@ def _facts(model: Model | None) -> tuple[CellValue, ...]:
 
 
 def _task_table(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table of the numbers of tasks by category that the runs of the main task set cover."""
-    facts = {t.task.id: t.task for run in of_main_set(runs) for t in run.main_trials}
+    """Return a table with the number of tasks in each category that the runs of the main task set cover."""
+    facts = {t.task.id: t.task for run in runs_of_main_set(runs) for t in run.main_trials}
     columns = (
         Column("category", "Category"), Column("tasks", "Tasks", "count"), Column("current", "Current view", "count"),
         Column("full", "Full scene", "count"), *(Column(name, name.capitalize(), "count") for name in CLASSES),
@@ -89,7 +92,7 @@ def _task_table(runs: Sequence[ReportRun]) -> ReportTable:
 
 def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
     card = run.evaluation.card
-    sampling = ", ".join(f"{key} {value}" for key, value in _flattened(card.sampling))
+    sampling = ", ".join(f"{key} {value}" for key, value in _flatten(card.sampling))
     return (
         run.label,
         KIND_TITLES[run.kind],
@@ -104,8 +107,8 @@ def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
         None if card.seed is None else str(card.seed),
         sampling or None,
         card.prompt_digest[:12] or None,
-        _reported(card.planner.reported),
-        _reported(card.perception.reported),
+        _reported_text(card.planner.reported),
+        _reported_text(card.perception.reported),
         card.concurrency,
         "contended" if card.contended else "alone",
         card.package_version,
@@ -116,14 +119,14 @@ def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
     )
 
 
-def _flattened(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield nested settings with their full names, such as ``planner.temperature``."""
+def _flatten(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of nested settings with their full names, such as ``planner.temperature``."""
     for key, value in sorted(settings.items()):
         if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{key}.")
+            yield from _flatten(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
 
 
-def _reported(reported: Mapping[str, str]) -> str | None:
+def _reported_text(reported: Mapping[str, str]) -> str | None:
     return ", ".join(f"{key} {value}" for key, value in sorted(reported.items())) or None

@@ -1,4 +1,4 @@
-"""The section on difficulty: whether tasks of a harder class are solved less often, and the classes by item statistics."""
+"""The section on difficulty: whether tasks in harder classes are solved less often, and classes by item statistics."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from scope_ptz.bench.statistics.paired import holm
 
 DifficultyClass = Literal["easy", "medium", "hard"]
 CLASSES: tuple[DifficultyClass, ...] = ("easy", "medium", "hard")
-"""The classes of difficulty, from easy to hard."""
+"""The difficulty classes, from easy to hard."""
 ALPHA = 0.05
-"""Significance level of the check."""
+"""Significance level for differences between classes."""
 MIN_PAIRS = 8
-"""Minimum number of model pairs for classes by item statistics. With 8 pairs, the standard error of a share is at most 0.18."""
+"""Minimum number of model pairs for item statistics. With 8 pairs, the standard error of a share is at most 0.18."""
 EASY_FROM, MEDIUM_FROM = 2 / 3, 1 / 3
-"""Classes by item statistics: a task is easy if at least this share of trials is correct, and medium if at least the second."""
+"""Thresholds for classes by item statistics: the minimum share of correct trials for easy tasks and for medium tasks."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClassStep:
-    """The comparison of two neighbouring classes of a category that both have tasks.
+    """The comparison of two neighbouring difficulty classes within a category.
 
     Attributes:
         category: The category.
         easier: The easier class.
         harder: The harder class.
         drop: Accuracy on the easier class minus accuracy on the harder class.
-        p_adjusted: P value of the difference, adjusted by Holm's method for all steps; None if unknown.
+        p_adjusted: P value of the difference, adjusted for all steps with Holm's method; None if unknown.
     """
 
     category: str
@@ -46,31 +46,31 @@ class ClassStep:
     p_adjusted: float | None
 
     @property
-    def contradicts(self) -> bool:
-        """Whether the harder class is solved more often, beyond noise."""
+    def is_contradiction(self) -> bool:
+        """Whether the harder class is solved significantly more often."""
         return self.drop.value < 0 and self.p_adjusted is not None and self.p_adjusted < ALPHA
 
 
-def class_steps(runs: Sequence[ReportRun]) -> tuple[ClassStep, ...]:
-    """Compare the accuracy of neighbouring difficulty classes within each category.
+def compare_classes(runs: Sequence[ReportRun]) -> tuple[ClassStep, ...]:
+    """Compare the accuracies of neighbouring difficulty classes within each category.
 
-    The trials of all runs are pooled. All trials of a task count as one observation, clustered by viewpoint.
+    The trials of all runs are pooled. All trials of a task count as one observation, and tasks are clustered by viewpoint.
     """
     by_class = _by_class(runs)
-    found: list[tuple[str, DifficultyClass, DifficultyClass, IntervalEstimate]] = []
+    comparisons: list[tuple[str, DifficultyClass, DifficultyClass, IntervalEstimate]] = []
     for category in CATEGORY_TITLES:
         present = [name for name in CLASSES if by_class[category, name]]
         for easier, harder in pairwise(present):
-            one, other = (scores_of(by_class[category, name]) for name in (easier, harder))
-            if (drop := proportion_difference(one, other)) is not None:
-                found.append((category, easier, harder, drop))
+            easier_scores, harder_scores = (scores_of(by_class[category, name]) for name in (easier, harder))
+            if (drop := proportion_difference(easier_scores, harder_scores)) is not None:
+                comparisons.append((category, easier, harder, drop))
     # Without an interval, the variance of one of the classes is unknown, for example because it has only one task.
-    adjusted = holm([two_sided_p(drop) if drop.low is not None else None for *_, drop in found])
-    return tuple(ClassStep(*step, p) for step, p in zip(found, adjusted, strict=True))
+    adjusted = holm([two_sided_p(drop) if drop.low is not None else None for *_, drop in comparisons])
+    return tuple(ClassStep(*step, p) for step, p in zip(comparisons, adjusted, strict=True))
 
 
 def item_shares(runs: Sequence[ReportRun]) -> dict[str, float]:
-    """Return the share of correct trials of each task, by its id. Each run counts alike, however often it repeated the task."""
+    """Return the share of correct trials of each task, by task id. All runs have the same weight, regardless of repeats."""
     by_task: dict[str, list[float]] = defaultdict(list)
     for run in runs:
         own: dict[str, list[bool]] = defaultdict(list)
@@ -82,7 +82,7 @@ def item_shares(runs: Sequence[ReportRun]) -> dict[str, float]:
 
 
 def item_class(share: float) -> DifficultyClass:
-    """Return the class of a task by the share of correct trials."""
+    """Return the difficulty class for a share of correct trials."""
     return "easy" if share >= EASY_FROM else "medium" if share >= MEDIUM_FROM else "hard"
 
 
@@ -90,23 +90,23 @@ def difficulty_section(runs: Sequence[ReportRun]) -> Section | None:
     """Return the section that checks the difficulty classes of the tasks; None without model pairs.
 
     Args:
-        runs: The runs of model pairs over the same tasks.
+        runs: The runs of model pairs on the same tasks.
     """
     if not runs:
         return None
-    steps = class_steps(runs)
+    steps = compare_classes(runs)
     tables = [_class_table(runs, steps)]
     text = [
-        "Each task has a class of difficulty, which a rule computes from the task: more calls, more objects to tell apart, and a "
+        "Each task has a class of difficulty, which a rule computes from the task: more calls, more objects to distinguish, and a "
         "sweep make a task harder. This section checks the rule against the outcomes: within a category, a harder class must not "
         "be solved more often. The trials of all pairs are pooled, and all trials of a task count as one observation. P values are "
         "adjusted for the number of steps by Holm's method.",
-        verdict(steps),
+        verdict_text(steps),
     ]
     if len(runs) >= MIN_PAIRS:
         tables += [_cross_table(runs), _item_table(runs)]
         text.append(
-            f"There are {len(runs)} pairs, so that tasks also have classes by item statistics: easy if at least two thirds of the "
+            f"There are {len(runs)} pairs, so tasks also have classes by item statistics: easy if at least two thirds of the "
             "trials are correct, medium if at least one third, otherwise hard. Where the two classes differ, the class by item "
             "statistics describes these pairs better. The stored class of a task does not change."
         )
@@ -115,11 +115,11 @@ def difficulty_section(runs: Sequence[ReportRun]) -> Section | None:
     return Section("difficulty", "Difficulty of the tasks", tuple(text), (), tuple(tables), frozenset({"items"}))
 
 
-def verdict(steps: Sequence[ClassStep]) -> str:
-    """State whether the accuracy falls from each class to the next."""
+def verdict_text(steps: Sequence[ClassStep]) -> str:
+    """Return sentences that state whether the accuracy falls from each class to the next."""
     if not steps:
         return "No category has tasks of two classes, so the rule cannot be checked."
-    wrong = [step for step in steps if step.contradicts]
+    wrong = [step for step in steps if step.is_contradiction]
     inverted = [step for step in steps if step.drop.value < 0]
     if wrong:
         names = "; ".join(f"{CATEGORY_TITLES[s.category]}: {s.harder} is solved more often than {s.easier}" for s in wrong)
@@ -169,13 +169,13 @@ def _class_table(runs: Sequence[ReportRun], steps: Sequence[ClassStep]) -> Repor
 def _monotone(steps: Sequence[ClassStep]) -> str:
     if not steps:
         return "one class"
-    if any(step.contradicts for step in steps):
+    if any(step.is_contradiction for step in steps):
         return "no"
     return "within noise" if any(step.drop.value < 0 for step in steps) else "yes"
 
 
 def _cross_table(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table of the numbers of tasks by the class of the rule and the class by item statistics."""
+    """Return a table with the number of tasks by rule-based class and by class from item statistics."""
     facts = {t.task.id: t.task for run in runs for t in run.scored_trials}
     counts = Counter[tuple[str, str, str]]()
     for task, share in item_shares(runs).items():

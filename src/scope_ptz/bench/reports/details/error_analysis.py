@@ -1,4 +1,4 @@
-"""The sections on failed trials: error modes by the rules and by the judge, and accuracy if perception never failed."""
+"""The sections on failed trials: error modes according to the rules and the judge, and accuracy if perception never failed."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.paired_comparison import PairedComparison, compare
-from scope_ptz.bench.reports.report_judge import judge_name, verdicts
+from scope_ptz.bench.reports.report_judge import select_judge, trials_judged_by
 from scope_ptz.bench.reports.report_runs import ReportRun, macro, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, cell_value
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 from scope_ptz.bench.statistics.clustered import IntervalEstimate
@@ -22,33 +22,33 @@ MODE_TITLES = {
     ErrorMode.HALLUCINATION: "Hallucination", ErrorMode.LACK_OF_TOOL_CALL: "Lack of tool call", ErrorMode.TOOL_ARGS: "Tool args",
     ErrorMode.SCOPE: "Scope", ErrorMode.TOOL_ROUTING: "Tool routing",
 }  # fmt: skip
-"""Titles of the error modes, in the order of the paper's table."""
+"""Titles of the error modes, in the order used in the paper's table."""
 RULES_TITLE = "Incorrect trials by error mode, by the rules"
 PERCEPTION_MODES = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
-"""The error modes that are errors of perception."""
+"""The error modes that are perception errors."""
 
 
 def modes_by_rules(run: ReportRun) -> Counter[ErrorMode]:
-    """Count incorrect trials by the error mode that the rules assigned. Unscored trials and trials scored by a judge have none."""
+    """Count incorrect trials by the error mode that the rules assigned. Unscored and judge-scored trials have no such mode."""
     return Counter(t.error_mode for t in run.checked_trials if t.error_mode is not None)
 
 
 def modes_by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
-    """Count the trials that a judge found incorrect by the error mode that it assigned."""
-    judged = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
+    """Count the trials that a judge considered incorrect, by the error mode that the judge assigned."""
+    judged = [j for _, j in trials_judged_by(run.scored_trials, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in judged if j.error_mode is not None)
 
 
 def error_section(runs: Sequence[ReportRun]) -> Section:
-    """Return the section on the error modes of runs of the main task set."""
+    """Return the section on the error modes of runs on the main task set."""
     checked = [run for run in runs if run.checked_trials]
     rules_modes = {run.label: modes_by_rules(run) for run in checked}
     tables = [_mode_table("error_modes", RULES_TITLE, rules_modes)]
     totals = {run.label: len(run.checked_trials) for run in checked}
     charts = [drawing.mode_chart("error_modes", RULES_TITLE, checked, rules_modes, totals, MODE_TITLES, runs)] if checked else []
-    judge = judge_name(runs)
+    judge = select_judge(runs)
     if judge is not None:
-        judge_modes = {run.label: modes_by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
+        judge_modes = {run.label: modes_by_judge(run, judge) for run in runs if trials_judged_by(run.scored_trials, judge)}
         judged = [run for run in runs if run.label in judge_modes]
         title = f"Incorrect trials by error mode, by the judge ({judge})"
         tables.append(_mode_table("error_modes_judge", title, judge_modes))
@@ -90,10 +90,10 @@ def oracle_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -
     """Return the section on the oracle setting: accuracy if perception never failed.
 
     Args:
-        ranked: The runs of model pairs over the same tasks.
-        all_runs: All runs of the report, including those with ground-truth perception.
+        ranked: The runs of model pairs on the same tasks.
+        all_runs: All runs in the report, including those with ground-truth perception.
     """
-    judge = judge_name(ranked)
+    judge = select_judge(ranked)
     columns = (
         Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
         Column("oracle_judge", "VLM errors (by judge) counted as correct (%)", "share"),
@@ -129,7 +129,7 @@ MEANS_NOTE = (
 
 
 Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
-"""Measured macro accuracy, macro accuracy with perception errors counted as correct, and the fraction of these among all errors."""
+"""Measured macro accuracy, macro accuracy with perception errors counted as correct, and the share of perception errors."""
 
 
 def _rules_oracle(run: ReportRun) -> Oracle:
@@ -147,8 +147,8 @@ def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
 
 
 def _trials_with_verdict(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
-    """Return the trials on which the judge gave a verdict, with their judgements."""
-    return [(t, j) for t, j in verdicts(run.scored_trials, judge or "") if j.verdict in ("correct", "incorrect")]
+    """Return the trials on which the judge gave a verdict, together with the judgements."""
+    return [(t, j) for t, j in trials_judged_by(run.scored_trials, judge or "") if j.verdict in ("correct", "incorrect")]
 
 
 def _perception_share(modes: Counter[ErrorMode]) -> float | None:
@@ -157,9 +157,9 @@ def _perception_share(modes: Counter[ErrorMode]) -> float | None:
 
 
 def _rerun(run: ReportRun, all_runs: Sequence[ReportRun]) -> tuple[ReportRun, PairedComparison | None] | None:
-    """Return the rerun of a run's planner with ground-truth perception, and the comparison of the two runs.
+    """Return the rerun of a run's planner with ground-truth perception, and the comparison between the two runs.
 
-    If there are several reruns, the one that shares the most tasks is returned.
+    If there are several reruns, the one with the most shared tasks is returned.
     """
     planner, _, agent, variant = run.system
     reruns = []
@@ -182,7 +182,7 @@ def _oracle_row(
 
 
 def _shared_macro(run: ReportRun, rerun: tuple[ReportRun, PairedComparison | None] | None) -> CellValue:
-    """Return the macro accuracy of a rerun on the shared tasks, with a note if these are not all tasks of the run."""
+    """Return the macro accuracy of a rerun on the shared tasks, with a note if the run has other tasks too."""
     if rerun is None:
         return None
     estimate = macro(scores_of([t for t in rerun[0].scored_trials if t.task.id in run.tasks]))
@@ -191,7 +191,7 @@ def _shared_macro(run: ReportRun, rerun: tuple[ReportRun, PairedComparison | Non
 
 
 def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[tuple[CellValue, ...]]:
-    """Return rows of means over pairs. Both values of a comparison cover the same pairs; other cells are blank."""
+    """Return rows with means over pairs. The values in a comparison cover the same pairs, and other cells are blank."""
     values = [{name: _complete_value(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
 
     def means(title: str, *groups: tuple[str, ...]) -> tuple[CellValue, ...]:
@@ -213,7 +213,7 @@ def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[
 
 def _complete_value(cell: CellValue) -> float | None:
     """Return the value of a cell; None if a note states that it does not cover all tasks of the run."""
-    value = unmarked(cell)
+    value = cell_value(cell)
     if isinstance(cell, MarkedCell) and cell.note:
         return None
     return value.value if isinstance(value, IntervalEstimate) else value if isinstance(value, float) else None

@@ -1,7 +1,7 @@
-"""The latency section: seconds by stage, by planner, by perception model, and by view (current view or panorama).
+"""The latency section: seconds by stage, planner, perception model and view (current view or panorama).
 
-The camera is a separate stage, because the simulator's time for moves and frames depends on the views that a pair requests. A
-pair's own latency is the sum of the other stages.
+The camera is a separate stage, because the time that the simulator takes for moves and frames depends on the views that a pair
+requests. A pair's own latency is the sum of the other stages.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ STAGE_TITLES = {
     "capture_s": "Camera",
     "total_s": "Whole trial",
 }
-"""Titles of the stages by their fields in ``Timings``.
+"""Titles of the stages, by field of ``Timings``.
 
-``own_s`` is the sum of the first three stages. ``total_s`` is the sum of these and the camera.
+``own_s`` is the sum of the first three stages, and ``total_s`` also includes the camera.
 """
 VIEWS: tuple[tuple[Scope, str], ...] = (("current", "Current view"), ("full", "Panorama"))
 STAGES_NOTE = (
@@ -66,13 +66,13 @@ def latency_section(runs: Sequence[ReportRun]) -> Section:
     return Section("latency", "Latency and tool calls", tuple(text), charts, tables)
 
 
-def _contended(runs: Sequence[ReportRun]) -> str:
+def _contention_text(runs: Sequence[ReportRun]) -> str:
     states = {run.evaluation.card.contended for run in runs}
     return "some contended" if len(states) > 1 else "contended" if states == {True} else "alone"
 
 
-def _uncontended(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
-    """Return the runs without contention; if there are none, all runs."""
+def _runs_without_contention(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
+    """Return the runs without contention or, if there are none, all runs."""
     return [run for run in runs if not run.evaluation.card.contended] or runs
 
 
@@ -89,7 +89,7 @@ def _stage_table(runs: Sequence[ReportRun]) -> ReportTable:
     ]
     rows = []
     for run in runs:
-        cells: list[CellValue] = [run.label, _contended([run]), len(stage_seconds(run, "total_s"))]
+        cells: list[CellValue] = [run.label, _contention_text([run]), len(stage_seconds(run, "total_s"))]
         for stage in STAGE_TITLES:
             seconds = stage_seconds(run, stage)
             cells += [median(seconds), p95(seconds)]
@@ -98,7 +98,7 @@ def _stage_table(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 def _hybrid_table(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return the table that states which part of a hybrid planner planned the steps, and how long it took."""
+    """Return a table with the number and duration of the steps by each part of a hybrid planner."""
     columns = (
         Column("run", "Run"),
         Column("grammar_steps", "Steps by the grammar", "count"),
@@ -119,11 +119,11 @@ def _hybrid_table(runs: Sequence[ReportRun]) -> ReportTable:
     return ReportTable("latency_hybrid", "Hybrid planners", columns, tuple(rows), notes)
 
 
-Timed = tuple[ReportRun, ReportRun]
-"""A pair's run with the most tasks, and the run from which its latency is taken. They may be the same run."""
+TimedPair = tuple[ReportRun, ReportRun]
+"""The run of a pair with the most tasks, and the run from which its latency is taken, which may be the same."""
 
 
-def _planner_table(pairs: Sequence[Timed]) -> ReportTable:
+def _planner_table(pairs: Sequence[TimedPair]) -> ReportTable:
     steps = (Column("step_median", "Seconds per step, median", "seconds"), Column("step_p95", "Seconds per step, p95", "seconds"))
 
     def cells(runs: Sequence[ReportRun]) -> tuple[CellValue, ...]:
@@ -135,7 +135,7 @@ def _planner_table(pairs: Sequence[Timed]) -> ReportTable:
     return _model_table("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
-def _perception_table(pairs: Sequence[Timed]) -> ReportTable:
+def _perception_table(pairs: Sequence[TimedPair]) -> ReportTable:
     call_columns = (
         Column("look_median", "Perception, seconds per call, median", "seconds"),
         Column("look_p95", "Perception, seconds per call, p95", "seconds"),
@@ -163,7 +163,7 @@ def _pooling_note(role: str) -> str:
 
 
 def _model_table(
-    key: str, title: str, pairs: Sequence[Timed], name: Callable[[ReportRun], str], stage: str,
+    key: str, title: str, pairs: Sequence[TimedPair], name: Callable[[ReportRun], str], stage: str,
     single: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
 ) -> ReportTable:  # fmt: skip
     """Return a table with one row per model.
@@ -171,12 +171,12 @@ def _model_table(
     Args:
         key: Key of the table.
         title: Title of the table.
-        pairs: The runs of the model pairs, with the runs from which their latency is taken.
-        name: Returns the name of the model in a run.
-        stage: The stage of the model.
-        single: Columns for individual steps or calls.
-        cells: Returns the cells of these columns.
-        notes: Notes below the table.
+        pairs: The runs of the model pairs, with the runs from which their latencies are taken.
+        name: Function that returns the name of the model in a run.
+        stage: The stage to which the model belongs.
+        single: The columns for individual steps or calls.
+        cells: Function that returns the cells in these columns.
+        notes: The notes below the table.
     """
     columns = (
         Column("model", "Model"),
@@ -191,10 +191,12 @@ def _model_table(
     rows = []
     for model in dict.fromkeys(name(run) for run, _ in pairs):
         all_runs = [run for run, _ in pairs if name(run) == model]
-        timed = _uncontended([source for run, source in pairs if name(run) == model])
+        timed = _runs_without_contention([source for run, source in pairs if name(run) == model])
         seconds = [s for run in timed for s in stage_seconds(run, stage)]
         calls = fmean(count for run in all_runs if (count := mean_tool_calls(run.scored_trials)) is not None)
-        rows.append((model, _contended(timed), len(timed), len(all_runs), median(seconds), p95(seconds), *cells(timed), calls))
+        rows.append(
+            (model, _contention_text(timed), len(timed), len(all_runs), median(seconds), p95(seconds), *cells(timed), calls)
+        )
     return ReportTable(key, title, columns, tuple(rows), notes)
 
 
@@ -203,7 +205,7 @@ def _perception_calls(runs: Sequence[ReportRun], view: Scope | None = None) -> l
 
 
 def _view_table(runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table of the seconds of perception and camera for both views, by perception model and over all models."""
+    """Return a table with the seconds for perception and camera by view, for each perception model and for all models."""
     columns = (
         Column("view", "View"),
         Column("contended", "Measured"),
@@ -216,7 +218,7 @@ def _view_table(runs: Sequence[ReportRun]) -> ReportTable:
         Column("call_median", "Whole call, median (s)", "seconds"),
     )
     names = list(dict.fromkeys(run.perception_name for run in runs))
-    parts = [(name, _uncontended([r for r in runs if r.perception_name == name])) for name in names]
+    parts = [(name, _runs_without_contention([r for r in runs if r.perception_name == name])) for name in names]
     if len(parts) > 1:
         parts.append(("all eyes", [run for _, timed in parts for run in timed]))
     rows = [_view_row(view, title, timed) for _, timed in parts for view, title in VIEWS]
@@ -231,4 +233,4 @@ def _view_row(view: Scope, title: str, runs: Sequence[ReportRun]) -> tuple[CellV
     baseline = median([call.eyes_s for call in _perception_calls(runs, "current")])
     typical = median(perception)
     ratio = typical / baseline if baseline and typical else None
-    return title, _contended(runs), len(calls), typical, p95(perception), ratio, median(capture), p95(capture), median(whole)
+    return title, _contention_text(runs), len(calls), typical, p95(perception), ratio, median(capture), p95(capture), median(whole)

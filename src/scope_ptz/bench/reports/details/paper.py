@@ -1,4 +1,4 @@
-"""The section with the published results of the paper."""
+"""The section with the paper's published results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class _Row(BaseModel):
 
 
 class PaperSource(BaseModel):
-    """The paper's title and DOI, and its judge."""
+    """The title and DOI of the paper, and the judge that it used."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     title: str
@@ -29,7 +29,7 @@ class PaperSource(BaseModel):
 
 
 class PaperCategory(_Row):
-    """The number of tasks of a category."""
+    """The number of tasks in a category."""
 
     category: str
     tasks: int
@@ -56,7 +56,7 @@ class PaperModel(_Row):
 class PaperAccuracy(_Row):
     """The accuracy of a pair in percent.
 
-    ``planner`` and ``eyes`` (the perception model) are names in the registry. The other fields are categories and their average.
+    ``planner`` and ``eyes`` (the perception model) are registry names. The other fields are the categories and their average.
     """
 
     planner: str
@@ -77,7 +77,7 @@ class PaperAccuracy(_Row):
 
 
 class PaperLatency(_Row):
-    """The latency and the tool calls of a model."""
+    """The latency and number of tool calls of a model."""
 
     role: str
     name: str
@@ -86,14 +86,14 @@ class PaperLatency(_Row):
 
 
 class PaperFigure(_Row):
-    """A number from the paper that is in none of the other tables."""
+    """A number from the paper that is not part of the other tables."""
 
     what: str
     value: str
 
 
 class Paper(BaseModel):
-    """All results of the paper."""
+    """All results in the paper."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     paper: PaperSource
@@ -104,8 +104,8 @@ class Paper(BaseModel):
     latency: tuple[PaperLatency, ...]
     figures: tuple[PaperFigure, ...]
 
-    def micro(self, row: PaperAccuracy) -> float:
-        """Compute the micro average of a row in percent. The paper states only the macro average."""
+    def micro_average_percent(self, row: PaperAccuracy) -> float:
+        """Compute the micro average for a row in percent. The paper states only macro averages."""
         correct = sum(round(row.category(c.category) * c.tasks / 100) for c in self.categories)
         return 100 * correct / sum(c.tasks for c in self.categories)
 
@@ -151,7 +151,7 @@ def _accuracy(paper: Paper) -> ReportTable:
             )
             for name in names
         ]
-        rows.append((row.planner, *cells, paper.micro(row) / 100, row.line))
+        rows.append((row.planner, *cells, paper.micro_average_percent(row) / 100, row.line))
     notes = (
         "Values are in percent. The paper's average is the macro average. The value 36.5 (qwen3-next-80b-a3b with moondream2-4bit, "
         "comparative) is not a possible fraction of 62 tasks.",

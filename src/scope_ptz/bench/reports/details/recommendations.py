@@ -1,12 +1,12 @@
-"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixture-of-experts models, and quantisation."""
+"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixture-of-experts models, quantisation."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports.choice.candidates import Candidate, candidates
-from scope_ptz.bench.reports.choice.ties import ROUNDING, Distinctions, extremes, listed
+from scope_ptz.bench.reports.choice.candidates import Candidate, rank_candidates
+from scope_ptz.bench.reports.choice.ties import ROUNDING, Distinctions, extreme_names, join_names
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
 from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of
 from scope_ptz.bench.reports.sections import Section
@@ -14,25 +14,25 @@ from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
 from scope_ptz.bench.statistics.clustered import proportion, proportion_difference
 from scope_ptz.registry import Model
 
-LATENCY = "trial without the camera, median (s)"
+LATENCY_TITLE = "trial without the camera, median (s)"
 """Title of the latency columns."""
 SIZES_GB = (8, 16, 24, 48, 80, 160)
-"""Common sizes of accelerator memory in GB. The last size is that of two accelerators of 80 GB."""
+"""Common accelerator memory sizes in GB. The last size corresponds to two accelerators with 80 GB each."""
 
 
 def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun], distinctions: Distinctions) -> Section:
-    """Return the section on accuracy, latency and memory of each pair, with the best pair for each memory size.
+    """Return the section on the accuracy, latency and memory of each pair, with the best pair for each memory size.
 
     Args:
-        ranked: The runs of model pairs over the same tasks.
-        all_runs: All runs of the report.
-        distinctions: The pairs that the paired comparisons tell apart.
+        ranked: The runs of model pairs on the same tasks.
+        all_runs: All runs in the report.
+        distinctions: The pairs that the paired comparisons distinguish.
     """
-    pairs = candidates(ranked, all_runs)
+    pairs = rank_candidates(ranked, all_runs)
     columns = (
         Column("run", "Run"),
         Column("macro", "Macro (%)", "share"),
-        Column("latency_s", LATENCY.capitalize(), "seconds"),
+        Column("latency_s", LATENCY_TITLE.capitalize(), "seconds"),
         Column("contended", "Measured"),
         Column("memory_gb", "Memory (GB, computed)", "gb"),
         Column("front", "On the Pareto front"),
@@ -44,7 +44,7 @@ def design_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun], d
             c.latency_s,
             "contended" if c.contended else "alone",
             c.memory_gb,
-            ("yes" if c.on_front else "no") if c.complete else None,
+            ("yes" if c.on_front else "no") if c.is_complete else None,
         )
         for c in sorted(pairs, key=lambda c: -(c.accuracy or 0.0))
     )
@@ -71,9 +71,9 @@ def _memory_table(pairs: Sequence[Candidate], distinctions: Distinctions) -> Rep
         Column("memory", "Memory"),
         Column("run", "Highest accuracy that fits"),
         Column("macro", "Macro (%)", "share"),
-        Column("latency_s", LATENCY.capitalize(), "seconds"),
+        Column("latency_s", LATENCY_TITLE.capitalize(), "seconds"),
         Column("memory_gb", "Memory (GB, computed)", "gb"),
-        Column("tied", "Not told apart from it", "prose"),
+        Column("tied", "Not distinguishable from it", "prose"),
     )
     rows: list[tuple[CellValue, ...]] = []
     for size in SIZES_GB:
@@ -91,21 +91,21 @@ def _memory_table(pairs: Sequence[Candidate], distinctions: Distinctions) -> Rep
 
 
 def _tied_names(best: Candidate, pairs: Sequence[Candidate], distinctions: Distinctions) -> str:
-    """Return the names of the pairs that are not told apart from the best one, in the order of their accuracy."""
-    tied = [c for c in pairs if c is not best and not distinctions.told_apart(c.run, best.run)]
+    """Return the names of the pairs that are not distinguishable from the best pair, sorted by accuracy."""
+    tied = [c for c in pairs if c is not best and not distinctions.are_distinct(c.run, best.run)]
     tied.sort(key=lambda c: -(c.accuracy or 0.0))
     names = [
         c.run.label + (" (equal)" if abs((c.accuracy or 0.0) - (best.accuracy or 0.0)) < ROUNDING else "") for c in tied
     ]  # fmt: skip
-    return listed(names)
+    return join_names(names)
 
 
 def spread_section(ranked: Sequence[ReportRun], distinctions: Distinctions) -> Section:
-    """Return the section on how much accuracy depends on the planner and on the perception model.
+    """Return the section on how strongly accuracy depends on the planner and on the perception model.
 
     Args:
-        ranked: The runs of model pairs over the same tasks.
-        distinctions: The pairs that the paired comparisons tell apart.
+        ranked: The runs of model pairs on the same tasks.
+        distinctions: The pairs that the paired comparisons distinguish.
     """
     tables = (
         _spread(
@@ -140,8 +140,8 @@ def _spread(
     title: str,
     fixed_title: str,
     runs: Sequence[ReportRun],
-    fixed: Callable[[ReportRun], str],
-    changed: Callable[[ReportRun], str],
+    fixed_model: Callable[[ReportRun], str],
+    changed_model: Callable[[ReportRun], str],
     distinctions: Distinctions,
 ) -> ReportTable:
     columns = (
@@ -155,9 +155,9 @@ def _spread(
         Column("differ", "Differ"),
     )
     rows: list[tuple[CellValue, ...]] = []
-    for name in dict.fromkeys(fixed(run) for run in runs):
-        own = [run for run in runs if fixed(run) == name and run.macro and run.system[2:] == ("scope", "")]
-        values = [(run.macro.value, changed(run)) for run in own if run.macro]
+    for name in dict.fromkeys(fixed_model(run) for run in runs):
+        fixed_runs = [run for run in runs if fixed_model(run) == name and run.macro and run.system[2:] == ("scope", "")]
+        values = [(run.macro.value, changed_model(run)) for run in fixed_runs if run.macro]
         if len({model for _, model in values}) < 2:
             rows.append((name, len(values), *(None,) * 6))
             continue
@@ -165,10 +165,10 @@ def _spread(
         if high - low < ROUNDING:
             rows.append((name, len(values), "all equal", low, "all equal", high, 0.0, "not shown"))
             continue
-        worst, best = extremes(values)
-        ends = [[run for run in own if run.macro and abs(run.macro.value - end) < ROUNDING] for end in (low, high)]
-        shown = any(distinctions.told_apart(one, other) for one in ends[0] for other in ends[1])
-        rows.append((name, len(values), worst, low, best, high, high - low, "yes" if shown else "not shown"))
+        worst, best = extreme_names(values)
+        ends = [[run for run in fixed_runs if run.macro and abs(run.macro.value - end) < ROUNDING] for end in (low, high)]
+        differs = any(distinctions.are_distinct(lowest, highest) for lowest in ends[0] for highest in ends[1])
+        rows.append((name, len(values), worst, low, best, high, high - low, "yes" if differs else "not shown"))
     notes = ("This table covers only runs of SCOPE's own agent loop with its standard prompt.",)
     return ReportTable(key, title, columns, tuple(rows), notes)
 
@@ -233,39 +233,41 @@ def architecture_section(ranked: Sequence[ReportRun], all_runs: Sequence[ReportR
     return Section("architecture", "Mixture-of-experts models and quantisation", tuple(text), (), tables)
 
 
-def _is_quantised_pair(one: ReportRun, other: ReportRun) -> bool:
-    """Return whether the pair of ``one`` is that of ``other`` with one model quantised."""
-    if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
+def _is_quantised_pair(quantised: ReportRun, full: ReportRun) -> bool:
+    """Return whether two runs use the same pair except that one model in ``quantised`` is quantised."""
+    if quantised.task_set != full.task_set or quantised.system[2:] != full.system[2:]:
         return False
-    if one.system[1] == other.system[1]:
-        return _is_quantised_model(one.planner, other.planner)
-    return one.system[0] == other.system[0] and _is_quantised_model(one.perception, other.perception)
+    if quantised.system[1] == full.system[1]:
+        return _is_quantised_model(quantised.planner, full.planner)
+    return quantised.system[0] == full.system[0] and _is_quantised_model(quantised.perception, full.perception)
 
 
-def _is_quantised_model(one: Model | None, other: Model | None) -> bool:
-    """Return whether ``one`` is the quantised form of the full-precision model ``other``."""
-    if one is None or other is None or (one.family, one.size_b, one.active_b) != (other.family, other.size_b, other.active_b):
+def _is_quantised_model(quantised: Model | None, full: Model | None) -> bool:
+    """Return whether ``quantised`` is the quantised version of the full-precision model ``full``."""
+    if quantised is None or full is None:
         return False
-    return bool(one.family) and one.precision not in FULL_PRECISION and other.precision in FULL_PRECISION
+    if (quantised.family, quantised.size_b, quantised.active_b) != (full.family, full.size_b, full.active_b):
+        return False
+    return bool(quantised.family) and quantised.precision not in FULL_PRECISION and full.precision in FULL_PRECISION
 
 
 def _mixture_table(ranked: Sequence[ReportRun], all_runs: Sequence[ReportRun]) -> ReportTable:
-    """Return a table with a row for each model that is paired with both mixture-of-experts and dense models."""
+    """Return a table with a row for each model that was paired with both mixture-of-experts and dense models."""
     columns = [Column("held", "Fixed model"), Column("changed", "Changed model")]
     for key, title in (("moe", "Mixtures"), ("dense", "Dense")):
         columns += [
             Column(f"{key}_pairs", f"{title}: pairs", "count"),
             Column(f"{key}_macro", f"{title}: macro, mean (%)", "share"),
-            Column(f"{key}_latency_s", f"{title}: {LATENCY}", "seconds"),
+            Column(f"{key}_latency_s", f"{title}: {LATENCY_TITLE}", "seconds"),
             Column(f"{key}_memory_gb", f"{title}: memory (GB, computed)", "gb"),
         ]
     columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
-    pairs = candidates(ranked, all_runs)
+    pairs = rank_candidates(ranked, all_runs)
     rows: list[tuple[CellValue, ...]] = []
     for role, other_role in (("planner", 1), ("perception", 0)):
         for name in dict.fromkeys(c.run.system[other_role] for c in pairs):
-            same = [c for c in pairs if c.run.system[other_role] == name and getattr(c.run, role)]
-            kinds = [[c for c in same if is_mixture(getattr(c.run, role)) is mixture] for mixture in (True, False)]
+            same_model = [c for c in pairs if c.run.system[other_role] == name and getattr(c.run, role)]
+            kinds = [[c for c in same_model if is_mixture(getattr(c.run, role)) is mixture] for mixture in (True, False)]
             if all(kinds):
                 cells = [v for k in kinds for v in (len(k), *(_average(k, f) for f in ("accuracy", "latency_s", "memory_gb")))]
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)

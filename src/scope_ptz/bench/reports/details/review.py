@@ -1,4 +1,4 @@
-"""The sections on tasks that nearly every pair fails, on costs, and on side effects and incidents."""
+"""The sections on tasks that nearly every pair fails, costs, side effects and incidents."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, Report
 from scope_ptz.bench.scoring.trials import Trial
 
 MAX_SUCCESS = 0.25
-"""Maximum success rate of the tasks that the audit lists."""
+"""Maximum success rate of tasks in the audit section."""
 MAX_LISTED = 60
-"""Maximum number of tasks in the audit."""
+"""Maximum number of tasks in the audit section."""
 
 
 def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
@@ -24,7 +24,7 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
     Args:
         ranked: The runs of model pairs.
         reference: Runs of the grammar planner with exact ground-truth perception.
-        pages: Link to the page of each failed task, by the task's id.
+        pages: Links to the pages about failed tasks, by task id.
     """
     text = [
         f"This section lists the tasks on which at most {MAX_SUCCESS:.0%} of the trials of all pairs succeed. Such a task is hard "
@@ -62,7 +62,7 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
 
 
 def _by_task(runs: Sequence[ReportRun]) -> dict[str, list[tuple[ReportRun, Trial]]]:
-    """Return the scored trials of each task with their runs, by the task's id."""
+    """Return the scored trials of each task with their runs, by task id."""
     trials: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.scored_trials:

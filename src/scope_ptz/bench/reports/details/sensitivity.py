@@ -1,4 +1,4 @@
-"""The sections on sensitivity to wording and prompt, repeats, unclear or forbidden requests, and baselines."""
+"""The sections on sensitivity to wording and prompts, repeats, unclear or forbidden requests, and baselines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.repeats import mean_pass_all
 
 System = tuple[str, str, str, str]
-"""Planner, perception model, agent and variant, as in ``ReportRun.system``."""
+"""The planner, perception model, agent and variant of a run, as in ``ReportRun.system``."""
 
 
 def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
@@ -33,7 +33,7 @@ def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
-    """Return the first trial of each task in the logs of each system. Trials with an infrastructure failure are left out."""
+    """Return, for each system, the first trial of each task. Trials with an infrastructure failure are excluded."""
     by_system: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -43,7 +43,7 @@ def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
 
 
 def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
-    """Return the outcomes of the wordings of each scenario. Scenarios without the original or without a paraphrase are left out."""
+    """Return the outcomes of all wordings in each scenario. Scenarios without the original or a paraphrase are excluded."""
     groups: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
         groups[trial.task.paraphrase_of or trial.task.id].append(trial)
@@ -118,14 +118,14 @@ def _trials_by_task(run: ReportRun) -> list[tuple[int, int]]:
 
 
 def _max_trials(run: ReportRun) -> int:
-    """Return the largest number of trials of a task."""
+    """Return the maximum number of trials per task."""
     return max((trials for trials, _ in _trials_by_task(run)), default=0)
 
 
 def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
     """Return the section on requests that the agent should ask about or refuse; None if no run contains such requests."""
-    reacting = [(run, trials) for run in runs if (trials := _reaction_trials(run))]
-    if not reacting:
+    reaction_runs = [(run, trials) for run in runs if (trials := _reaction_trials(run))]
+    if not reaction_runs:
         return None
     columns = (
         Column("run", "Run"),
@@ -142,7 +142,7 @@ def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
             fraction_correct(trials),
             *(fmean(t.outcome == o for t in trials) for o in ("answered", "clarification", "refused")),
         )
-        for run, trials in reacting
+        for run, trials in reaction_runs
     )
     text = (
         "These requests are unclear, impossible or forbidden. The correct reaction is a clarifying question or a refusal, without "
@@ -157,7 +157,7 @@ def _reaction_trials(run: ReportRun) -> list[Trial]:
 
 
 def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
-    """Return the section on the accuracy of blind and human baselines; None if there is no such run."""
+    """Return the section on the accuracy of blind and human baselines; None if there are no such runs."""
     baselines = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
     if not baselines:
         return None

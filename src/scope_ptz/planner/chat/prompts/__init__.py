@@ -1,6 +1,6 @@
 """Load the system prompts, which are versioned files.
 
-A released file is never changed. An improved prompt gets the next number, so that runs remain comparable.
+A released file is never changed. An improved prompt is a new file with the next number, so that runs remain comparable.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Prompt:
         return sha256(self.text.encode()).hexdigest()[:12]
 
     def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, accepts_images: bool = False) -> str:
-        """Return the text of the prompt for a camera.
+        """Return the prompt's text for a camera.
 
         Args:
             presets: The camera's presets.

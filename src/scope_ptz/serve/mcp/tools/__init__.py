@@ -1,1 +1,1 @@
-"""The MCP tools: the nine camera tools, instructions and runs, and the cameras themselves."""
+"""The MCP tools: the nine camera tools, and tools for instructions, runs and the cameras themselves."""

@@ -1,4 +1,4 @@
-"""The nine tools of a camera as MCP tools. Each call is a run of one step, as with the HTTP API."""
+"""A camera's nine tools as MCP tools. Each call is a one-step run, as with the HTTP API."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from scope_ptz.serve.mcp.tool import (
     camera_property,
     output_schema,
     parse_arguments,
+    remove_titles,
     reply,
-    without_titles,
 )
-from scope_ptz.serve.mcp.untrusted import PictureText, between_markers, mark_schema, mark_texts, truncate
+from scope_ptz.serve.mcp.untrusted import PictureText, enclose_in_markers, mark_schema, mark_texts, truncate
 from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.run_handle import RunHandle
 from scope_ptz.serve.site.start_runs import finished_call, start_tool_call
@@ -45,7 +45,7 @@ from scope_ptz.tools.get_presets import GET_PRESETS
 from scope_ptz.tools.registry import TOOLS, parse_call
 from scope_ptz.tools.tool import Tool
 
-_NO_PERCEPTION = "Listing presets needs no perception."  # the error text of a perception backend that is never called
+_NO_PERCEPTION = "Listing presets needs no perception."  # the error message from a perception backend that is never called
 
 
 class _CommonArguments(ToolArguments):
@@ -128,7 +128,7 @@ def _output_schema(tool: Tool) -> dict[str, Any]:
     field: Any = (result | None, ...)
     model = create_model(f"{result.__name__}Report", __base__=ToolReport, result=field)
     schema = output_schema(model)
-    return without_titles(mark_schema(schema)) if tool.perceives else schema
+    return remove_titles(mark_schema(schema)) if tool.perceives else schema
 
 
 async def _run(tool: Tool, call: Call, arguments: dict[str, Any]) -> CallToolResult:
@@ -141,13 +141,13 @@ async def _run(tool: Tool, call: Call, arguments: dict[str, Any]) -> CallToolRes
     handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, own, common.pair))
     called = finished_call(handle)
     more = await _pictures(call, station, handle, called, inline=common.picture)
-    return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *more, failed=_failed(called))
+    return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *more, failed=_has_failed(called))
 
 
 async def _read_presets(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    """List the presets. Like ``GET /cameras/{camera}/presets``, this needs no control, and viewers may do it."""
-    given = parse_arguments(OneCamera, GET_PRESETS.name, arguments)
-    station = call.site.station(given.camera)
+    """List the presets. Like ``GET /cameras/{camera}/presets``, this needs no control, and viewers are permitted."""
+    parsed = parse_arguments(OneCamera, GET_PRESETS.name, arguments)
+    station = call.site.station(parsed.camera)
     context = ToolContext(await station.camera(), NoPerception(_NO_PERCEPTION), NoImages())
     result = await GET_PRESETS.run(context, GET_PRESETS.arguments())
     data = {
@@ -161,7 +161,7 @@ async def _read_presets(call: Call, arguments: dict[str, Any]) -> CallToolResult
     return reply(result.message, data)
 
 
-def _failed(called: Called) -> bool:
+def _has_failed(called: Called) -> bool:
     return called.outcome.error is not None
 
 
@@ -183,14 +183,14 @@ def _data(tool: Tool, station: Station, handle: RunHandle, called: Called) -> di
 def _text(tool: Tool, station: Station, handle: RunHandle, called: Called) -> str:
     outcome = called.outcome
     report = outcome.error if outcome.error is not None else str((outcome.result or {}).get("message", ""))
-    head = f"{tool.name} on {station.name} {'failed' if _failed(called) else 'is done'} (run {handle.id})."
+    head = f"{tool.name} on {station.name} {'failed' if _has_failed(called) else 'is done'} (run {handle.id})."
     if not tool.perceives:
         return f"{head}\n{truncate(report)}"
-    return f"{head} After the call, {pose_text(Arrival(called.pose.pose()))}.\n{between_markers(report)}"
+    return f"{head} After the call, {pose_text(Arrival(called.pose.pose()))}.\n{enclose_in_markers(report)}"
 
 
 async def _pictures(call: Call, station: Station, handle: RunHandle, called: Called, *, inline: bool) -> list[ContentBlock]:
-    """Return the picture of a call and the links to what is stored. A panorama is always a link."""
+    """Return a call's picture, and links to its stored pictures. A panorama is always returned as a link."""
     result = called.outcome.result
     if result is None:
         return []
@@ -208,12 +208,12 @@ async def _pictures(call: Call, station: Station, handle: RunHandle, called: Cal
 
 
 def is_panorama(name: str) -> bool:
-    """Return whether a picture of a run is the panorama of a sweep, given its name in the run folder."""
+    """Return whether a picture from a run is a sweep's panorama, given its name in the run folder."""
     return name.endswith("-full.jpg")
 
 
 def picture_link(run: str, name: str) -> ResourceLink:
-    """Return the link to a picture of a run."""
+    """Return the link to a picture from a run."""
     kind = "Panorama" if is_panorama(name) else "Picture"
     return ResourceLink(
         type="resource_link",

@@ -1,4 +1,4 @@
-"""Tools for instructions and long-running work: run an instruction and wait, or start it, query its state, and cancel it."""
+"""Tools for instructions and long-running work: run an instruction and wait, or start it, query its state and cancel it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_ptz.serve.mcp.reports import PLANNER_ENDINGS, RunReport, run_report
 from scope_ptz.serve.mcp.run_progress import follow
 from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parse_arguments, reply
 from scope_ptz.serve.mcp.tools.camera_tools import is_panorama, picture_link, run_link
-from scope_ptz.serve.mcp.untrusted import between_markers
+from scope_ptz.serve.mcp.untrusted import enclose_in_markers
 from scope_ptz.serve.site.start_runs import start_instruction, start_tool_call
 from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.conversations import add_conversation
@@ -25,10 +25,10 @@ from scope_ptz.store.rows import UNFINISHED
 from scope_ptz.tools.registry import TOOLS, parse_call
 
 MAX_WAIT_S = 30.0
-"""Maximum time for which ``run_status`` waits for the end of a run. Many clients give up on a call after 60 s."""
+"""Maximum time, in seconds, for which ``run_status`` waits for a run to end. Many clients abort a call after 60 s."""
 
 MAX_LINES = 10
-"""Maximum number of steps and answers in the plain text of a report. The structured result contains all of them."""
+"""Maximum number of steps and answers in a report's plain text. The structured result contains all of them."""
 
 _EFFECTS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False, open_world_hint=True)
 _READS = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=True)
@@ -131,53 +131,53 @@ def _start_schema(cameras: Sequence[str]) -> dict[str, Any]:
 
 
 async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(Ask, "ask", arguments)
-    station, fields = call.site.station(given.camera), given.model_dump(exclude={"picture"})
+    parsed = parse_arguments(Ask, "ask", arguments)
+    station, fields = call.site.station(parsed.camera), parsed.model_dump(exclude={"picture"})
     handle = await follow(call, station, start_instruction(call.site, call.client, **fields))
     if handle.failure is not None:
         raise handle.failure
-    return await _run_result(call, handle.id, picture=given.picture)
+    return await _run_result(call, handle.id, picture=parsed.picture)
 
 
 async def _start(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(StartRun, "start_run", arguments)
-    if (given.instruction is None) == (given.tool is None):
+    parsed = parse_arguments(StartRun, "start_run", arguments)
+    if (parsed.instruction is None) == (parsed.tool is None):
         raise ToolCallError("Wrong arguments for start_run: give either instruction or tool.")
-    if given.instruction is not None:
-        fields = given.model_dump(include={"camera", "conversation", "pair", "dry_run"})
-        handle = await start_instruction(call.site, call.client, instruction=given.instruction, **fields)
+    if parsed.instruction is not None:
+        fields = parsed.model_dump(include={"camera", "conversation", "pair", "dry_run"})
+        handle = await start_instruction(call.site, call.client, instruction=parsed.instruction, **fields)
         return await _run_result(call, handle.id, picture=False)
-    if given.conversation is not None or given.dry_run:
+    if parsed.conversation is not None or parsed.dry_run:
         raise ToolCallError("Wrong arguments for start_run: conversation and dry_run apply to instructions, not to tools.")
-    station, tool = call.site.station(given.camera), str(given.tool)
-    parse_call(tool, given.arguments)
-    handle = await start_tool_call(call.site, call.client, station, tool, given.arguments, given.pair)
+    station, tool = call.site.station(parsed.camera), str(parsed.tool)
+    parse_call(tool, parsed.arguments)
+    handle = await start_tool_call(call.site, call.client, station, tool, parsed.arguments, parsed.pair)
     return await _run_result(call, handle.id, picture=False)
 
 
 async def _status(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(RunStatus, "run_status", arguments)
-    handle = call.site.runner.find(given.run)
-    if handle is not None and given.wait_s > 0:
-        with anyio.move_on_after(given.wait_s):
+    parsed = parse_arguments(RunStatus, "run_status", arguments)
+    handle = call.site.runner.find(parsed.run)
+    if handle is not None and parsed.wait_s > 0:
+        with anyio.move_on_after(parsed.wait_s):
             await handle.done.wait()
-    return await _run_result(call, given.run, picture=handle is None or handle.done.is_set())
+    return await _run_result(call, parsed.run, picture=handle is None or handle.done.is_set())
 
 
 async def _cancel(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(CancelRun, "cancel_run", arguments)
-    if (handle := call.site.runner.find(given.run)) is not None:
+    parsed = parse_arguments(CancelRun, "cancel_run", arguments)
+    if (handle := call.site.runner.find(parsed.run)) is not None:
         handle.cancel()
         with anyio.move_on_after(MAX_WAIT_S):
             await handle.done.wait()
-    return await _run_result(call, given.run, picture=False)
+    return await _run_result(call, parsed.run, picture=False)
 
 
 async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(StartConversation, "start_conversation", arguments)
+    parsed = parse_arguments(StartConversation, "start_conversation", arguments)
     site = call.site
-    camera, pair = site.station(given.camera).name, site.pairs.check(given.pair)
-    title = given.title.encode("utf-8", "replace").decode()
+    camera, pair = site.station(parsed.camera).name, site.pairs.check(parsed.pair)
+    title = parsed.title.encode("utf-8", "replace").decode()
     add = partial(add_conversation, site.journal.store.database, camera=camera, pair=pair, owner=call.client.name, title=title)
     row = await site.journal.in_thread(add)
     text = f"Started the conversation {row.id} about {camera}. Pass conversation='{row.id}' to ask or start_run."
@@ -185,7 +185,7 @@ async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallTool
 
 
 async def _run_result(call: Call, run: str, *, picture: bool) -> CallToolResult:
-    """Return the state of a run, with links, and with its last picture if requested."""
+    """Return a run's state with links and, if requested, its last picture."""
     report = await run_report(call.site, run)
     content: list[ContentBlock] = [run_link(run)]
     names = [uri.partition(f"{run}/")[2] for uri in report.pictures]
@@ -210,4 +210,4 @@ def _text(report: RunReport) -> str:
     ]
     if answer := report.answer.untrusted_picture_text:
         lines.append(f"Answer: {answer}")
-    return f"{head}\n{between_markers(chr(10).join(lines[-MAX_LINES:]))}" if lines else head
+    return f"{head}\n{enclose_in_markers(chr(10).join(lines[-MAX_LINES:]))}" if lines else head

@@ -112,8 +112,8 @@ async def _list(call: Call, arguments: dict[str, Any]) -> CallToolResult:
 
 
 async def _state(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(OneCamera, "camera_state", arguments)
-    state = await camera_state(call.site, call.site.station(given.camera), call.client)
+    parsed = parse_arguments(OneCamera, "camera_state", arguments)
+    state = await camera_state(call.site, call.site.station(parsed.camera), call.client)
     return reply(_state_text(state), state)
 
 
@@ -134,18 +134,18 @@ def _state_text(state: CameraState) -> str:
 
 
 async def _picture(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(LivePicture, "live_picture", arguments)
-    frame = await (await call.site.station(given.camera).camera()).frame()
-    jpeg = await to_thread.run_sync(lambda: fitting_jpeg(frame.image, MAX_PICTURE_BYTES, given.width))
-    view = LiveView(camera=given.camera, pose=PoseModel.of(frame.pose), hfov_deg=frame.hfov_deg, time_s=frame.time_s)
+    parsed = parse_arguments(LivePicture, "live_picture", arguments)
+    frame = await (await call.site.station(parsed.camera).camera()).frame()
+    jpeg = await to_thread.run_sync(lambda: fitting_jpeg(frame.image, MAX_PICTURE_BYTES, parsed.width))
+    view = LiveView(camera=parsed.camera, pose=PoseModel.of(frame.pose), hfov_deg=frame.hfov_deg, time_s=frame.time_s)
     notice = NOTICE.replace("between these markers", "in the picture")
-    return reply(f"{given.camera} now: {pose_text(Arrival(frame.pose))}. {notice}", view, image_content(jpeg))
+    return reply(f"{parsed.camera} now: {pose_text(Arrival(frame.pose))}. {notice}", view, image_content(jpeg))
 
 
 async def _control(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(ControlCamera, "control_camera", arguments)
-    station = call.site.station(given.camera)
-    if given.action == "take":
+    parsed = parse_arguments(ControlCamera, "control_camera", arguments)
+    station = call.site.station(parsed.camera)
+    if parsed.action == "take":
         await station.control.ask(call.client, await station.camera())
     else:
         await station.control.release(call.client)
@@ -154,7 +154,7 @@ async def _control(call: Call, arguments: dict[str, Any]) -> CallToolResult:
         text = f"You control {station.name}."
     elif now.holder is None:
         text = f"Nobody controls {station.name}."
-    elif given.action == "take":
+    elif parsed.action == "take":
         text = f"{station.name} is controlled by {display_name(now.holder)}, who has been asked to hand it over."
     else:
         text = f"{station.name} is controlled by {display_name(now.holder)}."
@@ -162,7 +162,7 @@ async def _control(call: Call, arguments: dict[str, Any]) -> CallToolResult:
 
 
 async def _stop(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-    given = parse_arguments(OneCamera, "stop_camera", arguments)
-    station = call.site.station(given.camera)
+    parsed = parse_arguments(OneCamera, "stop_camera", arguments)
+    station = call.site.station(parsed.camera)
     await station.stop()
     return reply(f"{station.name} is stopped.", StoppedCamera(camera=station.name))

@@ -1,4 +1,4 @@
-"""The folder of one evaluation: its record, progress files, logs and report."""
+"""An evaluation's folder, with its record, progress files, logs and report."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ _PREFIX = "scope: "
 """The prefix of each message that the command line prints to stderr."""
 
 State = Literal["running", "finished", "cancelled", "failed", "interrupted"]
-"""State of an evaluation. ``failed``: its process ended with an error; ``interrupted``: it was killed, or the machine shut down."""
+"""An evaluation's state. ``failed``: its process ended with an error. ``interrupted``: it was killed, or the machine shut down."""
 
 
 class EvaluationRecord(BaseModel):
-    """The stored record of an evaluation: its options, who started it, and how its process ended.
+    """An evaluation's stored record: its options, the client that started it, and its process's exit code.
 
     Attributes:
-        id: The name of its folder.
+        id: Name of the evaluation's folder.
         pair: The pair of models.
-        split: The split of the dataset.
+        split: The dataset split.
         limit: Maximum number of tasks; None for all.
         categories: The categories; all if empty.
-        started: The time at which it was first started.
-        resumed: The number of times it was resumed.
-        actor: The name of the client that started it.
+        started: When the evaluation was first started.
+        resumed: How many times it was resumed.
+        actor: Name of the client that started it.
         cancelled: Whether a client cancelled it.
-        exit_code: Exit code of the last process; None while the process runs, or if the server ended before it.
+        exit_code: Exit code of the last process; None while the process is running, or if the server ended before the process did.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -53,7 +53,7 @@ class EvaluationRecord(BaseModel):
 
 
 class EvaluationFolder:
-    """The files of one evaluation. No part of a path comes from a request.
+    """An evaluation's files. No part of a path comes from a request.
 
     Args:
         path: The folder.
@@ -103,7 +103,7 @@ class EvaluationFolder:
             return False
 
     def state(self) -> ProgressState | None:
-        """Return the progress of the evaluation; None if it has not stored any yet."""
+        """Return the evaluation's progress; None if none has been stored yet."""
         try:
             return ProgressState.model_validate_json((self.progress / STATE_FILE).read_bytes())
         except (OSError, ValidationError):
@@ -125,16 +125,16 @@ class EvaluationFolder:
 
     def newest_log(self) -> Path | None:
         """Return the most recently modified log; None if there is none."""
-        logs = [(modified(path), path) for path in self.logs.glob("*.eval")]
+        logs = [(modification_time_s(path), path) for path in self.logs.glob("*.eval")]
         return max(logs)[1] if logs else None
 
     def report_page(self) -> Path | None:
-        """Return the first page of the report; None if there is no report, or if it is older than the log."""
+        """Return the report's first page; None if there is no report or if it is older than the log."""
         page, log = self.report / "index.html", self.newest_log()
-        return page if page.is_file() and log is not None and modified(page) >= modified(log) else None
+        return page if page.is_file() and log is not None and modification_time_s(page) >= modification_time_s(log) else None
 
     def report_file(self, part: str, name: str) -> Path | None:
-        """Return a file of the report; None if it does not exist.
+        """Return a report file; None if it does not exist.
 
         ``part`` and ``name`` come from a request, so they are compared with the existing names and never become part of a path.
         """
@@ -146,8 +146,8 @@ class EvaluationFolder:
         return next((each for each in folder.iterdir() if each.name == name and each.is_file() and not each.is_symlink()), None)
 
 
-def modified(path: Path) -> float:
-    """Return the modification time of a file; 0 if it does not exist, which happens while logs are merged."""
+def modification_time_s(path: Path) -> float:
+    """Return the modification time of a file in seconds since 1970; 0 if it does not exist, which happens while logs are merged."""
     try:
         return path.stat().st_mtime
     except OSError:
@@ -155,7 +155,7 @@ def modified(path: Path) -> float:
 
 
 def last_message(path: Path) -> str:
-    """Return the last line in the stderr file of a command, without the prefix of messages; empty if there is none."""
+    """Return the last line in a command's stderr file, without the message prefix; empty if there is none."""
     try:
         text = path.read_text("utf-8", errors="replace")[-20_000:]
     except OSError:

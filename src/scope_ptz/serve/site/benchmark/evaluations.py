@@ -25,11 +25,11 @@ from scope_ptz.serve.site.errors import EvaluationRunningError
 from scope_ptz.serve.site.pairs import DEFAULT_PAIR
 
 FOLDER = "evaluations"
-"""Name of the folder in the runs folder that contains the evaluations."""
+"""Name of the folder, inside the runs folder, that contains the evaluations."""
 KILL_AFTER_S = 20.0
-"""Seconds that a cancelled evaluation has to write its log. If it is still running afterwards, it is killed."""
+"""Seconds that a cancelled evaluation has to write its log. If it is still running after that, it is killed."""
 NICENESS = 10
-"""Nice value of the processes of evaluations, so that live pictures have priority over them."""
+"""Nice value for evaluation processes, so that live pictures have priority over them."""
 
 ReportState = Literal["none", "making", "ready", "failed"]
 logger = logging.getLogger(__name__)
@@ -37,15 +37,15 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class EvaluationStatus:
-    """The current status of an evaluation.
+    """An evaluation's current status.
 
     Attributes:
-        record: Its stored record.
-        state: Its state.
-        progress: Its counts and scores so far; None if it has not stored any yet.
-        message: The error message if it failed; empty otherwise.
-        can_resume: Whether it has ended and has missing or broken runs.
-        report: The state of its report.
+        record: The stored record.
+        state: The evaluation's state.
+        progress: Counts and scores so far; None if none have been stored yet.
+        message: The error message if the evaluation failed; empty otherwise.
+        can_resume: Whether the evaluation has ended and has missing or broken runs.
+        report: The report's state.
         report_message: The error message if writing the report failed; empty otherwise.
     """
 
@@ -60,11 +60,11 @@ class EvaluationStatus:
 
 @dataclass(frozen=True, slots=True)
 class EvaluationRequest:
-    """The options of a new evaluation. The names must already be validated.
+    """The options for a new evaluation. The names must already be validated.
 
     Attributes:
         pair: The pair of models.
-        split: The split of the dataset.
+        split: The dataset split.
         limit: Maximum number of tasks; None for all.
         categories: The categories; all if empty.
     """
@@ -76,7 +76,7 @@ class EvaluationRequest:
 
 
 class Evaluations:
-    """The evaluations of a server. The methods block, so call them in worker threads.
+    """A server's evaluations. The methods block, so call them in worker threads.
 
     Args:
         runs_dir: The runs folder.
@@ -89,7 +89,7 @@ class Evaluations:
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
         self._reports: dict[str, subprocess.Popen[bytes]] = {}
         self._report_failures: dict[str, str] = {}
-        self._starting = threading.Lock()
+        self._start_lock = threading.Lock()
 
     def ids(self) -> list[str]:
         """Return the ids of all evaluations, newest first."""
@@ -98,7 +98,7 @@ class Evaluations:
         return sorted((each.name for each in self.root.iterdir() if each.is_dir() and not each.is_symlink()), reverse=True)
 
     def folder(self, evaluation: str) -> EvaluationFolder:
-        """Return the folder of an evaluation.
+        """Return an evaluation's folder.
 
         Raises:
             UnknownNameError: There is no such evaluation.
@@ -119,7 +119,7 @@ class Evaluations:
         return statuses
 
     def status(self, evaluation: str) -> EvaluationStatus:
-        """Return the current status of an evaluation.
+        """Return an evaluation's current status.
 
         Raises:
             UnknownNameError: There is no such evaluation.
@@ -153,9 +153,9 @@ class Evaluations:
 
         Raises:
             EvaluationRunningError: Another evaluation is in progress.
-            OutputError: The folder cannot be written, or the process cannot be started.
+            OutputError: The folder cannot be written to, or the process cannot be started.
         """
-        with self._starting:
+        with self._start_lock:
             self._check_idle()
             now = datetime.now(UTC)
             name = f"{now:%Y%m%dT%H%M%SZ}-{request.split}-{secrets.token_hex(3)}"
@@ -178,7 +178,7 @@ class Evaluations:
         return name
 
     def resume(self, evaluation: str) -> None:
-        """Resume an evaluation that has ended: execute its missing and broken runs.
+        """Resume an evaluation that has ended: run its missing and broken runs.
 
         Raises:
             UnknownNameError: There is no such evaluation.
@@ -186,7 +186,7 @@ class Evaluations:
             EvaluationRunningError: An evaluation is in progress.
             InputError: No run is missing or broken.
         """
-        with self._starting:
+        with self._start_lock:
             self._check_idle()
             status, folder = self.status(evaluation), self.folder(evaluation)
             if not status.can_resume:
@@ -217,25 +217,25 @@ class Evaluations:
             EvaluationRunningError: The evaluation is in progress, or its report is being written.
         """
         folder = self.folder(evaluation)
-        with self._starting:
+        with self._start_lock:
             if self._is_running(folder) or evaluation in self._reports:
                 raise EvaluationRunningError(evaluation)
             shutil.rmtree(folder.path, ignore_errors=True)
 
     def make_report(self, evaluation: str) -> None:
-        """Start writing the report of an evaluation, unless the report is up to date or already being written.
+        """Start writing an evaluation's report, unless the report is up to date or already being written.
 
         Raises:
             UnknownNameError: There is no such evaluation.
             InputError: No run has finished yet.
         """
         folder = self.folder(evaluation)
-        with self._starting:
+        with self._start_lock:
             if evaluation in self._reports or folder.report_page() is not None:
                 return
             log = folder.newest_log()
             if log is None or folder.state() is None or not folder.trials():
-                raise InputError("No run of this evaluation has finished yet. Make the report after the first one.")
+                raise InputError("No run of this evaluation has finished yet. Create the report after the first run.")
             self._report_failures.pop(evaluation, None)
             command = [*self._program, "bench", "report", str(log.resolve()), "--out", str(folder.report.resolve())]
             process = _spawn(command, folder.path / "report-output.txt", folder.report_errors)
@@ -293,7 +293,7 @@ class Evaluations:
         if process is not None and process.poll() is None:
             process.send_signal(number)
         elif folder.is_locked() and (state := folder.state()) is not None:
-            # Another server started this process. While the lock is held, the process exists, so its id cannot have been reused.
+            # Another server started this process. While the lock is held, the process exists, so its process id cannot be reused.
             with suppress(ProcessLookupError):
                 os.kill(state.pid, number)
 

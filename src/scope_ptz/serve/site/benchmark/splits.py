@@ -1,4 +1,4 @@
-"""The splits that can be evaluated, with their task counts by category, and the packages that evaluations need."""
+"""The splits that can be evaluated, with task counts by category, and the packages that evaluations need."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_ptz.bench.tasks.splits import SPLITS, load_split
 from scope_ptz.errors import InputError
 
 PACKAGES = ("inspect_ai", "jinja2", "matplotlib", "scipy")
-"""Packages of the ``bench`` extra that evaluations import."""
+"""Packages from the ``bench`` extra that evaluations import."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Read the steps and pictures of individual runs from the log of an evaluation."""
+"""Read the steps and pictures of individual runs from an evaluation's log."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from scope_ptz.agent.trace import picture_names
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import TraceError, UnknownNameError
-from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder, modified
+from scope_ptz.serve.site.benchmark.evaluation_folder import EvaluationFolder, modification_time_s
 from scope_ptz.serve.site.benchmark.splits import missing_packages
 from scope_ptz.serve.site.marks import call_for_picture, draw_marks, marks_of
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.sample_files import SampleFiles
 
 MAX_CACHED_RUNS = 4
-"""Maximum number of runs that are cached in memory, with their pictures."""
+"""Maximum number of runs to cache in memory, with their pictures."""
 
 
 class Trajectories:
-    """Reads runs of evaluations.
+    """Reads runs from evaluations.
 
-    The most recently read runs are cached, because clients request each picture of a run separately.
+    The most recently read runs are cached, because clients request each of a run's pictures separately.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class Trajectories:
         self._lock = threading.Lock()
 
     def trace(self, folder: EvaluationFolder, trial: Trial) -> Trace:
-        """Return the trace of a run.
+        """Return a run's trace.
 
         Raises:
             TraceError: The log does not contain the run yet, or a package is missing.
@@ -40,7 +40,7 @@ class Trajectories:
         return self._sample(folder, trial).trace
 
     def picture(self, folder: EvaluationFolder, trial: Trial, name: str, *, marks: bool) -> bytes:
-        """Return a picture of a run as JPEG. With ``marks``, draw the detections on it.
+        """Return a picture from a run as JPEG. With ``marks``, draw the detections on it.
 
         Raises:
             UnknownNameError: The run has no such picture.
@@ -62,7 +62,7 @@ class Trajectories:
         log = folder.newest_log()
         if log is None:
             raise TraceError("The evaluation has no log yet.")
-        key = (folder.path.name, trial.sample, modified(log))
+        key = (folder.path.name, trial.sample, modification_time_s(log))
         with self._lock:
             if key in self._open:
                 self._open.move_to_end(key)
@@ -81,7 +81,7 @@ class Trajectories:
 
 
 def steps_of(trace: Trace) -> list[dict[str, Any]]:
-    """Return the tool calls of a run as JSON data: tool, arguments, message, error flag, duration, and pictures."""
+    """Return a run's tool calls as JSON data: tool, arguments, message, error flag, duration and pictures."""
     names = picture_names(trace)
     steps = []
     for position, call in enumerate(trace.calls):

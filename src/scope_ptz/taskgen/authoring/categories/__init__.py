@@ -1,1 +1,1 @@
-"""Drafts by task category: one module per category, plus modules for absence/presence pairs and for comparisons of presets."""
+"""Drafts by task category: one module per category, plus modules for absence/presence pairs and for preset comparisons."""

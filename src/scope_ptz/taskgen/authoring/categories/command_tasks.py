@@ -7,10 +7,18 @@ from collections.abc import Iterator
 
 from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
-from scope_ptz.taskgen.authoring.categories.single_call_tasks import command
+from scope_ptz.taskgen.authoring.categories.single_call_tasks import command_draft
 from scope_ptz.taskgen.authoring.drafts import TaskDraft
-from scope_ptz.taskgen.authoring.noun_phrases import capital
-from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
+from scope_ptz.taskgen.authoring.noun_phrases import capitalise
+from scope_ptz.taskgen.authoring.task_places import (
+    ScenePlaces,
+    TaskPlace,
+    adjust_call,
+    apply_adjustment,
+    call_phrases,
+    preset_call,
+    preset_position,
+)
 
 _SHOTS = ("take a picture", "take a photo", "save an image", "capture a still", "take a snapshot")
 _SHAPES = (
@@ -37,7 +45,7 @@ _SHAPES = (
     ("tilt", "shot", "home"),
     ("zoom", "turn", "shot", "preset"),
 )
-"""The shapes of commands: sequences of steps, which are filled with random presets and amounts. A shot is a picture."""
+"""The shapes of commands: sequences of steps, to which random presets and amounts are added. A shot is a picture."""
 
 _OPENINGS = (
     "{M}.",
@@ -55,17 +63,17 @@ def drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     names = list(places.presets)
     for n in range(60 * len(_SHAPES)):
         shape = _SHAPES[n % len(_SHAPES)]
-        draft = _command(places, shape, rng.choice(names), rng)
+        draft = _command_draft(places, shape, rng.choice(names), rng)
         if draft is not None:
             yield draft
 
 
-def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: random.Random) -> TaskDraft | None:
+def _command_draft(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: random.Random) -> TaskDraft | None:
     scene = places.scene
-    position = preset_at(places.presets[start])
+    position = preset_position(places.presets[start])
     program, visited = list[ProgramCall](), [start]
     for step in shape:
-        call = _step(step, places, visited, rng)
+        call = _step_call(step, places, visited, rng)
         if call is None:
             return None
         next_position = position_after(places, position, call)
@@ -73,7 +81,7 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
             return None
         position = next_position
         program.append(call)
-    origin = places.at_preset(start)
+    origin = places.place_at_preset(start)
     end = TaskPlace(scene, start, tuple(program), position)
     picture_count = shape.count("shot")
     if not picture_count and end.key == origin.key:
@@ -81,10 +89,10 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
     _step_phrases(program, rng)  # Published wordings depend on these random draws.
     variants = []
     for opening in _OPENINGS:
-        order = joined_in_order(_step_phrases(program, rng), rng)
-        variants.append(opening.format(m=order, M=capital(order)))
-    calls = tuple(required(c) for c in program) if picture_count else ()
-    return command(
+        order = join_in_order(_step_phrases(program, rng), rng)
+        variants.append(opening.format(m=order, M=capitalise(order)))
+    calls = tuple(required_call(c) for c in program) if picture_count else ()
+    return command_draft(
         "multi_step_command",
         "-".join(shape),
         f"steps:{[c.model_dump() for c in program]}",
@@ -92,7 +100,7 @@ def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: rando
         tuple(variants),
         tuple(program),
         Behaviour(final=end.final, calls=calls, pictures=picture_count),
-        needs_of(program),
+        collect_needs(program),
         ("picture",) if picture_count else (),
     )
 
@@ -102,13 +110,13 @@ def _step_phrases(program: list[ProgramCall], rng: random.Random) -> list[str]:
     return [rng.choice(_SHOTS) if c.tool == "take_image" else " and ".join(call_phrases(c, rng)) for c in program]
 
 
-def joined_in_order(parts: list[str], rng: random.Random) -> str:
+def join_in_order(parts: list[str], rng: random.Random) -> str:
     """Join steps with words for their order, because "and" alone would not specify it."""
     last = rng.choice((", then ", " and then ", " and after that "))
     return f"{', '.join(parts[:-1])}{last}{parts[-1]}"
 
 
-def required(call: ProgramCall) -> RequiredCall:
+def required_call(call: ProgramCall) -> RequiredCall:
     """Return the tool call that a run must contain for a step.
 
     The arguments of moves are not checked here, because the check of the final pose covers them.
@@ -118,7 +126,7 @@ def required(call: ProgramCall) -> RequiredCall:
     return RequiredCall(tool=call.tool)
 
 
-def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
+def collect_needs(program: list[ProgramCall]) -> tuple[Need, ...]:
     """Return the ways in which a program changes the view: by a preset, a move or a zoom."""
     needs: list[Need] = []
     for call in program:
@@ -134,26 +142,26 @@ def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
 def position_after(places: ScenePlaces, position: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Return the camera position after a call; None if a limit would clamp the move."""
     if call.tool == "go_to_preset":
-        return preset_at(places.presets[str(call.arguments["name"])])
+        return preset_position(places.presets[str(call.arguments["name"])])
     if call.tool == "go_home":
-        return preset_at(places.presets[places.scene.file.home_preset])
-    return move(position, call) if call.tool == "adjust_ptz" else position
+        return preset_position(places.presets[places.scene.file.home_preset])
+    return apply_adjustment(position, call) if call.tool == "adjust_ptz" else position
 
 
-def _step(step: str, places: ScenePlaces, visited: list[str], rng: random.Random) -> ProgramCall | None:
+def _step_call(step: str, places: ScenePlaces, visited: list[str], rng: random.Random) -> ProgramCall | None:
     match step:
         case "preset":
             unvisited = [p for p in places.presets if p not in visited]
             if not unvisited:
                 return None
             visited.append(rng.choice(unvisited))
-            return go(visited[-1])
+            return preset_call(visited[-1])
         case "home":
             return ProgramCall(tool="go_home")
         case "turn":
-            return adjust(rng.choice((-1, 1)) * rng.choice((10, 15, 18, 20, 25, 30, 40, 45, 60, 90)))
+            return adjust_call(rng.choice((-1, 1)) * rng.choice((10, 15, 18, 20, 25, 30, 40, 45, 60, 90)))
         case "tilt":
-            return adjust(0, rng.choice((-12, -10, -8, -5, 5, 6, 8)))
+            return adjust_call(0, rng.choice((-12, -10, -8, -5, 5, 6, 8)))
         case "zoom":
-            return adjust(factor=rng.choice((1.25, 1.5, 1.75, 2.0, 2.5, 3.0)))
+            return adjust_call(factor=rng.choice((1.25, 1.5, 1.75, 2.0, 2.5, 3.0)))
     return ProgramCall(tool="take_image")

@@ -8,41 +8,50 @@ from itertools import combinations, pairwise
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view, identical_forms
-from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, unit_of
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, identical_forms, query_call
+from scope_ptz.taskgen.authoring.noun_phrases import answer_words, join_names, object_words, plural_noun
 from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.view_contents import countable, disjoint, plain_counts
+from scope_ptz.taskgen.authoring.view_contents import are_disjoint, category_counts, countable_kinds
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 SAME = ("the same", "equal", "as many", "equally many")
 _MIN_DISTANCE_RATIO, _MIN_AREA_RATIO = 1.5, 2.5
-"""Minimum ratios of distances, and of areas in the picture, for an unambiguous comparison."""
+"""Minimum ratio between distances, and between areas in the picture, for an unambiguous comparison."""
 
 
 def drafts(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
-    """Return the drafts of comparisons within one view."""
-    return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_sizes(place, rng)]
+    """Return drafts that compare objects within one view."""
+    return [
+        *_two_kind_drafts(place, rng),
+        *_several_kind_drafts(place, rng),
+        *_distance_drafts(place, rng),
+        *_size_drafts(place, rng),
+    ]
 
 
-def _of_two(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield comparisons of the numbers of two kinds."""
+def _two_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield drafts that compare the counts of two kinds."""
     pairs = [
         (a, b)
-        for a, b in combinations(countable(place.truth), 2)
+        for a, b in combinations(countable_kinds(place.truth), 2)
         if not a[0].attribute
         and not b[0].attribute
         and bool(a[0].colour) == bool(b[0].colour) == (a[0].category == b[0].category)
         and min(a[1], b[1]) >= 2
         and a[1] + b[1] >= 5
-        and disjoint(place.truth, (a[0], b[0]))
+        and are_disjoint(place.truth, (a[0], b[0]))
     ]
     rng.shuffle(pairs)
     for n, pair in enumerate(pairs[:14]):
-        (first_kind, many), (second_kind, few) = rng.sample(pair, 2)
-        first, second = many_of(first_kind), many_of(second_kind)
-        evidence_views = tuple(count_evidence(place, kind, number) for kind, number in ((first_kind, many), (second_kind, few)))
-        kind, expected, question = (_excess, _more, _fewer, _number_relation, _whether_more)[n % 5](first, second, many, few)
+        (first_kind, first_count), (second_kind, second_count) = rng.sample(pair, 2)
+        first, second = plural_noun(first_kind), plural_noun(second_kind)
+        evidence_views = tuple(
+            count_evidence(place, kind, number) for kind, number in ((first_kind, first_count), (second_kind, second_count))
+        )
+        kind, expected, question = (_excess_question, _more_question, _fewer_question, _relation_question, _whether_more_question)[
+            n % 5
+        ](first, second, first_count, second_count)
         yield TaskDraft(
             category="comparative",
             question_type=kind,
@@ -53,7 +62,7 @@ def _of_two(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
             evidence=evidence_views,
             perception_calls=(count_call(first, place), count_call(second, place)),
             tags=("counts",),
-            weight=max(many, few),
+            weight=max(first_count, second_count),
             answer_key=_answer_key(expected),
         )
 
@@ -74,7 +83,7 @@ def _answer_key(expected: AnyExpected) -> str:
     return expected.kind
 
 
-def _more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+def _more_question(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     winner = "same" if n == m else first if n > m else second
     expected = Choice(value=winner, options={first: (), second: (), "same": SAME}, picks=("more", "most"))
     forms = (
@@ -85,9 +94,9 @@ def _more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     return "more", expected, Question(forms)
 
 
-def _fewer(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+def _fewer_question(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     if n == m:
-        return _number_relation(first, second, n, m)
+        return _relation_question(first, second, n, m)
     expected = Choice(
         value=first if n < m else second, options={first: (), second: (), "same": SAME}, picks=("fewer", "fewest", "less", "least")
     )
@@ -98,9 +107,9 @@ def _fewer(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     return "fewer", expected, Question(forms)
 
 
-def _excess(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+def _excess_question(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     if n <= m:
-        return _number_relation(first, second, n, m)
+        return _relation_question(first, second, n, m)
     forms = (
         (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
         (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
@@ -109,7 +118,7 @@ def _excess(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     return "excess", Number(value=n - m), Question(forms)
 
 
-def _number_relation(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+def _relation_question(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     expected = Relation(
         value="same" if n == m else "forward" if n > m else "backward", subject=(first,), object=(second,),
         forward=("more", "greater", "higher"), backward=("fewer", "smaller", "lower", "less"), same=SAME,
@@ -123,7 +132,7 @@ def _number_relation(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     return "compare", expected, Question(forms)
 
 
-def _whether_more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+def _whether_more_question(first: str, second: str, n: int, m: int) -> _TypedQuestion:
     expected = YesNo(value=n > m)
     forms = (
         (f"are there more {first} than {second}?", f"whether there are more {first} than {second}"),
@@ -135,24 +144,25 @@ def _whether_more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
 def count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
     """Return a view as evidence for the number of objects of a kind."""
     items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
-    return evidence_view(place, Number(value=number, unit=unit_of(kind)), about(kind), items, whole=True)
+    return evidence_view(place, Number(value=number, unit=answer_words(kind)), object_words(kind), items, whole=True)
 
 
-def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+def _several_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the most numerous of four kinds, and about the order of three kinds by number."""
-    plain = [(kind, n) for kind, n in plain_counts(place.truth) if kind.category not in GROUPS]
+    plain = [(kind, n) for kind, n in category_counts(place.truth) if kind.category not in GROUPS]
     for size, most in ((3, 4), (4, 4)):
         groups = [
             group
             for group in combinations(plain, size)
-            if _distinct([n for _, n in group], whole=size == 3) and disjoint(place.truth, [kind for kind, _ in group])
+            if _is_unambiguous([n for _, n in group], full_ranking=size == 3)
+            and are_disjoint(place.truth, [kind for kind, _ in group])
         ]
         rng.shuffle(groups)
         for group in groups[:most]:
-            ranked = tuple(many_of(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
+            ranked = tuple(plural_noun(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
             shuffled = rng.sample(group, size)
-            names = [many_of(kind) for kind, _ in shuffled]
-            question, expected = _ranking(names, ranked) if size == 3 else _most(names, ranked[0])
+            names = [plural_noun(kind) for kind, _ in shuffled]
+            question, expected = _ranking_question(names, ranked) if size == 3 else _most_question(names, ranked[0])
             yield TaskDraft(
                 category="comparative",
                 question_type="ranking" if size == 3 else "most-of",
@@ -168,14 +178,14 @@ def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
             )
 
 
-def _distinct(numbers: Sequence[int], *, whole: bool) -> bool:
-    """Return whether all numbers differ (with ``whole``), or whether the greatest number occurs only once."""
-    return len(set(numbers)) == len(numbers) if whole else numbers.count(max(numbers)) == 1
+def _is_unambiguous(numbers: Sequence[int], *, full_ranking: bool) -> bool:
+    """Return whether all numbers differ (with ``full_ranking``), or whether the greatest number occurs only once."""
+    return len(set(numbers)) == len(numbers) if full_ranking else numbers.count(max(numbers)) == 1
 
 
-def _ranking(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Ordering]:
+def _ranking_question(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Ordering]:
     expected = Ordering(value=ranked, options=dict.fromkeys(ranked, ()), first=("most",), last=("fewest",))
-    listed = listing(names)
+    listed = join_names(names)
     forms = (
         (f"how do {listed} rank by number, from most to fewest?", f"how {listed} rank by number, from most to fewest"),
         (f"put {listed} in order of how many there are, the most first.",
@@ -184,13 +194,13 @@ def _ranking(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Order
     return Question(forms), expected
 
 
-def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
-    listed = listing(names, "or")
+def _most_question(names: list[str], winner: str) -> tuple[Question, Choice]:
+    listed = join_names(names, "or")
     expected = Choice(value=winner, options=dict.fromkeys(names, ()), picks=("most", "more"))
     return Question(identical_forms(f"what is there most of: {listed}?", f"which are the most numerous: {listed}?")), expected
 
 
-def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+def _distance_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the nearest or farthest of two to four objects, and about the order of three by distance."""
     if place.swept:
         return
@@ -201,12 +211,12 @@ def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
             if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _MIN_DISTANCE_RATIO:
                 names = [target.the for target in rng.sample(group, size)]
-                yield from _by_distance(place, ranked, names, rng)
+                yield from _drafts_by_distance(place, ranked, names, rng)
 
 
-def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], rng: random.Random) -> Iterator[TaskDraft]:
+def _drafts_by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], rng: random.Random) -> Iterator[TaskDraft]:
     options: Options = {target.name: () for target in ranked}
-    either = listing(names, "or")
+    either = join_names(names, "or")
     near = rng.random() < 0.5
     phrase, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
     if len(ranked) == 2:
@@ -214,7 +224,7 @@ def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], r
     picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
     choice = Choice(value=winner.name, options=options, picks=picks)
     question = Question(identical_forms(f"which is {phrase} the camera, {either}?", f"what is {phrase} the camera: {either}?"))
-    yield _comparison(
+    yield _comparison_draft(
         place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, question, ranked, "distance"
     )
     if len(ranked) == 3:
@@ -224,14 +234,14 @@ def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], r
             first=("nearest", "closest"),
             last=("farthest", "furthest"),
         )
-        listed = listing(names)
-        yield _comparison(place, "by-distance", order, Question((
+        listed = join_names(names)
+        yield _comparison_draft(place, "by-distance", order, Question((
             (f"put {listed} in order of distance, the nearest first.", f"the order of {listed} by distance, the nearest first"),
             (f"from nearest to farthest, how are {listed} placed?", f"how {listed} are placed, from nearest to farthest"),
         )), ranked, "distance")  # fmt: skip
 
 
-def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+def _size_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about which of three or four objects looks largest in the picture."""
     if place.swept:
         return
@@ -241,7 +251,7 @@ def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
         ranked = sorted(group, key=lambda target: areas[target.name][0], reverse=True)
         if min(areas[ranked[0].name]) < _MIN_AREA_RATIO * max(max(areas[target.name]) for target in ranked[1:]):
             continue
-        either = listing([target.the for target in rng.sample(group, len(group))], "or")
+        either = join_names([target.the for target in rng.sample(group, len(group))], "or")
         expected = Choice(
             value=ranked[0].name, options={target.name: () for target in ranked}, picks=("largest", "biggest", "most")
         )
@@ -252,20 +262,20 @@ def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
                 f"which appears biggest in the frame: {either}?",
             )
         )
-        yield _comparison(place, "largest", expected, question, ranked, "size")
+        yield _comparison_draft(place, "largest", expected, question, ranked, "size")
 
 
 def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tuple[NamedThing, ...]]:
-    """Return up to twelve groups of objects of different categories."""
+    """Return up to twelve groups of objects from different categories."""
     groups = [g for g in combinations(named[:12], size) if len({target.kind.category for target in g}) == size]
     rng.shuffle(groups)
     return groups[:12]
 
 
-def _comparison(
+def _comparison_draft(
     place: TaskPlace, kind: str, expected: Choice | Ordering, question: Question, things: list[NamedThing], tag: str
 ) -> TaskDraft:
-    """Return the draft of a comparison of single objects in one view."""
+    """Return a draft that compares single objects in one view."""
     ids = "/".join(sorted(target.thing.instance.id for target in things))
     measures = [target.thing.distance_m if tag == "distance" else float(target.thing.pixels) for target in things]
     items = [place.truth.item(target.thing, measure) for target, measure in zip(things, measures, strict=True)]
@@ -278,7 +288,7 @@ def _comparison(
         expected=expected,
         question=question,
         evidence=(evidence_view(place, expected, tuple(word for target in things for word in target.words), items, whole=False),),
-        perception_calls=tuple(ask_call(f"{lookup} {target.the}?", place) for target in things),
+        perception_calls=tuple(query_call(f"{lookup} {target.the}?", place) for target in things),
         tags=(tag,),
         weight=len(things),
         answer_key=_answer_key(expected),

@@ -6,15 +6,15 @@ import random
 
 from scope_ptz.bench.tasks.expected import NoneThere, Number
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, scope_of
-from scope_ptz.taskgen.authoring.noun_phrases import about, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import answer_words, object_words, plural_noun, singular_noun
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable_kinds, scene_kinds_first
 from scope_ptz.taskgen.facts.kinds import Kind
 
 
-def question(kind: Kind) -> Question:
+def count_question(kind: Kind) -> Question:
     """Return wordings of the question "how many are there?" for a kind of object."""
-    many = many_of(kind)
+    many = plural_noun(kind)
     return Question(
         (
             (f"how many {many} are there?", f"how many {many} there are"),
@@ -29,7 +29,7 @@ def question(kind: Kind) -> Question:
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
     """Return a draft for every countable kind at a place, and drafts for absent kinds, each paired with a present one."""
     truth = place.truth
-    about_present = [_draft(place, kind, n) for kind, n in countable(truth)]
+    about_present = [_count_draft(place, kind, n) for kind, n in countable_kinds(truth)]
     twins = list(about_present)
     rng.shuffle(twins)
     missing = scene_kinds_first(place, absent_kinds(truth, nouns), rng)
@@ -37,12 +37,12 @@ def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[
         TaskDraft(
             category="counting",
             question_type="none",
-            key=f"count:{noun_of(kind)}",
+            key=f"count:{singular_noun(kind)}",
             place=place,
-            expected=(expected := NoneThere(subject=unit_of(kind)[:2])),
-            question=question(kind),
-            evidence=(evidence_view(place, expected, about(kind), whole=True),),
-            perception_calls=(count_call(many_of(kind), place),),
+            expected=(expected := NoneThere(subject=answer_words(kind)[:2])),
+            question=count_question(kind),
+            evidence=(evidence_view(place, expected, object_words(kind), whole=True),),
+            perception_calls=(count_call(plural_noun(kind), place),),
             tags=("none-there", scope_of(place)),
             twin=twin,
             answer_key="none",
@@ -52,19 +52,19 @@ def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[
     return [*about_present, *about_absent]
 
 
-def _draft(place: TaskPlace, kind: Kind, count: int) -> TaskDraft:
+def _count_draft(place: TaskPlace, kind: Kind, count: int) -> TaskDraft:
     """Return a draft that asks for the number of objects of a kind that is present."""
     things = place.truth.all_of(kind) or ()
-    expected = Number(value=count, unit=unit_of(kind))
+    expected = Number(value=count, unit=answer_words(kind))
     return TaskDraft(
         category="counting",
         question_type="all-around" if place.swept else "coloured" if kind.colour else "in-state" if kind.attribute else "count",
-        key=f"count:{noun_of(kind)}",
+        key=f"count:{singular_noun(kind)}",
         place=place,
         expected=expected,
-        question=question(kind),
-        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
-        perception_calls=(count_call(many_of(kind), place),),
+        question=count_question(kind),
+        evidence=(evidence_view(place, expected, object_words(kind), [place.truth.item(t, True) for t in things], whole=True),),
+        perception_calls=(count_call(plural_noun(kind), place),),
         tags=(scope_of(place),),
         weight=count,
         answer_key=str(count),

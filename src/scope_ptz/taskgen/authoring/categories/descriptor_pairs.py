@@ -8,35 +8,35 @@ from dataclasses import replace
 
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, query_call
 from scope_ptz.taskgen.authoring.noun_phrases import (
-    about,
-    article,
+    all_wordings,
+    answer_words,
     colour_options,
-    many_of,
-    noun_of,
+    object_words,
     plain_colour,
-    plural,
-    the,
-    unit_of,
-    wordings,
+    plural_noun,
+    pluralise,
+    singular_noun,
+    with_article,
+    with_the,
 )
 from scope_ptz.taskgen.authoring.object_names import unique_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
-from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, own_colour, similar_colours
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable_kinds, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import Kind, are_similar_colours, is_colour_visible, own_colour
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about presence, about a given colour, and about the colour of objects that may be absent."""
-    yield from _presence(place, nouns, rng)
-    yield from _coloured_or_not(place, rng)
-    yield from _colour_if_there(place, nouns, rng)
+    yield from _presence_drafts(place, nouns, rng)
+    yield from _colour_check_drafts(place, rng)
+    yield from _conditional_colour_drafts(place, nouns, rng)
 
 
-def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+def _presence_drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about whether an absent object is there, each with a twin about a present one."""
-    present = [kind for kind, _ in countable(place.truth)]
+    present = [kind for kind, _ in countable_kinds(place.truth)]
     rng.shuffle(present)
     missing = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
     for present_kind, absent_kind in zip(present, missing, strict=False):
@@ -45,8 +45,8 @@ def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> It
 
 
 def _presence_draft(place: TaskPlace, kind: Kind, *, is_present: bool, twin: TaskDraft | None = None) -> TaskDraft:
-    one, many = noun_of(kind), many_of(kind)
-    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if is_present else NoneThere(subject=unit_of(kind)[:2])
+    one, many = singular_noun(kind), plural_noun(kind)
+    expected = YesNo(value=True, affirms=answer_words(kind)[:2]) if is_present else NoneThere(subject=answer_words(kind)[:2])
     things = (place.truth.all_of(kind) or ())[:1] if is_present else ()
     return TaskDraft(
         category="descriptor",
@@ -56,28 +56,30 @@ def _presence_draft(place: TaskPlace, kind: Kind, *, is_present: bool, twin: Tas
         expected=expected,
         question=Question(
             (
-                (f"is there {article(one)}?", f"whether there is {article(one)}"),
+                (f"is there {with_article(one)}?", f"whether there is {with_article(one)}"),
                 (f"are there any {many}?", f"whether there are any {many}"),
-                (f"can you see {article(one)}?", f"if you can see {article(one)}"),
+                (f"can you see {with_article(one)}?", f"if you can see {with_article(one)}"),
                 (f"do you see any {many}?", f"whether you see any {many}"),
             )
         ),
-        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=not is_present),),
-        perception_calls=(ask_call(f"are there any {many}?", place),),
+        evidence=(
+            evidence_view(place, expected, object_words(kind), [place.truth.item(t, True) for t in things], whole=not is_present),
+        ),
+        perception_calls=(query_call(f"are there any {many}?", place),),
         tags=("presence",) if is_present else ("none-there",),
         twin=twin,
         answer_key="yes" if is_present else "none",
     )
 
 
-def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+def _colour_check_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about whether an object has a given colour: its own, or one that is clearly different."""
     for target in unique_things(place.truth, coloured=False, min_pixels=400):
         colour = plain_colour(own_colour(target.thing.instance))
-        if colour is None or colour in target.name or not colour_shows(target.thing.instance):
+        if colour is None or colour in target.name or not is_colour_visible(target.thing.instance):
             continue
         other_colours = [
-            c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not similar_colours(c, colour)
+            c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not are_similar_colours(c, colour)
         ]
         for asked_colour in (colour, rng.choice(other_colours)):
             expected = YesNo(
@@ -96,38 +98,40 @@ def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
                     )
                 ),
                 evidence=(evidence_view(place, expected, target.words, [place.truth.item(target.thing, colour)], whole=False),),
-                perception_calls=(ask_call(f"what colour is {target.the}?", place),),
+                perception_calls=(query_call(f"what colour is {target.the}?", place),),
                 tags=("verification",),
                 answer_key="yes" if expected.value else "no",
             )
 
 
-def _colour_if_there(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+def _conditional_colour_drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the colour of an absent object, each with a twin about a present one."""
     missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
     shown = [target for target in unique_things(place.truth, coloured=False, min_pixels=300) if own_colour(target.thing.instance)]
     rng.shuffle(shown)
     for target, absent in zip(shown, missing, strict=False):
         colour = plain_colour(own_colour(target.thing.instance))
-        if colour is None or colour in target.name or not colour_shows(target.thing.instance):
+        if colour is None or colour in target.name or not is_colour_visible(target.thing.instance):
             continue
-        value = Choice(value=colour, options=colour_options(), subject=unit_of(target.kind)[:2])
-        none = NoneThere(subject=unit_of(absent)[:2], claims=wordings(colour_options()))
+        value = Choice(value=colour, options=colour_options(), subject=answer_words(target.kind)[:2])
+        none = NoneThere(subject=answer_words(absent)[:2], claims=all_wordings(colour_options()))
         item = place.truth.item(target.thing, colour)
-        twin = _colour_if_there_draft(
+        twin = _conditional_colour_draft(
             place, target.name, value, evidence_view(place, value, target.words, [item], whole=False), colour
         )
         yield replace(
-            _colour_if_there_draft(place, noun_of(absent), none, evidence_view(place, none, about(absent), whole=True), "none"),
+            _conditional_colour_draft(
+                place, singular_noun(absent), none, evidence_view(place, none, object_words(absent), whole=True), "none"
+            ),
             question_type="no-colour",
             twin=twin,
         )
 
 
-def _colour_if_there_draft(
+def _conditional_colour_draft(
     place: TaskPlace, name: str, expected: Choice | NoneThere, evidence: EvidenceView, answer_key: str
 ) -> TaskDraft:
-    one = article(name)
+    one = with_article(name)
     return TaskDraft(
         category="descriptor",
         question_type="colour-if",
@@ -136,15 +140,15 @@ def _colour_if_there_draft(
         expected=expected,
         question=Question(
             (
-                (f"what colour is {the(name)}, if there is one?", f"what colour {the(name)} is, if there is one"),
-                (f"if there is {one}, what colour is it?", f"what colour {the(name)} is, if you can see one"),
+                (f"what colour is {with_the(name)}, if there is one?", f"what colour {with_the(name)} is, if there is one"),
+                (f"if there is {one}, what colour is it?", f"what colour {with_the(name)} is, if you can see one"),
                 (f"can you see {one}, and what colour is it?", f"whether you can see {one}, and what colour it is"),
             )
         ),
         evidence=(evidence,),
-        perception_calls=(count_call(f"{plural(name)}", place),)
+        perception_calls=(count_call(f"{pluralise(name)}", place),)
         if answer_key == "none"
-        else (ask_call(f"what colour is {the(name)}?", place),),
+        else (query_call(f"what colour is {with_the(name)}?", place),),
         tags=("none-there",) if answer_key == "none" else ("attribute", "colour"),
         answer_key=answer_key,
     )

@@ -9,11 +9,11 @@ from itertools import combinations
 from scope_ptz.bench.tasks.expected import Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.taskgen.authoring.categories import location_pairs
 from scope_ptz.taskgen.authoring.categories.location_pairs import corner_options
-from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view
-from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, noun_of, the, unit_of
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, query_call
+from scope_ptz.taskgen.authoring.noun_phrases import answer_words, join_names, object_words, plural_noun, singular_noun, with_the
 from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.view_contents import countable
+from scope_ptz.taskgen.authoring.view_contents import countable_kinds
 
 _SIDES: tuple[tuple[str, str], ...] = (("left", "right"), ("upper", "lower"))
 _SIDE_OPTIONS: tuple[Options, Options] = (
@@ -23,28 +23,28 @@ _SIDE_OPTIONS: tuple[Options, Options] = (
 
 
 def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
-    """Return the location drafts for a view; none for a sweep."""
+    """Return drafts that ask where objects are in a view; none for a sweep."""
     if place.swept:
         return []
     named = nameable_things(place.truth)
     return [
-        *_halves(place, named),
-        *_corners(place, named),
-        *_relations(place, named, rng),
-        *_order(place, named, rng),
-        *_in_half(place),
+        *_half_drafts(place, named),
+        *_quarter_drafts(place, named),
+        *_relation_drafts(place, named, rng),
+        *_order_drafts(place, named, rng),
+        *_half_count_drafts(place),
         *location_pairs.drafts(place, named, nouns, rng),
     ]
 
 
-def _halves(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+def _half_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for target in named:
         for axis in (0, 1):
             side = place.truth.side(target.thing, axis)
             if side is None:
                 continue
             expected = Choice(value=_SIDES[axis][side], options=_SIDE_OPTIONS[axis])
-            yield _about(
+            yield _location_draft(
                 place,
                 target,
                 f"half-{axis}",
@@ -69,13 +69,13 @@ def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
     )  # fmt: skip
 
 
-def _corners(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+def _quarter_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for target in named:
         side, level = place.truth.side(target.thing, 0), place.truth.side(target.thing, 1)
         if side is None or level is None:
             continue
         expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=corner_options())
-        yield _about(
+        yield _location_draft(
             place,
             target,
             "quarter",
@@ -90,9 +90,9 @@ def _corners(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
         )
 
 
-def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
+def _relation_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
     for target, other in (tuple(rng.sample(pair, 2)) for pair in combinations(named, 2)):
-        order = place.truth.in_order((target.thing, other.thing), 0, 0.08)
+        order = place.truth.sort_by_position((target.thing, other.thing), 0, 0.08)
         if order is None or target.kind.category == other.kind.category:
             continue
         left = order[0] is target.thing
@@ -135,23 +135,23 @@ def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) ->
             expected=expected,
             question=question,
             evidence=(evidence_view(place, expected, (*target.words, *other.words), items, whole=False),),
-            perception_calls=(ask_call(question.forms[0][0], place),),
+            perception_calls=(query_call(question.forms[0][0], place),),
             tags=("relation",),
             answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
         )
 
 
-def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
+def _order_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
     one_per_category = list({n.kind.category: n for n in named}.values())
     for triple in list(combinations(one_per_category, 3))[:6]:
-        order = place.truth.in_order([n.thing for n in triple], 0, 0.06)
+        order = place.truth.sort_by_position([n.thing for n in triple], 0, 0.06)
         if order is None:
             continue
         names = {n.thing.instance.id: n.name for n in triple}
         value = tuple(names[s.instance.id] for s in order)
         shuffled = list(value)
         rng.shuffle(shuffled)
-        listed = listing([the(name) for name in shuffled])
+        listed = join_names([with_the(name) for name in shuffled])
         items = [place.truth.item(n.thing) for n in triple]
         variants: list[tuple[str, Ordering | Choice, Question]] = [
             (
@@ -192,26 +192,26 @@ def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Ite
                 expected=expected,
                 question=question,
                 evidence=(evidence_view(place, expected, tuple(w for n in triple for w in n.words), items, whole=False),),
-                perception_calls=tuple(ask_call(f"where is {n.the}?", place) for n in triple),
+                perception_calls=tuple(query_call(f"where is {n.the}?", place) for n in triple),
                 tags=("order",),
                 weight=3,
                 answer_key="/".join(value) if kind == "row" else value[0],
             )
 
 
-def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
-    for kind, total in countable(place.truth):
+def _half_count_drafts(place: TaskPlace) -> Iterator[TaskDraft]:
+    for kind, total in countable_kinds(place.truth):
         sides = [place.truth.side(t, 0, 0.03) for t in place.truth.all_of(kind) or ()]
         if total < 2 or kind.attribute or None in sides or len(set(sides)) == 1:
             continue
         for side, name in enumerate(_SIDES[0]):
-            many, number = many_of(kind), sides.count(side)
-            expected = Number(value=number, unit=unit_of(kind), part=True)
+            many, number = plural_noun(kind), sides.count(side)
+            expected = Number(value=number, unit=answer_words(kind), part=True)
             things = [t for t, s in zip(place.truth.all_of(kind) or (), sides, strict=True) if s == side]
             yield TaskDraft(
                 category="location",
                 question_type="count-half",
-                key=f"half-count:{noun_of(kind)}:{name}",
+                key=f"half-count:{singular_noun(kind)}:{name}",
                 place=place,
                 expected=expected,
                 question=Question(
@@ -226,7 +226,9 @@ def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
                         ),
                     )
                 ),
-                evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
+                evidence=(
+                    evidence_view(place, expected, object_words(kind), [place.truth.item(t, True) for t in things], whole=True),
+                ),
                 perception_calls=(count_call(f"{many} in the {name} half", place),),
                 tags=("half",),
                 weight=number,
@@ -234,7 +236,9 @@ def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
             )
 
 
-def _about(place: TaskPlace, target: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> TaskDraft:
+def _location_draft(
+    place: TaskPlace, target: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]
+) -> TaskDraft:
     return TaskDraft(
         category="location",
         question_type=kind,
@@ -243,7 +247,7 @@ def _about(place: TaskPlace, target: NamedThing, kind: str, expected: Choice, fo
         expected=expected,
         question=Question(forms),
         evidence=(evidence_view(place, expected, target.words, [place.truth.item(target.thing, expected.value)], whole=False),),
-        perception_calls=(ask_call(forms[0][0], place),),
+        perception_calls=(query_call(forms[0][0], place),),
         tags=("frame",),
         answer_key=expected.value,
     )

@@ -9,11 +9,11 @@ from itertools import pairwise
 from scope_ptz.bench.tasks.expected import Text
 from scope_ptz.bench.tasks.task import ProgramCall
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, evidence_view, query_call
 from scope_ptz.taskgen.authoring.object_names import NamedThing, coloured_boards, extreme_things, nameable_things
 from scope_ptz.taskgen.authoring.task_places import TaskPlace
-from scope_ptz.taskgen.authoring.zoom_targets import MIN_TARGET_PX, framed
-from scope_ptz.taskgen.facts.robust import with_parts
+from scope_ptz.taskgen.authoring.zoom_targets import MIN_TARGET_PX, close_up_place
+from scope_ptz.taskgen.facts.robust import ids_with_parts
 
 MAX_TEXT_CHARS = 80
 """Maximum length of an expected text, in characters."""
@@ -31,37 +31,37 @@ def drafts(place: TaskPlace) -> list[TaskDraft]:
         *coloured_boards(place.truth, MIN_TARGET_PX),
         *extreme_things(place.truth),
     ]
-    return [*_in_view(place, named), *_zoomed(place, named)]
+    return [*_legible_drafts(place, named), *_zoomed_drafts(place, named)]
 
 
-def _in_view(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+def _legible_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for target in named:
         texts = texts_to_read(target, place)
         expected = expected_text(target, texts)
         if texts and expected is not None:
-            yield _draft(place, target, expected, texts, place, ())
+            yield _text_draft(place, target, expected, texts, place, ())
 
 
-def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+def _zoomed_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     """Yield drafts about texts that are not legible in a view, but are legible after zooming in."""
     if any("zoom_factor" in call.arguments for call in place.calls):
         return  # tasks do not zoom in twice
     for target in named:
-        part_ids = with_parts(place.scene, target.thing.instance.id)
-        lettered = any(text.parent in part_ids for text in place.scene.file.texts)
-        if target.positional or not lettered or place.truth.texts_on(target.thing.instance):
+        part_ids = ids_with_parts(place.scene, target.thing.instance.id)
+        has_lettering = any(text.parent in part_ids for text in place.scene.file.texts)
+        if target.positional or not has_lettering or place.truth.texts_on(target.thing.instance):
             continue
-        close = framed(place, target.thing, target.thing.instance)
+        close = close_up_place(place, target.thing, target.thing.instance)
         if close is None:
             continue
         texts = texts_to_read(target, close)
         expected = expected_text(target, texts)
         if texts and expected is not None:
             call = ProgramCall(tool="zoom_to_object", arguments={"description": target.name})
-            yield _draft(place, target, expected, texts, close, (call,))
+            yield _text_draft(place, target, expected, texts, close, (call,))
 
 
-def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
+def order_lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
     """Return texts sorted from top to bottom if they are lines of one text; otherwise None."""
     if not texts:
         return None
@@ -70,9 +70,9 @@ def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | 
     for upper, lower in pairwise(order):
         height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
         shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
-        side_by_side = upper.box[3] - lower.box[1] > height / 2
+        is_side_by_side = upper.box[3] - lower.box[1] > height / 2
         narrow = shared < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
-        if side_by_side or narrow or lower.box[1] - upper.box[3] > _MAX_LINE_GAP * height:
+        if is_side_by_side or narrow or lower.box[1] - upper.box[3] > _MAX_LINE_GAP * height:
             return None
     return tuple(order)
 
@@ -81,7 +81,7 @@ _MAX_LINE_GAP = 3.0
 """Maximum gap between lines of one text, as a multiple of their height."""
 
 
-def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
+def select_prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
     """Return the prices among the texts of a price card. The card's other texts are part of the name that a question gives it."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
@@ -89,7 +89,7 @@ def prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
 def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
     """Return the whole text on an object as the expected answer.
 
-    Return None if there is no text, if it is too long or in too many pieces, or if half of its words are in the object's name.
+    Return None if there is no text, if it is too long or has too many pieces, or if half of its words are in the object's name.
     """
     if not texts:
         return None
@@ -103,11 +103,11 @@ def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) ->
 
 def texts_to_read(target: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
     """Return the lines of text on an object (for a price card, only the price); None if they are not one text."""
-    readable = lines(place.truth.texts_on(target.thing.instance))
-    box = next((s.box for s in place.truth.first.sightings if s.instance.number == target.thing.instance.number), None)
+    readable = order_lines(place.truth.texts_on(target.thing.instance))
+    box = next((s.box for s in place.truth.first_sample.sightings if s.instance.number == target.thing.instance.number), None)
     if readable and not all(is_on_object(box, text) for text in readable):
         return None
-    return prices(readable) if readable and target.kind.category == "price card" else readable
+    return select_prices(readable) if readable and target.kind.category == "price card" else readable
 
 
 def is_on_object(box: BoxTuple | None, text: TextSighting) -> bool:
@@ -158,7 +158,7 @@ _PRICES: tuple[_Forms, _Forms] = (
 """Questions about lettering, number plates and prices: first for texts that are legible in the view, then for others."""
 
 
-def _draft(
+def _text_draft(
     place: TaskPlace,
     target: NamedThing,
     expected: Text,
@@ -181,7 +181,7 @@ def _draft(
         expected=expected,
         question=Question(forms),
         evidence=(evidence_view(close, expected, target.words, items, whole=False),),
-        perception_calls=(*zoom, ask_call(question, place)),
+        perception_calls=(*zoom, query_call(question, place)),
         needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
         tags=("text",),
         weight=len(texts),

@@ -1,4 +1,4 @@
-"""Comparative tasks between presets: which of two or three shows the most objects of a kind."""
+"""Comparative tasks across presets: which of two or three shows the most objects of a kind."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
 from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, count_evidence
 from scope_ptz.taskgen.authoring.drafts import TaskDraft, count_call
-from scope_ptz.taskgen.authoring.noun_phrases import many_of
-from scope_ptz.taskgen.authoring.task_places import TaskPlace, comparison_start, go
-from scope_ptz.taskgen.authoring.view_contents import countable
+from scope_ptz.taskgen.authoring.noun_phrases import plural_noun
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, comparison_start, preset_call
+from scope_ptz.taskgen.authoring.view_contents import countable_kinds
 
-_OF_TWO = (
+_TWO_PRESET_FORMS = (
     "Are there more {many} at the {p} preset or at the {q} preset?",
     "Compare the presets {p} and {q}: which shows more {many}?",
     "Which view has more {many}, {p} or {q}?",
@@ -20,7 +20,7 @@ _OF_TWO = (
     "Between the {p} and the {q} preset, which one has more {many} in it?",
     "Go to the {p} preset, then to {q}, and say which shows more {many}.",
 )
-_OF_THREE = (
+_THREE_PRESET_FORMS = (
     "Which of the presets {p}, {q} and {r} shows the most {many}?",
     "Go through the presets {p}, {q} and {r}, and tell me which of them has the most {many} in view.",
     "Compare the {p}, {q} and {r} views. Where are the most {many}?",
@@ -33,7 +33,7 @@ _MIN_TOTAL = 4
 
 
 def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
-    """Return comparisons of two or three presets, which are visited in sequence."""
+    """Return drafts that compare two or three presets, which are visited in sequence."""
     comparisons = list(_comparisons(places))
     rng.shuffle(comparisons)
     return comparisons
@@ -44,15 +44,15 @@ def _comparisons(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     start = comparison_start(places[0], places[1])
     if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
         return
-    counts_by_place = [dict(countable(place.truth)) for place in places]
+    counts_by_place = [dict(countable_kinds(place.truth)) for place in places]
     for kind in counts_by_place[0]:
         numbers = [counts.get(kind) for counts in counts_by_place]
         certain = [number for number in numbers if number is not None]
         if len(certain) < len(places) or sum(certain) < _MIN_TOTAL or (len(places) == 3 and certain.count(max(certain)) > 1):
             continue
-        many = many_of(kind)
+        many = plural_noun(kind)
         best = "same" if len(set(certain)) == 1 else names[certain.index(max(certain))]
-        options: Options = {name: _without_hyphens(name) for name in names}
+        options: Options = {name: _unhyphenated_wordings(name) for name in names}
         if len(places) == 2:
             options = {**options, "same": SAME}
         words = dict(zip("pqr", names, strict=False))
@@ -62,9 +62,13 @@ def _comparisons(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
             key=f"between:{':'.join(names)}:{many}",
             place=start,
             expected=Choice(value=best, options=options, picks=("more", "most")),
-            instructions=tuple(text.format(many=many, **words) for text in (_OF_TWO if len(places) == 2 else _OF_THREE)),
+            instructions=tuple(
+                text.format(many=many, **words) for text in (_TWO_PRESET_FORMS if len(places) == 2 else _THREE_PRESET_FORMS)
+            ),
             evidence=tuple(count_evidence(place, kind, n) for place, n in zip(places, certain, strict=True)),
-            program=tuple(call for place, name in zip(places, names, strict=True) for call in (go(name), count_call(many, place))),
+            program=tuple(
+                call for place, name in zip(places, names, strict=True) for call in (preset_call(name), count_call(many, place))
+            ),
             needs=("preset",),
             tags=("two-views",) if len(places) == 2 else ("three-views",),
             weight=sum(certain),
@@ -72,6 +76,6 @@ def _comparisons(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
         )
 
 
-def _without_hyphens(name: str) -> Wordings:
+def _unhyphenated_wordings(name: str) -> Wordings:
     """Return the name of a preset without hyphens as an additional wording; no wording if the name has no hyphens."""
     return (name.replace("-", " "),) if "-" in name else ()

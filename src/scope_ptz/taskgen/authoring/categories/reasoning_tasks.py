@@ -10,9 +10,15 @@ from itertools import pairwise
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
-from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
-from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, comparison_start, go, preset_at
-from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, disjoint, plain_counts, scene_kinds_first
+from scope_ptz.taskgen.authoring.noun_phrases import answer_words, object_words, plural_noun, singular_noun, with_article
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, comparison_start, preset_call, preset_position
+from scope_ptz.taskgen.authoring.view_contents import (
+    absent_kinds,
+    are_disjoint,
+    category_counts,
+    countable_kinds,
+    scene_kinds_first,
+)
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 _SUMS = (
@@ -42,7 +48,7 @@ _CHECKS = (
     "Go to the {p} preset and look for {one}. Found one? Then finish at the {yes} preset. If not, finish at {no}. Report back.",
     "Please see whether {one} is in the {p} view. If yes, leave the camera at the {yes} preset, else at {no}, and let me know.",
 )
-_WHERE = (
+_EITHER_VIEW_FORMS = (
     "Check the presets {p} and {q}: is there {one} in either of them?",
     "Is {one} to be seen from the {p} preset or from {q}?",
     "Look from the {p} preset, then from {q}, and tell me whether {one} is there in one of the views.",
@@ -57,29 +63,31 @@ def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset
     if p is None or q is None or p == q:
         return []
     return [
-        *_totals(one, two, p, q), *_branches(one, p, places, rng), *_in_either_view(one, two, p, q, nouns, rng),
-        *_checks(one, p, places, nouns, rng),
+        *_total_drafts(one, two, p, q), *_branch_drafts(one, p, places, rng), *_either_view_drafts(one, two, p, q, nouns, rng),
+        *_check_drafts(one, p, places, nouns, rng),
     ]  # fmt: skip
 
 
-def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
-    shows = Number(value=number, unit=unit_of(kind)) if number else NoneThere(subject=unit_of(kind)[:2])
-    return evidence_view(place, shows, about(kind), [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()], whole=True)
+def _count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
+    shows = Number(value=number, unit=answer_words(kind)) if number else NoneThere(subject=answer_words(kind)[:2])
+    return evidence_view(
+        place, shows, object_words(kind), [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()], whole=True
+    )
 
 
-def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
-    """Yield questions about the sum or difference of the counts of one kind at two presets."""
-    there = dict(countable(two.truth))
+def _total_drafts(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
+    """Yield questions about the sum of, or the difference between, the counts of one kind at two presets."""
+    there = dict(countable_kinds(two.truth))
     start = comparison_start(one, two)
-    for kind, n in countable(one.truth):
+    for kind, n in countable_kinds(one.truth):
         m = there.get(kind)
         if m is None:
             continue
-        many = many_of(kind)
-        program = (go(p), count_call(many, one), go(q), count_call(many, two))
-        seen = (_count_view(one, kind, n), _count_view(two, kind, m))
+        many = plural_noun(kind)
+        program = (preset_call(p), count_call(many, one), preset_call(q), count_call(many, two))
+        seen = (_count_evidence(one, kind, n), _count_evidence(two, kind, m))
         # An object that is visible in both views would be counted twice in a sum.
-        same = {t.number for t in one.truth.traces if kind.fits(t)} & {t.number for t in two.truth.traces}
+        same = {t.number for t in one.truth.discernible_objects if kind.fits(t)} & {t.number for t in two.truth.discernible_objects}
         question_types = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
         for question_type, value, texts in question_types:
             yield TaskDraft(
@@ -87,7 +95,7 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
                 question_type=question_type,
                 key=f"{question_type}:{p}:{q}:{many}",
                 place=start,
-                expected=Number(value=value, unit=unit_of(kind)),
+                expected=Number(value=value, unit=answer_words(kind)),
                 instructions=tuple(t.format(many=many, p=p, q=q) for t in texts),
                 evidence=seen,
                 program=program,
@@ -101,13 +109,13 @@ def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraf
 def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
     """Return drafts about sums and differences within one view."""
     result = list[TaskDraft]()
-    plain = list(plain_counts(place.truth))
+    plain = list(category_counts(place.truth))
     rng.shuffle(plain)
     for (one, n), (two, m) in pairwise(plain):
-        if min(n, m) < 2 or not disjoint(place.truth, (one, two)):
+        if min(n, m) < 2 or not are_disjoint(place.truth, (one, two)):
             continue
-        first, second = many_of(one), many_of(two)
-        if _only_one_alive(one, two):
+        first, second = plural_noun(one), plural_noun(two)
+        if _is_only_one_alive(one, two):
             continue
         together = Question(
             (
@@ -132,7 +140,7 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
                     place=place,
                     expected=Number(value=value),
                     question=question,
-                    evidence=(_count_view(place, one, n), _count_view(place, two, m)),
+                    evidence=(_count_evidence(place, one, n), _count_evidence(place, two, m)),
                     perception_calls=(count_call(first, place), count_call(second, place)),
                     tags=("arithmetic",),
                     weight=n + m,
@@ -142,7 +150,7 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
     return result
 
 
-def _only_one_alive(one: Kind, two: Kind) -> bool:
+def _is_only_one_alive(one: Kind, two: Kind) -> bool:
     """Return whether only one of two kinds is alive. A question that combines their counts would sound unnatural."""
     return (one.category in _LIVING_CATEGORIES) != (two.category in _LIVING_CATEGORIES)
 
@@ -150,20 +158,20 @@ def _only_one_alive(one: Kind, two: Kind) -> bool:
 _LIVING_CATEGORIES = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
 
 
-def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _branch_drafts(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield commands that go to one of two presets, depending on a count."""
     others = [name for name in places.presets if name != p and name != one.start]
     if len(others) < 2:
         return
     start = TaskPlace(one.scene, one.start, (), one.at)
-    for kind, n in plain_counts(one.truth):
+    for kind, n in category_counts(one.truth):
         if n < 2:
             continue
         yes, no = rng.sample(others, 2)
         least = n + rng.choice((-1, 0, 2)) if n > 2 else n + rng.choice((0, 1))
         end = yes if n >= least else no
-        final = TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final
-        many = many_of(kind)
+        final = TaskPlace(one.scene, one.start, (), preset_position(places.presets[end])).final
+        many = plural_noun(kind)
         yield TaskDraft(
             category="multi_step_reasoning",
             question_type="condition",
@@ -171,8 +179,8 @@ def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -
             place=start,
             expected=ActionOnly(),
             instructions=tuple(t.format(p=p, many=many, least=f"at least {least}", yes=yes, no=no) for t in _BRANCHES),
-            evidence=(_count_view(one, kind, n),),
-            program=(go(p), count_call(many, one), go(end)),
+            evidence=(_count_evidence(one, kind, n),),
+            program=(preset_call(p), count_call(many, one), preset_call(end)),
             behaviour=Behaviour(final=final),
             needs=("preset",),
             tags=("condition",),
@@ -181,10 +189,10 @@ def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -
         )
 
 
-def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+def _check_drafts(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about whether a kind is visible at a preset, with a preset to go to if it is and another if it is not."""
     others = [name for name in places.presets if name != p and name != one.start]
-    shown = [kind for kind, _ in plain_counts(one.truth)]
+    shown = [kind for kind, _ in category_counts(one.truth)]
     absent = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
     if len(others) < 2:
         return
@@ -193,18 +201,18 @@ def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], 
     for present, missing in zip(shown, absent, strict=False):
         yes, no = rng.sample(others, 2)
         things = one.truth.all_of(present) or ()
-        there = YesNo(value=True, affirms=unit_of(present)[:2])
-        none = NoneThere(subject=unit_of(missing)[:2])
-        seen = evidence_view(one, there, about(present), [one.truth.item(things[0], True)], whole=False)
-        twin = _check(one, p, present, there, seen, (yes, no), places)
+        there = YesNo(value=True, affirms=answer_words(present)[:2])
+        none = NoneThere(subject=answer_words(missing)[:2])
+        seen = evidence_view(one, there, object_words(present), [one.truth.item(things[0], True)], whole=False)
+        twin = _check_draft(one, p, present, there, seen, (yes, no), places)
         yield replace(
-            _check(one, p, missing, none, evidence_view(one, none, about(missing), whole=True), (yes, no), places),
+            _check_draft(one, p, missing, none, evidence_view(one, none, object_words(missing), whole=True), (yes, no), places),
             question_type="check-none",
             twin=twin,
         )
 
 
-def _check(
+def _check_draft(
     one: TaskPlace,
     p: str,
     kind: Kind,
@@ -216,24 +224,24 @@ def _check(
     yes, no = end_presets
     end = no if isinstance(expected, NoneThere) else yes
     start = TaskPlace(one.scene, one.start, (), one.at)
-    words = {"p": p, "one": article(noun_of(kind)), "many": many_of(kind), "yes": yes, "no": no}
+    words = {"p": p, "one": with_article(singular_noun(kind)), "many": plural_noun(kind), "yes": yes, "no": no}
     return TaskDraft(
         category="multi_step_reasoning",
         question_type="check",
-        key=f"check:{p}:{noun_of(kind)}",
+        key=f"check:{p}:{singular_noun(kind)}",
         place=start,
         expected=expected,
         instructions=tuple(text.format(**words) for text in _CHECKS),
         evidence=(seen,),
-        program=(go(p), count_call(many_of(kind), one), go(end)),
-        behaviour=Behaviour(final=TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final),
+        program=(preset_call(p), count_call(plural_noun(kind), one), preset_call(end)),
+        behaviour=Behaviour(final=TaskPlace(one.scene, one.start, (), preset_position(places.presets[end])).final),
         needs=("preset",),
         tags=("none-there",) if isinstance(expected, NoneThere) else ("presence",),
         answer_key=end,
     )
 
 
-def _in_either_view(
+def _either_view_drafts(
     one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random
 ) -> Iterator[TaskDraft]:
     """Yield questions about whether an absent kind is visible at one of two presets, each with a twin about a present kind."""
@@ -242,7 +250,7 @@ def _in_either_view(
     shown = [
         (kind, place)
         for place, other in ((one, two), (two, one))
-        for kind, _ in countable(place.truth)
+        for kind, _ in countable_kinds(place.truth)
         if other.truth.all_of(kind) is not None
     ]
     absent = scene_kinds_first(one, absent, rng)
@@ -251,32 +259,35 @@ def _in_either_view(
     if start.start == q:
         return  # the start view would answer the question without a move
     for kind, (present, place) in zip(absent, shown, strict=False):
-        texts = (many_of(kind), many_of(present))
-        yes = YesNo(value=True, affirms=unit_of(present)[:2])
+        texts = (plural_noun(kind), plural_noun(present))
+        yes = YesNo(value=True, affirms=answer_words(present)[:2])
         first = place.truth.all_of(present) or ()
         twin = TaskDraft(
             category="multi_step_reasoning",
             question_type="either",
-            key=f"either:{p}:{q}:{noun_of(present)}",
+            key=f"either:{p}:{q}:{singular_noun(present)}",
             place=start,
             expected=yes,
-            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(present))) for t in _WHERE),
-            evidence=(evidence_view(place, yes, about(present), [place.truth.item(first[0], True)], whole=False),),
-            program=(go(p), count_call(texts[1], one), go(q), count_call(texts[1], two)),
+            instructions=tuple(t.format(p=p, q=q, one=with_article(singular_noun(present))) for t in _EITHER_VIEW_FORMS),
+            evidence=(evidence_view(place, yes, object_words(present), [place.truth.item(first[0], True)], whole=False),),
+            program=(preset_call(p), count_call(texts[1], one), preset_call(q), count_call(texts[1], two)),
             needs=("preset",),
             tags=("presence",),
             answer_key="yes",
         )
-        none = NoneThere(subject=unit_of(kind)[:2])
+        none = NoneThere(subject=answer_words(kind)[:2])
         yield TaskDraft(
             category="multi_step_reasoning",
             question_type="neither",
-            key=f"either:{p}:{q}:{noun_of(kind)}",
+            key=f"either:{p}:{q}:{singular_noun(kind)}",
             place=start,
             expected=none,
-            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(kind))) for t in _WHERE),
-            evidence=(evidence_view(one, none, about(kind), [], whole=True), evidence_view(two, none, about(kind), [], whole=True)),
-            program=(go(p), count_call(texts[0], one), go(q), count_call(texts[0], two)),
+            instructions=tuple(t.format(p=p, q=q, one=with_article(singular_noun(kind))) for t in _EITHER_VIEW_FORMS),
+            evidence=(
+                evidence_view(one, none, object_words(kind), [], whole=True),
+                evidence_view(two, none, object_words(kind), [], whole=True),
+            ),
+            program=(preset_call(p), count_call(texts[0], one), preset_call(q), count_call(texts[0], two)),
             needs=("preset",),
             tags=("none-there", "two-views"),
             twin=twin,

@@ -9,23 +9,31 @@ from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
 from scope_ptz.simulator.models import SceneActor
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
-from scope_ptz.taskgen.authoring.noun_phrases import about, capital, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import answer_words, capitalise, object_words, plural_noun, singular_noun
 from scope_ptz.taskgen.authoring.object_names import nameable_things
-from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
-from scope_ptz.taskgen.authoring.view_contents import countable
-from scope_ptz.taskgen.authoring.zoom_targets import framing
+from scope_ptz.taskgen.authoring.task_places import (
+    ScenePlaces,
+    TaskPlace,
+    adjust_call,
+    apply_adjustment,
+    call_phrases,
+    preset_call,
+    preset_position,
+)
+from scope_ptz.taskgen.authoring.view_contents import countable_kinds
+from scope_ptz.taskgen.authoring.zoom_targets import target_framing
 from scope_ptz.taskgen.facts.kinds import Kind
 from scope_ptz.taskgen.facts.robust import TRACE_PX
 
-_POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
+_POLITE_FORMS = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
 
 
-def polite(request: str) -> tuple[str, ...]:
+def polite_forms(request: str) -> tuple[str, ...]:
     """Return a request in several polite forms."""
-    return tuple(form.format(m=request, M=capital(request)) for form in _POLITE)
+    return tuple(form.format(m=request, M=capitalise(request)) for form in _POLITE_FORMS)
 
 
-def command(
+def command_draft(
     category: Category,
     question_type: str,
     key: str,
@@ -36,7 +44,7 @@ def command(
     needs: tuple[Need, ...],
     tags: tuple[str, ...] = (),
 ) -> TaskDraft:
-    """Return the draft of a command. A command has no expected answer; its score depends on the actions of the camera."""
+    """Return a command draft. A command has no expected answer; its score depends on what the camera does."""
     return TaskDraft(
         category=category,
         question_type=question_type,
@@ -53,17 +61,17 @@ def command(
 
 
 def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield drafts of all types in turn. Those of close-ups and tracking are about the places in ``pool``."""
+    """Yield drafts of all types in turn. Close-up and tracking drafts are about the places in ``pool``."""
     streams = [
-        _moves(places, rng),
-        _presets(places, rng),
-        _pans(places, rng),
-        _close_ups(pool),
-        _tracking(pool),
-        _sweeps(places),
-        _moves(places, rng),
-        _other_commands(places, rng),
-        _tilts(places, rng),
+        _move_drafts(places, rng),
+        _preset_drafts(places, rng),
+        _pan_drafts(places, rng),
+        _close_up_drafts(pool),
+        _tracking_drafts(pool),
+        _sweep_drafts(places),
+        _move_drafts(places, rng),
+        _other_command_drafts(places, rng),
+        _tilt_drafts(places, rng),
     ]
     while streams:
         for stream in list(streams):
@@ -74,17 +82,19 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
                 yield draft
 
 
-def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
-    start = places.at_preset(name)
-    destination = move(start.at, call)
+def _adjustment_draft(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
+    start = places.place_at_preset(name)
+    destination = apply_adjustment(start.at, call)
     if destination is None:
         return None
     end = TaskPlace(start.scene, name, (call,), destination)
-    instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(call_phrases(call, rng)))))
-    return command("single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs)
+    instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite_forms(" and ".join(call_phrases(call, rng)))))
+    return command_draft(
+        "single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs
+    )
 
 
-def _moves(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _move_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield zooms, and moves that combine two of pan, tilt and zoom."""
     names = list(places.presets)
     for n in range(60):
@@ -93,53 +103,64 @@ def _moves(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
             rng.choice((-14, -9, -6, 5, 7, 9)),
             rng.choice((1.2, 1.5, 1.8, 2.0, 2.5, 3.0)),
         )
-        call = (adjust(factor=factor), adjust(pan, tilt), adjust(pan, 0, factor))[n % 3]
-        draft = _adjusted(places, names[n % len(names)], call, ("zoom", "turn-both", "turn-zoom")[n % 3], rng)
+        call = (adjust_call(factor=factor), adjust_call(pan, tilt), adjust_call(pan, 0, factor))[n % 3]
+        draft = _adjustment_draft(places, names[n % len(names)], call, ("zoom", "turn-both", "turn-zoom")[n % 3], rng)
         if draft is not None:
             yield draft
 
 
-def _pans(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _pan_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     names = list(places.presets)
     for _ in range(40):
         amount = rng.choice((-1, 1)) * rng.choice((5, 8, 15, 20, 24, 33, 45, 65, 80, 100))
-        draft = _adjusted(places, rng.choice(names), adjust(amount), "pan", rng)
+        draft = _adjustment_draft(places, rng.choice(names), adjust_call(amount), "pan", rng)
         if draft is not None:
             yield draft
 
 
-def _tilts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _tilt_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     names = list(places.presets)
     for _ in range(30):
-        draft = _adjusted(places, rng.choice(names), adjust(0, rng.choice((-18, -11, -7, -4, 3, 6, 9, 12))), "tilt", rng)
+        draft = _adjustment_draft(
+            places, rng.choice(names), adjust_call(0, rng.choice((-18, -11, -7, -4, 3, 6, 9, 12))), "tilt", rng
+        )
         if draft is not None:
             yield draft
 
 
-def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _preset_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     for name, preset in places.presets.items():
         starts = [other for other in places.presets if other != name]
         if not starts:
             continue
-        start = places.at_preset(rng.choice(starts))
-        end = TaskPlace(start.scene, start.start, (go(name),), preset_at(preset))
-        instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(call_phrases(go(name), rng)[0])))
-        yield command(
-            "single_call", "preset", f"go:{name}", start, instructions, (go(name),), Behaviour(final=end.final), ("preset",)
+        start = places.place_at_preset(rng.choice(starts))
+        end = TaskPlace(start.scene, start.start, (preset_call(name),), preset_position(preset))
+        instructions = tuple(
+            dict.fromkeys(text for _ in range(4) for text in polite_forms(call_phrases(preset_call(name), rng)[0]))
+        )
+        yield command_draft(
+            "single_call",
+            "preset",
+            f"go:{name}",
+            start,
+            instructions,
+            (preset_call(name),),
+            Behaviour(final=end.final),
+            ("preset",),
         )
 
 
-def _other_commands(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+def _other_command_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield commands to go home, to take a picture, and to list the presets."""
     scene, home = places.scene, places.scene.file.home_preset
     others = [name for name in places.presets if name != home]
     rng.shuffle(others)
     for n, name in enumerate(others[:3]):
-        start = places.at_preset(name)
-        final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
+        start = places.place_at_preset(name)
+        final = TaskPlace(scene, name, (), preset_position(places.presets[home])).final
         wordings = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
-        instructions = tuple(text for wording in wordings for text in polite(wording))
-        yield command(
+        instructions = tuple(text for wording in wordings for text in polite_forms(wording))
+        yield command_draft(
             "single_call",
             "home",
             f"home:{name}",
@@ -154,7 +175,7 @@ def _other_commands(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDra
             for w in ("Take a picture", "Save a still", "Capture an image", "Take a snapshot")
             for e in (".", ", please.", " as it is now.")
         )
-        yield command(
+        yield command_draft(
             "single_call",
             "picture",
             f"picture:{name}",
@@ -173,16 +194,16 @@ def _other_commands(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDra
             )
             calls = (ProgramCall(tool="get_presets"),)
             behaviour = Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final)
-            yield command("single_call", "list", "presets", start, instructions, calls, behaviour, (), ("presets",))
+            yield command_draft("single_call", "list", "presets", start, instructions, calls, behaviour, (), ("presets",))
 
 
-def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+def _close_up_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     for place in pool:
         if not place.is_start_view and place.preset is None:
             continue
         current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
         for target in nameable_things(place.truth, 400):
-            required_framing = framing(current_place, target.thing, target.thing.instance)
+            required_framing = target_framing(current_place, target.thing, target.thing.instance)
             if required_framing is None or len(target.thing.instance.attributes) == 0:
                 continue
             instructions = tuple(
@@ -193,10 +214,10 @@ def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
                     f"frame {target.the}",
                     f"centre {target.the} and zoom in on it",
                 )
-                for t in polite(w)
+                for t in polite_forms(w)
             )
             call = ProgramCall(tool="zoom_to_object", arguments={"description": target.name})
-            yield command(
+            yield command_draft(
                 "single_call",
                 "close-up",
                 f"close-up:{target.thing.instance.id}",
@@ -209,7 +230,7 @@ def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             )
 
 
-def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+def _tracking_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     """Yield commands to follow a moving object that is the only one of its kind and is still in view 1.5 s later."""
     for n, place in enumerate(pool):
         current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
@@ -223,7 +244,7 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.visible_fraction < 0.9:
                 continue
             others = [s for s in at_start.sightings if s.instance is not actor]
-            rivals = [s for s in others if kind.fits(s.instance) or kind.ambiguous_with(s.instance)]
+            rivals = [s for s in others if kind.fits(s.instance) or kind.is_ambiguous_with(s.instance)]
             if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
                 continue
             seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
@@ -233,13 +254,13 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
                 f"track the {kind.category} for the next {seconds:g} seconds",
             )
             call = ProgramCall(tool="track_object", arguments={"description": kind.category, "duration_s": seconds})
-            required = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
-            yield command(
+            required = {"description": Argument(mentions=answer_words(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
+            yield command_draft(
                 "single_call",
                 "follow",
                 f"follow:{actor.id}",
                 current_place,
-                tuple(text for wording in wordings for text in polite(wording)),
+                tuple(text for wording in wordings for text in polite_forms(wording)),
                 (call,),
                 Behaviour(calls=(RequiredCall(tool="track_object", arguments=required),)),
                 ("move",),
@@ -247,18 +268,18 @@ def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             )
 
 
-def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
+def _sweep_drafts(places: ScenePlaces) -> Iterator[TaskDraft]:
     for place in places.sweeps():
         if place.calls:
             continue
-        for kind, number in countable(place.truth)[:40]:
-            many = many_of(kind)
-            expected = Number(value=number, unit=unit_of(kind))
+        for kind, number in countable_kinds(place.truth)[:40]:
+            many = plural_noun(kind)
+            expected = Number(value=number, unit=answer_words(kind))
             items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
             yield TaskDraft(
                 category="single_call",
                 question_type="count-all",
-                key=f"count:{noun_of(kind)}",
+                key=f"count:{singular_noun(kind)}",
                 place=place,
                 expected=expected,
                 question=Question(
@@ -267,7 +288,7 @@ def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
                         (f"what is the total of {many}?", f"the total of {many}"),
                     )
                 ),
-                evidence=(evidence_view(place, expected, about(kind), items, whole=True),),
+                evidence=(evidence_view(place, expected, object_words(kind), items, whole=True),),
                 perception_calls=(count_call(many, place),),
                 tags=("full",),
                 weight=number,

@@ -1,4 +1,4 @@
-"""Hand-made tasks and runs that pass them: a small world of three presets at two viewpoints, without any scene data."""
+"""Sample tasks and runs that pass them, in a small world of three presets at two viewpoints without scene data."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from scope_ptz.bench.tasks.task import (
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Pose
 from scope_ptz.tools.adjust_ptz import AdjustPtz, requested_pose
 
-EYES = FrameGeometry(1280, 720)
+FRAME = FrameGeometry(1280, 720)
 PRESETS = {
     "gate": CameraPosition("mast", Pose(10.0, -10.0, 1.0)),
     "highway": CameraPosition("mast", Pose(-40.0, -14.0, 1.2)),
@@ -51,57 +51,61 @@ Step = tuple[str, dict[str, Any]] | tuple[str, dict[str, Any], dict[str, Any]]
 
 
 def play(steps: Sequence[Step], text: str, *, instruction: str = "do it", outcome: str | None = "answered") -> Episode:
-    """A run of calls: ``(tool, arguments)`` for moves, ``(tool, arguments, what the tool said)`` for looks."""
-    at, calls, pictures = START, list[EpisodeCall](), list[SavedPicture]()
+    """Return a run of calls: ``(tool, arguments)`` for moves, ``(tool, arguments, result)`` for perception calls."""
+    position, calls, pictures = START, list[EpisodeCall](), list[SavedPicture]()
     for step in steps:
-        name, arguments, said = step[0], step[1], dict(step[2]) if len(step) > 2 else {}
-        after = stand_after(at, name, arguments, said)
+        name, arguments, result = step[0], step[1], dict(step[2]) if len(step) > 2 else {}
+        after = position_after(position, name, arguments, result)
         if name == "take_image":
             pictures.append(SavedPicture(f"pictures/{len(pictures) + 1:03d}.png", exists=True))
-            said["file"] = pictures[-1].file
-        said.setdefault("message", f"{name} done; {' '.join(str(v) for v in arguments.values() if name == 'go_to_preset')}")
-        failed = "error" in said
+            result["file"] = pictures[-1].file
+        result.setdefault("message", f"{name} done; {' '.join(str(v) for v in arguments.values() if name == 'go_to_preset')}")
+        failed = "error" in result
         call = EpisodeCall(
             name=name,
             arguments=arguments,
-            before=at,
+            before=position,
             after=after,
-            result=None if failed else said,
-            error=said.get("error"),
-            fault=said.get("fault", "bad_call") if failed else None,
+            result=None if failed else result,
+            error=result.get("error"),
+            fault=result.get("fault", "bad_call") if failed else None,
             time_s=float(len(calls)),
         )
-        looks = observations_of(call, EYES) if call.succeeded else ()
-        calls.append(EpisodeCall(**{n: getattr(call, n) for n in EpisodeCall.__slots__ if n != "observations"}, observations=looks))
-        at = after
-    return Episode(instruction, START, tuple(calls), at, text, outcome, tuple(pictures))
+        observations = observations_of(call, FRAME) if call.succeeded else ()
+        calls.append(
+            EpisodeCall(**{n: getattr(call, n) for n in EpisodeCall.__slots__ if n != "observations"}, observations=observations)
+        )
+        position = after
+    return Episode(instruction, START, tuple(calls), position, text, outcome, tuple(pictures))
 
 
-def stand_after(at: CameraPosition, name: str, arguments: Mapping[str, Any], said: Mapping[str, Any]) -> CameraPosition:
-    if "error" in said:
-        return at
-    if "pose" in said:
-        return CameraPosition(at.viewpoint, Pose(**said["pose"]))
+def position_after(position: CameraPosition, name: str, arguments: Mapping[str, Any], result: Mapping[str, Any]) -> CameraPosition:
+    if "error" in result:
+        return position
+    if "pose" in result:
+        return CameraPosition(position.viewpoint, Pose(**result["pose"]))
     if name == "adjust_ptz":
-        wanted = requested_pose(at.pose, AdjustPtz.model_validate(arguments), Limits())
-        return CameraPosition(at.viewpoint, Limits().clamp(wanted)[0])
+        requested = requested_pose(position.pose, AdjustPtz.model_validate(arguments), Limits())
+        return CameraPosition(position.viewpoint, Limits().clamp(requested)[0])
     if name == "go_to_preset":
         return PRESETS[arguments["name"]]
-    return START if name == "go_home" else at
+    return START if name == "go_home" else position
 
 
-def aim(at: CameraPosition) -> Aim:
-    return Aim(viewpoint=at.viewpoint or "", pan_deg=at.pose.pan_deg, tilt_deg=at.pose.tilt_deg, zoom=at.pose.zoom)
+def aim(position: CameraPosition) -> Aim:
+    return Aim(
+        viewpoint=position.viewpoint or "", pan_deg=position.pose.pan_deg, tilt_deg=position.pose.tilt_deg, zoom=position.pose.zoom
+    )
 
 
-def final(at: CameraPosition) -> FinalPose:
-    return FinalPose(**aim(at).model_dump())
+def final(position: CameraPosition) -> FinalPose:
+    return FinalPose(**aim(position).model_dump())
 
 
-def view(at: CameraPosition, **further: Any) -> EvidenceView:
-    """The view of a standing as a whole, unless items are given."""
-    whole = further.pop("whole", "items" not in further)
-    return EvidenceView(aim=aim(at), hfov_deg=AXIS_M5075_G.hfov_deg(at.pose.zoom), whole=whole, **further)
+def view(position: CameraPosition, **extra: Any) -> EvidenceView:
+    """Return evidence at a camera position: the whole view, unless items are given."""
+    whole = extra.pop("whole", "items" not in extra)
+    return EvidenceView(aim=aim(position), hfov_deg=AXIS_M5075_G.hfov_deg(position.pose.zoom), whole=whole, **extra)
 
 
 def task(
@@ -113,14 +117,14 @@ def task(
     scope: Scope = "current",
     evidence: Sequence[EvidenceView] = (),
     behaviour: Behaviour | None = None,
-    **further: Any,
+    **extra: Any,
 ) -> Task:
     return Task(
         id=f"scope1-test-{category.replace('_', '-')}-{number:03d}",
         dataset="scope1",
         scene="test",
         preset="gate",
-        instruction=further.pop("instruction", "do it"),
+        instruction=extra.pop("instruction", "do it"),
         category=category,
         scope=scope,
         difficulty="easy",
@@ -128,23 +132,23 @@ def task(
         evidence=tuple(evidence),
         behaviour=behaviour or Behaviour(),
         reference=tuple(ProgramCall(tool=s[0], arguments=s[1]) for s in steps),
-        **further,
+        **extra,
     )
 
 
-def counted(number: int, what: str = "cones", where: str = "current") -> Step:
+def count_step(number: int, description: str = "cones", view: str = "current") -> Step:
     return (
         "count_objects",
-        {"description": what, "view": where},
-        {"count": number, "view": where, "message": f"{number} of '{what}'"},
+        {"description": description, "view": view},
+        {"count": number, "view": view, "message": f"{number} of '{description}'"},
     )
 
 
-def told(answer: str, question: str, where: str = "current") -> Step:
+def query_step(answer: str, question: str, view: str = "current") -> Step:
     return (
         "query_answer",
-        {"question": question, "view": where},
-        {"answer": answer, "known": True, "view": where, "message": answer},
+        {"question": question, "view": view},
+        {"answer": answer, "known": True, "view": view, "message": answer},
     )
 
 
@@ -160,28 +164,28 @@ SIGN_VIEW = CameraPosition("mast", Pose(22.0, -5.0, 4.0))
 
 
 def samples() -> list[tuple[Task, Episode]]:
-    """One task of every kind of answer and behaviour, each with a run that passes."""
+    """Return one task for each type of answer and behaviour, each with a run that passes."""
     cones = Number(value=5, unit=("cone", "traffic cone"))
-    made = list[tuple[Task, Episode]]()
+    pairs = list[tuple[Task, Episode]]()
 
-    def add(category: Category, expected: AnyExpected, steps: list[Step], text: str, **further: Any) -> None:
-        made.append((task(len(made) + 1, category, expected, steps, **further), play(steps, text)))
+    def add(category: Category, expected: AnyExpected, steps: list[Step], text: str, **extra: Any) -> None:
+        pairs.append((task(len(pairs) + 1, category, expected, steps, **extra), play(steps, text)))
 
     add(
-        "counting", cones, [GO_HIGHWAY, counted(5)], "There are 5 cones.",
+        "counting", cones, [GO_HIGHWAY, count_step(5)], "There are 5 cones.",
         evidence=[view(AT_HIGHWAY, shows=cones, about=("cone",))],
         behaviour=Behaviour(final=final(AT_HIGHWAY), calls=(TO_HIGHWAY,)),
         needs=("preset",), instruction="Go to highway and count the cones.",
     )  # fmt: skip
     cars = Number(value=12, unit=("car",))
     add(
-        "counting", cars, [counted(12, "cars", "full")], "I count 12 cars.", scope="full",
+        "counting", cars, [count_step(12, "cars", "full")], "I count 12 cars.", scope="full",
         evidence=[view(START, scope="full", band_deg=(-55.0, 25.0), shows=cars, about=("car",))], needs=("sweep",),
         instruction="Sweep the scene and count all cars.",
     )  # fmt: skip
     red = Choice(value="red", options={"red": (), "blue": (), "white": (), "green": ()})
     add(
-        "descriptor", red, [GO_BRIDGE, told("The van is red.", "What colour is the van?")], "The van is red.",
+        "descriptor", red, [GO_BRIDGE, query_step("The van is red.", "What colour is the van?")], "The van is red.",
         evidence=[view(AT_BRIDGE, items=(VAN,), shows=red)],
         needs=("preset",), instruction="What colour is the van at the bridge?",
     )  # fmt: skip
@@ -191,32 +195,33 @@ def samples() -> list[tuple[Task, Episode]]:
         {"found": True, "matches": 1, "chosen": "sign", "pose": {"pan_deg": 22.0, "tilt_deg": -5.0, "zoom": 4.0}},
     )  # fmt: skip
     add(
-        "ocr", sign, [zoom, told("ROAD CLOSED", "What does the sign say?")], 'The sign reads "ROAD CLOSED".',
+        "ocr", sign, [zoom, query_step("ROAD CLOSED", "What does the sign say?")], 'The sign reads "ROAD CLOSED".',
         evidence=[view(SIGN_VIEW, items=(SIGN,), shows=sign)],
         needs=("zoom",), instruction="Zoom in on the sign and read it.",
     )  # fmt: skip
     none = NoneThere(subject=("bicycle", "bike"))
     add(
-        "location", none, [GO_HIGHWAY, counted(0, "bicycles")], "There are no bicycles.",
+        "location", none, [GO_HIGHWAY, count_step(0, "bicycles")], "There are no bicycles.",
         evidence=[view(AT_HIGHWAY, shows=none)], needs=("preset",), instruction="Is there a bicycle at the highway?",
     )  # fmt: skip
-    there = YesNo(value=True, affirms=("van",))
+    presence = YesNo(value=True, affirms=("van",))
     add(
-        "location", there, [GO_HIGHWAY, counted(1, "van")], "Yes, there is a van.",
-        evidence=[view(AT_HIGHWAY, shows=there)], needs=("preset",), instruction="Is there a van at the highway?",
+        "location", presence, [GO_HIGHWAY, count_step(1, "van")], "Yes, there is a van.",
+        evidence=[view(AT_HIGHWAY, shows=presence)], needs=("preset",), instruction="Is there a van at the highway?",
     )  # fmt: skip
     more = Relation(value="forward", subject=("gate",), object=("highway",), forward=("more",), backward=("fewer",))
     add(
-        "comparative", more, [counted(5, "cars"), GO_HIGHWAY, counted(3, "cars")], "The gate has more cars than the highway.",
-        evidence=[view(at, shows=Number(value=n, unit=("car",))) for at, n in ((START, 5), (AT_HIGHWAY, 3))],
+        "comparative", more, [count_step(5, "cars"), GO_HIGHWAY, count_step(3, "cars")], "The gate has more cars than the highway.",
+        evidence=[view(position, shows=Number(value=n, unit=("car",))) for position, n in ((START, 5), (AT_HIGHWAY, 3))],
         needs=("preset",), instruction="Which shows more cars, gate or highway?",
     )  # fmt: skip
     order = Ordering(
         value=("highway", "gate", "bridge"), options={"highway": (), "gate": (), "bridge": ()}, first=("most",), last=("fewest",)
     )
     add(
-        "comparative", order, [counted(4), GO_HIGHWAY, counted(9), GO_BRIDGE, counted(1)], "highway, gate, bridge",
-        evidence=[view(at, shows=Number(value=n, unit=("cone",))) for at, n in ((START, 4), (AT_HIGHWAY, 9), (AT_BRIDGE, 1))],
+        "comparative", order, [count_step(4), GO_HIGHWAY, count_step(9), GO_BRIDGE, count_step(1)], "highway, gate, bridge",
+        evidence=[view(position, shows=Number(value=n, unit=("cone",))) for position, n in
+                  ((START, 4), (AT_HIGHWAY, 9), (AT_BRIDGE, 1))],
         needs=("preset",), instruction="Rank the presets by cones.",
     )  # fmt: skip
     turned = CameraPosition("mast", Pose(30.0, -20.0, 1.0))
@@ -248,7 +253,7 @@ def samples() -> list[tuple[Task, Episode]]:
     )  # fmt: skip
     seven = Number(value=7, unit=("cone",))
     add(
-        "multi_step_reasoning", seven, [GO_HIGHWAY, counted(4), ("adjust_ptz", {"pan_deg": 15.0}), counted(7)],
+        "multi_step_reasoning", seven, [GO_HIGHWAY, count_step(4), ("adjust_ptz", {"pan_deg": 15.0}), count_step(7)],
         "I see seven cones now.",
         evidence=[view(AT_HIGHWAY, shows=Number(value=4, unit=("cone",))), view(BEYOND_HIGHWAY, shows=seven)],
         behaviour=Behaviour(
@@ -259,7 +264,7 @@ def samples() -> list[tuple[Task, Episode]]:
     )  # fmt: skip
     machines = NameSet(value=("excavator", "roller"), options={"excavator": ("digger",), "roller": (), "van": (), "generator": ()})
     add(
-        "descriptor", machines, [GO_HIGHWAY, told("an excavator and a roller", "Which machines are there?")],
+        "descriptor", machines, [GO_HIGHWAY, query_step("an excavator and a roller", "Which machines are there?")],
         "an excavator and a roller",
         evidence=[view(AT_HIGHWAY, shows=machines)], needs=("preset",), instruction="Which machines are at the highway?",
     )  # fmt: skip
@@ -268,8 +273,8 @@ def samples() -> list[tuple[Task, Episode]]:
         contradictions=(Fact(any_of=("snow",)), Fact(any_of=("night",))),
     )
     add(
-        "descriptor", scene, [GO_HIGHWAY, told("An excavator behind a row of cones.", "Describe the view.")],
+        "descriptor", scene, [GO_HIGHWAY, query_step("An excavator behind a row of cones.", "Describe the view.")],
         "An excavator stands behind a row of cones.", evidence=[view(AT_HIGHWAY, shows=scene)], needs=("preset",),
         instruction="Describe the view at the highway.",
     )  # fmt: skip
-    return made
+    return pairs
