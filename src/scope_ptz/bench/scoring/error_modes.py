@@ -29,7 +29,7 @@ from scope_ptz.geometry import Perspective
 
 
 class ErrorMode(StrEnum):
-    """The reasons a run can fail, in order of precedence."""
+    """Why a run failed, in the order of precedence."""
 
     LACK_OF_TOOL_CALL = "lack_of_tool_call"
     TOOL_ROUTING = "tool_routing"
