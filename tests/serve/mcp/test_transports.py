@@ -276,7 +276,7 @@ def test_a_missing_package_is_named_with_its_extra(options: str) -> None:
     program = [sys.executable, "-c", MISSING.format(options=options)]
     done = subprocess.run(program, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     assert done.returncode == 2
-    assert done.stderr == "scope: The server needs mcp. Install it with: pip install 'scope-ptz[serve]'.\n"
+    assert done.stderr == "scope: The server requires the package mcp. Install it with: pip install 'scope-ptz[serve]'.\n"
 
 
 @pytest.mark.full
