@@ -40,12 +40,12 @@ def facts(behaviour: Behaviour) -> dict[str, str]:
 
 
 def test_vllm() -> None:
-    told = facts(serving_pages(VLLM))
-    assert told["/v1/models max_model_len"] == "16384"
-    assert told["/version version"] == "0.33.0"
-    assert told["/metrics gpu_memory_utilization"] == "0.9"
-    assert "/metrics x" not in told
-    assert memory_gb(told) is None
+    stated = facts(serving_pages(VLLM))
+    assert stated["/v1/models max_model_len"] == "16384"
+    assert stated["/version version"] == "0.33.0"
+    assert stated["/metrics gpu_memory_utilization"] == "0.9"
+    assert "/metrics x" not in stated
+    assert memory_gb(stated) is None
 
 
 @pytest.mark.parametrize(("places", "expected"), [(OLLAMA, 5.0), (SGLANG, 10.75)])

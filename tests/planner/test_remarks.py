@@ -92,6 +92,39 @@ def test_remarks_that_may_matter_are_asked_about(instruction: str) -> None:
     assert not plan(instruction, PRESETS).calls
 
 
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "I changed my mind",
+        "the boss says no",
+        "that was a joke",
+        "it isn't needed",
+        "that is not allowed",
+        "we don't want that any more",
+        "the camera is not supposed to move",
+        "it has already been done",
+        "no wait that's a mistake",
+    ],
+)
+def test_statements_that_take_a_command_back_are_not_ignored(statement: str) -> None:
+    planned = plan(f"pan left 10, {statement}", PRESETS)
+    assert (planned.calls, planned.clarification) == ((), "Shall I do that, or not?")
+
+
+@pytest.mark.parametrize("words", ["don't", "actually don't", "no need", "don't bother", "no hang on", "hold on", "not yet"])
+def test_words_that_take_a_command_back_are_not_ignored(words: str) -> None:
+    planned = plan(f"go home, {words}", PRESETS)
+    assert (planned.calls, planned.clarification) == ((), "Shall I do that, or not?")
+
+
+@pytest.mark.parametrize(
+    "negation",
+    ["don't", "don't you dare", "could you not", "please do not", "you mustn't", "never", "I don't want you to", "let's not"],
+)
+def test_forbidden_moves_are_not_made(negation: str) -> None:
+    assert plan(f"{negation} pan left", PRESETS).calls == ()
+
+
 def test_a_preset_after_on_is_a_place_unless_things_have_its_name() -> None:
     names = [call.name for call in plan("how many people are on the helipad?", PRESETS).calls]
     assert names == ["go_to_preset", "count_objects"]

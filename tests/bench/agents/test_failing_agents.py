@@ -43,9 +43,10 @@ def pids_in(folder: Path) -> list[int]:
     return [int(path.name.removeprefix("pid-")) for path in folder.glob("pid-*")]
 
 
-def wait_for_pid(folder: Path) -> int:
-    """Wait until a process has left a file in a folder, and return its id."""
+def wait_for_pid(folder: Path, parent: subprocess.Popen[bytes] | None = None) -> int:
+    """Wait until a process has left a file in a folder, and return its id. Fail if the program that starts the process ends."""
     while not (found := pids_in(folder)):
+        assert parent is None or parent.poll() is None, "The program ended before it started the agent."
         time.sleep(0.05)
     return found[0]
 
@@ -279,10 +280,10 @@ def test_agents_do_not_outlive_a_scorer_that_is_killed(tmp_path: Path) -> None:
     scorer = f"""
 import anyio
 from tests.bench.agents.programs import *
-anyio.run(play, started_in(Path({str(tmp_path)!r}), {name!r}))
+anyio.run(run_to_reply, local_agent_in(Path({str(tmp_path)!r}), {name!r}))
 """
     process = subprocess.Popen([sys.executable, "-c", scorer])
-    pid = wait_for_pid(tmp_path)
+    pid = wait_for_pid(tmp_path, process)
     process.send_signal(signal.SIGKILL)
     process.wait()
     wait_for_end(pid)

@@ -118,7 +118,9 @@ def test_changed_source_is_a_different_evaluation(
     assert "already complete" in run_as("x").err
     changed = run_as("a longer answer")
     assert "already complete" not in changed.err
-    assert re.search(r"The source code of quick_loop:Agent differs from that in logs/\S+\.eval, so this is a new evaluation\.", changed.out)
+    assert re.search(
+        r"The source code of quick_loop:Agent differs from that in logs/\S+\.eval, so this is a new evaluation\.", changed.out
+    )
     assert "measured on 2 earlier runs of this agent" in changed.out
     # Logs started in the same second cannot be ordered by name.
     evaluations = sorted(map(read_evaluation, Path("logs").glob("*.eval")), key=lambda e: len(e.trials[0].answer))

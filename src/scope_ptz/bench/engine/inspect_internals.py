@@ -42,7 +42,7 @@ def silence_display() -> None:
 
 
 def header_context() -> dict[str, Any]:
-    """Return the pydantic validation context for convert_read_errors a stored header."""
+    """Return the pydantic validation context for reading a stored header."""
     return get_deserializing_context()
 
 

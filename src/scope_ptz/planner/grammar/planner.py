@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.instruction_tree import Forbid, LookCloser, Thing
 
 GRAMMAR_VERSION = "3"
-"""Version of the plans, in traces and run cards. It is raised when an instruction can get another plan. Version 1 had no number."""
+"""Version of the plans, in traces and run cards. It is raised when any instruction gets a different plan."""
 
 
 class GrammarPlanner(Planner):

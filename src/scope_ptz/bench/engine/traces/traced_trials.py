@@ -35,7 +35,7 @@ from scope_ptz.errors import TraceError
 TRIAL = "trial"
 """Key for the trial in a score's metadata."""
 MAX_CACHED = 4096
-"""Maximum number of trials that are kept in memory, so that convert_read_errors a log again does not execute its checks again."""
+"""Maximum number of trials that are kept in memory, so that reading a log again does not execute its checks again."""
 _COMPARED_FIELDS = (
     "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "planned_by", "tool_calls", "bad_calls",
     "perception_failures", "server_events", "input_tokens", "output_tokens", "timings", "looks",

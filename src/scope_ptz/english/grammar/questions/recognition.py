@@ -10,6 +10,9 @@ from importlib.resources import files
 from scope_ptz.english.grammar.questions.chart_parser import ChartParser
 from scope_ptz.english.grammar.questions.typed_tokens import Token, tokenise
 
+_NOUNS_TOO = frozenset({"face", "faces", "point", "points", "stand", "stands", "show", "hold"})
+"""Nouns that the grammar otherwise reads as verbs: "the man's face", "the taxi stand"."""
+
 MAX_TOKENS = 40
 """Maximum number of tokens. Longer input is rejected, because it is slow to parse and unlikely to be about a picture."""
 
@@ -52,7 +55,12 @@ def looks_like_description(text: str) -> bool:
     tokens = tokenise(text)
     if tokens and tokens[-1].type == "ONIT":
         tokens.pop()
-    if 0 < len(tokens) <= MAX_TOKENS and parser().matches(tokens, "description"):  # the number of readings does not matter here
-        return True
+    if 0 < len(tokens) <= MAX_TOKENS:  # the number of readings does not matter here
+        if parser().matches(tokens, "description"):
+            return True
+        if any(token in _NOUNS_TOO for token in tokens):
+            nouns = [Token("W", token) if token in _NOUNS_TOO else token for token in tokens]
+            if parser().matches(nouns, "description"):
+                return True
     match = _PARTICIPLE_PHRASE.fullmatch(text)
     return match is not None and is_description(match["noun"]) and (not match["object"] or looks_like_description(match["object"]))

@@ -12,44 +12,20 @@ from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset, plausible_name
+from scope_ptz.planner.grammar.binding.question_text import (
+    is_about_the_future,
+    is_answered_by_counts,
+    is_impersonal,
+    is_request_to_describe,
+    sought_thing,
+    split_at_preset,
+    two_questions,
+    with_antecedent,
+)
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
 
 _NOT_OBJECTS = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
-_BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
-_WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
-_FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
-_EXISTENCE = re.compile(
-    r"(?:(?:is|are) there|(?:can|do) you see|(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
-    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) (?:an? |any |the |some )?(.+?)"
-    r"(?: anywhere| in view| visible| right now| here| there| present|"
-    r" in (?:the )?(?:picture|frame|shot|image|sight)| on screen)?\s*\?*$",
-    re.IGNORECASE,
-)
-_TWO_QUESTIONS = re.compile(
-    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?)"
-    r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
-    re.IGNORECASE,
-)
-_WINNER = re.compile(
-    r"what(?:['’]s| is) the (?:total|sum|difference|result|answer)\W*|how many (?:is that|are there) (?:in total|"
-    r"altogether|together)\W*"
-    r"|where (?:there )?(?:are|is) (?:the )?(?:most|fewest|least)\W*"
-    r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
-    re.IGNORECASE,
-)
-_ANY_THERE = re.compile(
-    r"(?:is there|are there|(?:can|do) you see|is|are) (?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
-    re.IGNORECASE,
-)
-_DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
 _ONES = re.compile(r"\bones?\b", re.IGNORECASE)
-_POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
-_PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
-_IMPERSONAL = re.compile(
-    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like|\w+ing)\b"
-    r"|\bwhat('s| is) it\b|\bit is\b",
-    re.IGNORECASE,
-)
 _RELATIVE_POSITION = re.compile(
     r"(?:(?:just|only|slightly|a (?:bit|little|touch|tad)|right|directly) )*"
     r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
@@ -169,7 +145,10 @@ class Resolver:
 
     def _with_noun(self, text: str) -> str:
         """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
-        head = re.split(r" (?:on|in|at|by|with|near|behind) ", self.antecedent)[0].split(" ")[-1]
+        prepositions = r" (?:on|in|at|by|with|near|behind) "
+        parts = re.split(prepositions, self.antecedent)
+        is_in_phrase = len(parts) > 1 and re.search(rf"{prepositions}[\w ]*\bones?\b", text) is not None
+        head = parts[-1 if is_in_phrase else 0].split(" ")[-1]  # after cars on the red bridge: "cars on the blue one"
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
@@ -276,41 +255,29 @@ class Resolver:
         return [replace(step, parts=self._tallies(step.parts))]
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
-        if self.counted and (_WINNER.fullmatch(step.question.strip()) or _ANY_THERE.fullmatch(step.question.strip())):
-            return []  # the answer states the counts
-        if _DESCRIBE.fullmatch(step.question.strip()):
+        if self.counted and is_answered_by_counts(step.question):
+            return []
+        if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(f"{step.question} {self.antecedent if 'time' in step.question else ''}"):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
-        if step.embedded and _FUTURE.match(direct_question(step.question)):
-            raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
-        if two := _TWO_QUESTIONS.fullmatch(step.question.strip()):
-            first = self._ask(replace(step, question=f"{two['seen']}?"))
-            return [*first, *self._ask(ast.Ask(two["more"], step.view))]
-        if _WAITING.match(step.question):
+        if (two := two_questions(step.question)) is not None:
+            return [*self._ask(replace(step, question=two[0])), *self._ask(ast.Ask(two[1], step.view))]
+        if is_about_the_future(step.question, embedded=step.embedded):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         asked, close_up = plain_question(step.question)
         question, place = self._asked_at(direct_question(asked) if step.embedded else asked)
-        if _BARE_WHO_OR_WHAT.fullmatch(question.strip()):
-            question = f"{question.strip(' ?')} there?"
-        if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
-            question = _POSSESSIVE.sub(
-                f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1
-            )
-        if named := _EXISTENCE.match(question):
-            self.antecedent = named[1]
+        question = with_antecedent(question, self.antecedent)
+        self.antecedent = sought_thing(question) or self.antecedent
         zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.still else []
         return [*place, *zoom, ast.Ask(question, self._view(step.view))]
 
     def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
         """Split a question that ends with a preset ("... at gate?") into the question and a step to the preset."""
-        match = re.fullmatch(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
-        is_place = match and (match[5] or (not match[3] and match[2].lower() != "in"))
-        name = match_exactly(match[4], self.presets or ()) if match and is_place else None
-        if not match or not name:
+        if (split := split_at_preset(question, self.presets or ())) is None:
             return question, []
-        self.preset, self.whole_scene = name, False
-        return f"{match[1]}?", [ast.GoToPreset(ast.PresetRef(name, explicit=True))]
+        self.preset, self.whole_scene = split[1], False
+        return split[0], [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
 
     def _rescope(self, step: ast.Rescope) -> Sequence[ast.Step]:  # noqa: ARG002 - all methods for steps have this signature
         raise UnresolvedError("What shall I look for there?")
@@ -408,6 +375,11 @@ class Resolver:
             out += [ast.GoToPreset(place), *self.bind(step.body)]
         return out
 
+    def _sameat(self, step: ast.SameAt) -> Sequence[ast.Step]:
+        if not (body := self._last_question()):
+            raise UnresolvedError("What shall I do there?")
+        return self._atplaces(ast.AtPlaces(step.places, tuple(body)))
+
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
         self.compared = True
         return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
@@ -418,7 +390,7 @@ class Resolver:
         return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
 
     def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
-        places = [match_preset(t.text, self.presets) if self.presets else None for t in (step.first, step.second)]
+        places = [match_exactly(thing.text, self.presets or ()) for thing in (step.first, step.second)]
         if all(places) and not self.antecedent:
             raise UnresolvedError(f"What shall I count at {places[0]} and {places[1]}?")
         if all(places):
@@ -435,7 +407,7 @@ class Resolver:
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):
             return ast.Readable(self.thing(condition.thing))
-        if isinstance(condition, ast.Statement) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
+        if isinstance(condition, ast.Statement) and not condition.subject.text and is_impersonal(f"it {condition.predicate}"):
             return replace(condition, subject=ast.Thing("it"))
         if isinstance(condition, ast.Statement) and not condition.subject.text and not self.antecedent and self.preset:
             self.antecedent = self.preset.replace("-", " ")  # "go to the yard, and if it is empty, go home"

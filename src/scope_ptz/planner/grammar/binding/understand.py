@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.consistency.check import not_understood, objection
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
 
 if TYPE_CHECKING:
@@ -65,4 +66,6 @@ def _not_parsed(parsed: Parsed) -> UnresolvedError:
         return UnresolvedError(f"That is too long: I read at most {MAX_CHARS} characters, so I did nothing. Please split it.")
     if parsed.unread:
         return UnresolvedError(not_understood(parsed.unread))
+    if all(x.has("FILLER", "COMMA", "STOP", "QUESTION") for x in lexemes_of(parsed.text)):
+        return UnresolvedError(f"What shall I do? For example: {_EXAMPLES}.")  # "hello"
     return UnresolvedError(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")

@@ -1,7 +1,7 @@
 """Check that a plan accounts for its instruction.
 
-The check reads the instruction again, with simple rules of its own. What the parser or the builders lose, swallow or turn round is
-therefore noticed here, and the user is asked instead of a move being made.
+The check reads the instruction again, with simple rules of its own. It therefore notices words that the parser loses, swallows or
+turns round, so that the planner asks the user instead of moving the camera.
 """
 
 from __future__ import annotations
@@ -22,6 +22,10 @@ from scope_ptz.planner.grammar.consistency.words import Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
+_PURPOSE = re.compile(
+    r"\b(?:so|so that|because|as|since) (?:i|we) (?:can|could|cannot|can t|want to|need to) (?:see|view|watch)(?: \w+)?$"
+)
+"""The beginning of words that say what a move is for, before the name of the thing to be seen."""
 
 
 def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str] = ()) -> str | None:
@@ -76,11 +80,19 @@ def unvisited_presets(words: Sequence[Word], evidence: Evidence, presets: Sequen
             continue
         for i in range(len(words) - len(name) + 1):
             span = words[i : i + len(name)]
-            if [word.text for word in span] == name and not any(
-                word.is_described or word.is_negated or _in_other_name(word, evidence) for word in span
+            if (
+                [word.text for word in span] == name
+                and not _is_purpose(words, i)
+                and not any(word.is_described or word.is_negated or _in_other_name(word, evidence) for word in span)
             ):
                 found += span
     return found
+
+
+def _is_purpose(words: Sequence[Word], i: int) -> bool:
+    """Return whether the words before a position say what a move is for: "pan left 10 so I can see the dock"."""
+    before = " ".join(word.text for word in words[max(0, i - 7) : i])
+    return _PURPOSE.search(before) is not None
 
 
 def _in_other_name(word: Word, evidence: Evidence) -> bool:

@@ -96,7 +96,7 @@ def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:
 
 
 def _direction_like(text: str) -> str:
-    """Return the direction for a word that differs from it by one slip of the keys ("leeft"); other words as they are."""
+    """Return the direction for a word that differs from it by one typing error ("leeft"); other words unchanged."""
     return next((word for word in ("left", "right", "down") if len(text) > 3 and within_one_edit(text, word)), text)
 
 

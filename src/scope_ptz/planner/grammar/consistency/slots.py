@@ -12,6 +12,8 @@ _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
     r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
+    r"|\b(?:as )?compared (?:to|with)\b.*"
+    r"|^(?:the )?(?:left|right|up|down) (?:at|by|near|of|off|over|past|to|towards?|until|beside|behind|under)\b.*"
     r"|\b(?:are|is|were|was) there (?:at|by|from)\b.*|\bin the (?:whole|entire|full) (?:scene|area|site|view)\b.*",
     re.IGNORECASE,
 )
@@ -30,6 +32,7 @@ _SWALLOWED = tuple(
         r"-?\d+(?:\.\d+)? ?(?:°|degrees?\b|deg\b).*",
         rf"{_JOINED}(?:stop|stay|remain) (?:at|on|when|once|where)\b.*",
         r"^(?:the )?(?:sum|total) of\b.*",
+        r"^see (?:the|my|our)\b.*",
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
         r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )

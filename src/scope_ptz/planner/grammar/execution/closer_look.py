@@ -94,7 +94,7 @@ class CloserLook(RunState):
 
 
 def _named_in(result: dict[str, Any]) -> str:
-    """Return the thing that an answer names as the bearer of a text; empty if it names none.
+    """Return the thing that carries a text, according to an answer; empty if the answer names none.
 
     For "The price of the lettuce is on the price card for lettuce, but it is too small to read", it is "price card for lettuce".
     """
@@ -147,7 +147,7 @@ def thing_of(question: str) -> str:
 
 
 def offer_text(offer: Offer) -> str:
-    """Return the question whether to go closer. It states everything that ``offered`` reads back."""
+    """Return the question that asks whether to go closer. ``offered`` reads the offer back from this text."""
     thing, question = (json.dumps(text, ensure_ascii=False) for text in (offer.thing, offer.question))
     return f"Shall I zoom in on {thing} to answer {question}? {_END}"
 

@@ -296,12 +296,12 @@ class Program(Comparisons):
 
 
 def _is_opposed(aim: ast.Aim, pose: Pose) -> bool:
-    """Return whether a magnification lies in the other direction than the instruction says: "zoom in to 2x" at 4x."""
+    """Return whether a magnification is in the opposite direction to the instruction: "zoom in to 2x" at 4x."""
     return aim.axis == "zoom" and aim.sense * (aim.value - pose.zoom) < 0
 
 
 def _said_yes(result: dict[str, Any] | None) -> bool | None:
-    """Return whether an answer is yes or no; None if it is neither or not known."""
+    """Return True if an answer is yes, False if it is no, and None if it is neither or unknown."""
     if result is None or not result.get("known", True):
         return None
     match = re.match(r"\W*(yes|no)\b", result["answer"], re.IGNORECASE)

@@ -52,7 +52,9 @@ _AFTER_ENDING = frozenset(
 _COMMANDS = frozenset({"PAN", "TILT", "ZOOM", "SNAP", "TURN", "TRACK"})
 
 
-_ADDRESSED = frozenset({"operator", "captain", "skipper", "chief", "bud", "buddy", "mate", "pal", "boss", "lad"})
+_ADDRESSED = frozenset(
+    {"operator", "captain", "skipper", "chief", "bud", "buddy", "mate", "pal", "boss", "lad", "lads", "fella", "fellas"}
+)
 """Words for people, which only address someone unless a determiner precedes them."""
 
 
@@ -97,9 +99,9 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
 
 
 def _preset_word(word: str, known: set[str]) -> str:
-    """Return the word of a preset's name that a word with a slip stands for; any other word unchanged.
+    """Return the word in a preset's name that a misspelt word stands for; any other word unchanged.
 
-    A slip is a doubled letter ("yardd") or, in a long word, an exchange of two letters.
+    The misspelling is a doubled letter ("yardd") or, in a long word, an exchange of two letters.
     """
     single = {word[:i] + word[i + 1 :] for i in range(1, len(word)) if word[i] == word[i - 1]} & known
     if len(single) == 1 and len(word) > 4:
@@ -109,7 +111,7 @@ def _preset_word(word: str, known: set[str]) -> str:
 
 
 def _is_near(word: str, known: set[str]) -> bool:
-    """Return whether a word is a word of a preset's name or, unless it is an English word, a slip of one."""
+    """Return whether a word occurs in a preset's name or, unless it is an English word, nearly does."""
     if word in known:
         return True
     return len(word) > 3 and not is_english(word) and any(len(name) > 3 and within_one_edit(word, name) for name in known)
@@ -154,6 +156,10 @@ def _fits(words: Sequence[str], i: int, length: int, classes: frozenset[str], pr
     """Return whether an expression may stand at a position: it must not overlap a preset, and some expressions end a clause."""
     if words[i : i + length] == ["right", "then"] and i and words[i - 1].isalpha():
         return False  # "a quarter turn right then zoom in"
+    if words[i + 1 : i + length] == ["the", "far"] and (i + length >= len(words) or words[i + length] in {"end", "side", "corner"}):
+        return False  # "the car at the far end"
+    if words[i + 1 : i + length] == ["back"] and i + length < len(words) and words[i + length] in {"left", "right", "up", "down"}:
+        return False  # "swing back right 20"
     if words[i + 1 : i + length] == ["it", "up"] and i + length < len(words) and is_number_word(words[i + length]):
         return False  # "bring it up 11"
     if any(preset_at(words[j : i + length + 3], presets)[0] for j in range(i + 1, i + length)):
@@ -224,14 +230,14 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             and not (after and after.has("NUM"))
             and not (before and before.has("PAN", "TILT", "NUM", "TURN", "DEG", "AIM"))
         ):
-            classes = frozenset({"FREE"})
+            classes = frozenset({"SELF" if lexeme.word == "u" else "FREE"})  # "u see any cars?"
         elif lexeme.word in {"second", "seconds"} and lexeme.has("ORDINAL") and before and before.has("NUM", "FRACTION"):
             classes = frozenset({"SECONDS"})
         elif lexeme.word in {"hi", "there"} and lexeme.has("FILLER") and text[lexeme.end : lexeme.end + 1] == "-":
             classes = frozenset({"FREE"})  # "hi-vis vest"
         elif lexeme.word == "plus" and before and before.has("PAN", "TILT") and after and after.has("NUM"):
             classes = frozenset({"GLUE"})  # "tilt plus 5" has a sign
-        elif lexeme.word in _ADDRESSED and before and before.has("DET", "ANY") and not before.has("NUM", "PRON"):
+        elif lexeme.word in _ADDRESSED and before and before.has("DET", "ANY", "HOWMANY") and not before.has("NUM", "PRON"):
             classes = frozenset({"FREE"})  # "if no operator is visible"
         elif lexeme.word == "point" and before and before.has("DET", "PREP"):
             classes = frozenset({"FREE"})

@@ -1,4 +1,4 @@
-"""Correct slips of the keys in the words of the planner's vocabulary."""
+"""Correct typing errors in the words of the planner's vocabulary."""
 
 from __future__ import annotations
 

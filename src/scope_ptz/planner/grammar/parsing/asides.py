@@ -1,14 +1,15 @@
-"""Tell what is said beside a command: reasons, things pointed out, courtesy, and conditions without "if"."""
+"""Recognise remarks beside a command: reasons, things that are pointed out, courtesy, and conditions without "if"."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scope_ptz.planner.grammar.conditions import Condition, Seen, Thing
+from scope_ptz.planner.grammar.instruction_tree.conditions import Condition, Seen, Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.conditions import condition_of
-from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, Clause, Source
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS, Clause, Source
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
@@ -23,6 +24,10 @@ _STATE = (
 )
 _POINTED_OUT = (
     (
+        r"(FILLER)* SELF (MODAL|DOV|FILLER)* (think|believe|reckon|fear|suspect|understand|gather|hear) (that)? "
+        r"(?P<thing>(DET|NUM) _+?) (BE|HAVEV|MODAL) _+"
+    ),
+    (
         r"(FILLER)* (SELF (MODAL|DOV|HAVEV|think|believe|reckon)* (SEE|SEE-ED|SHOW)|(SELF (think|believe|"
         r"reckon))? there (BE|HAVEV been)) (?P<thing>_+)"
     ),
@@ -34,6 +39,30 @@ _FINE = (
     r"(it|that|this) (BE)? (not)? (all_right|FILLER|okay|ok|fine|convenient|possible|too much trouble|too "
     r"much|no trouble|a problem) _*|SELF (DOV|do) not mind _*|_{0,1} FILLER"
 )
+_WITHDRAWAL = re.compile(
+    r"\bchang\w+ (?:my|our|his|her|their) minds?\b|\bdecided (?:against|not)\b|\bsa(?:ys|id|y) no\b"
+    r"|\b(?:joke|joking|kidding|mistake|forbidden|prohibited|off limits)\b"
+    r"|\b(?:it|that|this) (?:is|was|has been|would be) (?:all )?(?:wrong|an error|banned|unnecessary|cancell?ed|called off)\b"
+    r"|\b(?:not|never|no longer) (?:be(?:en|ing)? )?(?:allowed|permitted|needed|necessary|required|supposed|wanted|meant)\b"
+    r"|\b(?:not|nobody|no one) (?:wants?|needs?|asked for) (?:it|that|this|you|them|any)\b"
+    r"|\b(?:has|have) already been done\b|\balready did (?:it|that)\b"
+)
+"""Words of statements that may take back or forbid what was asked."""
+
+_TAKEN_BACK = (
+    "(no|nah|nope|wait|oh|ah|hang on|hold on|hang_on|hold_on|actually|BUT|FILLER|COMMA|DASH|QUOTE)* ("
+    "(DOV|do|MODAL)? (not|never|NOT|(?!no_more) NEGATED|do_not|do_not_bother|no_need) "
+    "(mind|bother|worry|need|DOACT|yet|now|REPEAT|SELF dare|WRAPPER|(do|go|with) (it|that|there))?|"
+    "(no|nah|nope) (wait|hang on|hold on|hang_on|hold_on|stop)+|(hang on|hold on|hang_on|hold_on|wait)) "
+    "(FILLER|yet|now|then|COMMA|after all)*"
+)
+"""Words after a command that take it back, as in "no, don't", "no need" and "hang on"."""
+
+_MOVE_AT_THE_END = (
+    f"COMMA (NOW|FILLER|AND|BUT|COMMA)* ({'|'.join(DIRECTIONS)}|IN|OUT|CLOSER|WIDER) (LITTLE|LOT|LIMIT|MORE|FILLER)* (COMMA|\\Z)"
+)
+"""A move without a verb after a remark, as in "that has it, left a bit". It is carried out or asked about, never ignored."""
+
 _NOT_A_REASON = frozenset({"must", "should", "never", "both"})
 
 
@@ -45,6 +74,23 @@ def is_reason(lexemes: Sequence[Lexeme]) -> bool:
 def is_wish(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether a clause says what the user wants to see."""
     return bool(full_match(f"(FILLER|COMMA)* ({_WISH})", lexemes))
+
+
+def withdraws(clause: Clause) -> bool:
+    """Return whether a statement may take back or forbid what was asked: "I changed my mind", "that is not allowed".
+
+    Unlike other statements, it must not be ignored.
+    """
+    words = " ".join(x.word.replace("_", " ") for x in clause.lexemes)
+    if clause.is_question or _WITHDRAWAL.search(words) is None:
+        return False
+    openers = match_start("(no|wait|oh|hang_on|hold_on|FILLER|COMMA|HALT)*", clause.lexemes)
+    return is_statement(clause.lexemes) or is_statement(clause.lexemes[openers.size if openers else 0 :])
+
+
+def takes_back(clause: Clause) -> bool:
+    """Return whether a clause after a command takes it back: "... no, don't", "... no need", "... hang on"."""
+    return not clause.is_question and full_match(_TAKEN_BACK, clause.lexemes) is not None
 
 
 def is_news(clause: Clause) -> bool:
@@ -61,7 +107,7 @@ def is_shared_knowledge(clause: Clause) -> bool:
 
 
 def explains(clause: Clause, clauses: int) -> bool:
-    """Return whether a clause that cannot be read only says why the others shall be done.
+    """Return whether a clause that cannot be read only gives the reason for the others.
 
     It must not state an angle, a place, or something to do several times.
 
@@ -81,6 +127,8 @@ def explains(clause: Clause, clauses: int) -> bool:
     denies = any(x.has("NOT") for x in clause.lexemes)
     if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):
         return False
+    if search(_MOVE_AT_THE_END, clause.lexemes):
+        return False
     if _NOT_A_REASON & {x.word for x in clause.lexemes} and not match_start("(FILLER)* (i|we) never FREE", clause.lexemes):
         return False
     return not any(x.has("NUM", "DEG", "PAN", "TILT", "ZOOM", "PRESET", "HOME") for x in clause.lexemes)
@@ -96,7 +144,8 @@ def pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing |
         or not search("(it|them|him|her|PRON)", after.lexemes)
     ):
         return None
-    if any(x.has("NUM", "DEG", "NOT", "NONE", "IF", "HOME") for x in clause.lexemes) or clause.lexemes[0].has(*VERBS):
+    excluded = ("NUM", "DEG", "NOT", "NONE", "IF", "HOME", "EXCEPT", "WHOLETHING")
+    if any(x.has(*excluded) for x in clause.lexemes) or clause.lexemes[0].has(*VERBS):
         return None
     for pattern in _POINTED_OUT:
         match = full_match(pattern, clause.lexemes)
@@ -145,5 +194,5 @@ def is_ability(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def is_need(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the words after "if" leave it to the planner: "needed", "you have to"."""
+    """Return whether the words after "if" leave the decision to the planner: "needed", "you have to"."""
     return bool(full_match(f"(FILLER)* {_NEED} (FILLER)*", lexemes))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import replace
 
-from scope_ptz.planner.grammar.conditions import Condition, Negated, PresetOutnumbers, Quantity, Seen
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     Bound,
@@ -14,6 +13,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Linked,
     Step,
 )
+from scope_ptz.planner.grammar.instruction_tree.conditions import Condition, Negated, PresetOutnumbers, Quantity, Seen
 from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.conditions import condition_of, named_thing, without_happening
@@ -98,7 +98,7 @@ class Branches(ClauseReading):
         return If(condition, tuple(then), tuple(otherwise))
 
     def _block(self, steps: list[Step]) -> list[Step]:
-        """Return steps with those of the clauses up to the end of the sentence or the next "otherwise"."""
+        """Return the given steps, followed by those of the clauses up to the end of the sentence or the next "otherwise"."""
         while (clause := self._peek()) is not None:
             if bound_of(clause) is not None and steps:
                 break
@@ -110,7 +110,7 @@ class Branches(ClauseReading):
         return steps
 
     def _trailing(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
-        """Return "take a picture if ...", with the "otherwise" that may follow."""
+        """Return the step for "take a picture if ...", with the "otherwise" that may follow."""
         condition, places = self._condition(clause)
         otherwise: list[Step] = []
         after = self._peek()

@@ -1,4 +1,4 @@
-"""Read one clause after another, each with what the clauses before it leave out in it."""
+"""Read clauses one after another, and fill in what a clause leaves out because an earlier clause states it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 from scope_ptz.planner.grammar.instruction_tree import (
     Aim,
     Ask,
+    AtIntervals,
     AtPlaces,
     Back,
     Count,
@@ -82,9 +83,11 @@ class ClauseReading:
         return [Linked(clause.link, Unclear("Shall I do that, or not?"))]
 
     def _read(self, clause: Clause) -> tuple[Step, ...]:
-        """Return the steps of a clause, which may leave out the verb of the clause before: "..., then on the bin"."""
+        """Return the steps of a clause, which may leave out the verb of the previous clause: "..., then on the bin"."""
+        looks_at_place = isinstance(self.last, AtPlaces) and all(isinstance(step, Count | Ask) for step in self.last.body)
+        preposition = "(at|in|from)?" if looks_at_place and not clause.marker else "(at|in|from)"
         if (
-            (match := full_match("(at|in|from) (?P<places>_+)", clause.lexemes))
+            (match := full_match(f"{preposition} (?P<places>_+)", clause.lexemes))
             and isinstance(self.last, Count | Ask | AtPlaces)
             and not clause.is_question
             and (places := places_of(self.reader.source, match["places"]))
@@ -137,6 +140,9 @@ class ClauseReading:
         """Return the steps of a clause. "Go to the gate, zoom in and return" is asked about: there are two places to return to."""
         if clause.link == ".":
             self.has_visited = self.has_left = False
+        returns_here = any(isinstance(s, Back) for s in steps) and any(x.word == "here" for x in clause.lexemes)
+        if returns_here and (self.visits_in_row > 1 or self.has_left):
+            return (Unclear("Shall I go back to the last place, or to where the camera points now?"),)
         is_undo = any(x.has("UNDO", "ZOOM", "ZOOMNOUN") for x in clause.lexemes)
         if (
             self.has_left
@@ -171,7 +177,7 @@ class ClauseReading:
         return type(steps[0]) is type(self.last) and not is_conditional
 
     def _checked(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
-        """Return the steps of a clause, or what else its words ask for in this place."""
+        """Return the steps of a clause, corrected for its context."""
         first = clause.lexemes[0] if clause.lexemes else None
         slip = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA") or x.word in _SLIPS), None)
         steps = tuple(calculated(clause.lexemes, step) for step in steps)
@@ -208,27 +214,24 @@ class ClauseReading:
             return ()  # "turn round and face the other way"
         if self._is_aside(clause, steps):
             return ()
-        is_visit = len(steps) == 1 and isinstance(steps[0], GoToPreset) and steps[0].how == "bare"
-        if is_visit and first is not None and first.has("BE"):
-            return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
-        if is_visit and match_start("(FILLER)* (this|that|it|SELF) BE ", clause.lexemes):
-            return (Unclear("Shall I go there?"),)  # "this is the gate"
-        if is_visit and first is not None and first.word in {"what_about", "how_about"} and self.last is None:
-            return (Unclear("What shall I look for there?"),)
-        words = [x.word for x in clause.lexemes]
+        if len(steps) == 1 and isinstance(steps[0], GoToPreset) and steps[0].how == "bare":
+            return self._checked_visit(clause, steps)
         if isinstance(self.last, ListPresets) and full_match(
             "(FILLER)* (LISTING|SHOW|TELL) (me|us)* (em|them|PRON)", clause.lexemes
         ):
             return ()  # "presets? List them."
-        if is_visit and self.has_pictured_preset and clause.link in {",", "and", "then"}:
-            return (*steps, Snap())  # "photograph the gate, then the yard"
         self.has_pictured_preset = len(steps) == 1 and isinstance(steps[0], AtPlaces) and steps[0].body == (Snap(),)
-        if is_visit and words[:1] in (["one"], ["another"], ["another_one"]):
-            return (*steps, Snap())  # "a shot of the gate and one of the yard"
+        words = [x.word for x in clause.lexemes]
         if words[-2:] == ["take", "one"] and isinstance(self.last, Snap):
             return ()  # "my boss wants a photo of the trailer, so take one"
         moves = bool(steps) and all(isinstance(step, Move | Snap) for step in steps)
         zooms = [part for step in steps if isinstance(step, Move) for part in step.parts if isinstance(part, Zoom)] if moves else []
+        multiplied = full_match("(FILLER)* (DOUBLE|TRIPLE|QUADRUPLE|HALVE) (?P<what>PRON) (FILLER)*", clause.lexemes)
+        if multiplied and (
+            (isinstance(self.last, Move) and all(isinstance(part, Turn) for part in self.last.parts))
+            or (self.last is None and multiplied["what"][0].word == "that")
+        ):
+            return (Unclear("Shall I change the zoom, or turn again? Please say by how much."),)
         is_in = bool(match_start("(FILLER|WRAPPER)* ZOOM IN", clause.lexemes))
         if is_in and any(part.kind == "factor" and part.value < 1 for part in zooms):
             return (Unclear("Shall I zoom in or out?"),)  # "zoom in half"
@@ -239,6 +242,8 @@ class ClauseReading:
             return (Unclear("Is that the angle to turn to, or the angle to turn by?"),)  # "set zoom 4x, pan 10 and tilt -5"
         if is_aimed and (again := full_match("(FILLER|to)* (?P<target>NUM) X (FILLER)*", clause.lexemes)):
             return (Move((Aim("zoom", again["target"][0].value),)),)  # "zoom to 2x, then 10x"
+        if moves and isinstance(self.last, AtIntervals) and any(isinstance(step, Snap) and step.times > 1 for step in steps):
+            return (Unclear("How far shall I turn in all?"),)  # "every 15 degrees to the right take a picture, four pictures"
         if moves and [x.word for x in clause.lexemes[:2]] == ["make", "that"]:
             return (Unclear("Which way shall I turn, and how far?"),)  # a correction of something that was not said
         if moves and self.has_zoomed_in and any(x.word == "back_out" for x in clause.lexemes) and not search("NUM", clause.lexemes):
@@ -250,10 +255,30 @@ class ClauseReading:
             return (Count((steps[0].thing,), "full"),)  # "sweep round and look for a ladder"
         return steps
 
+    def _checked_visit(self, clause: Clause, visit: tuple[Step, ...]) -> tuple[Step, ...]:
+        """Return the steps of a clause that only names a preset, corrected for its context."""
+        words = [x.word for x in clause.lexemes]
+        if clause.lexemes[0].has("BE"):
+            return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
+        if match_start("(FILLER)* (this|that|it|SELF) BE ", clause.lexemes):
+            return (Unclear("Shall I go there?"),)  # "this is the gate"
+        if words[0] in {"what_about", "how_about"} and self.last is None:
+            return (Unclear("What shall I look for there?"),)
+        if words[-1] == "last" and self._peek() is not None:
+            return (Unclear("In which order shall I visit them?"),)  # "the gate last, the yard first"
+        if self.has_pictured_preset and clause.link in {",", "and", "then"}:
+            return (*visit, Snap())  # "photograph the gate, then the yard"
+        self.has_pictured_preset = False
+        if words[0] in {"one", "another", "another_one"}:
+            return (*visit, Snap())  # "a shot of the gate and one of the yard"
+        return visit
+
     def _without_verb(self, clause: Clause) -> Step | None:
-        """Return the step of the clause before with another thing; None if the clause is not a noun phrase."""
+        """Return the previous clause's step with another thing; None if the clause is not a noun phrase."""
         match = full_match(r"(on|onto|at|to|for|of)? (?P<thing>_+)", bare_clause(clause.lexemes))
-        thing = thing_of(self.reader.source, match["thing"]) if match else None
+        if match is None or full_match("(DET)? PRESET (PRESETNOUN|ORDINAL|FIRSTLY|first)*", match["thing"]):
+            return None
+        thing = thing_of(self.reader.source, match["thing"])
         if thing is None or not thing.text or clause.lexemes[-1].word in {"away", "off", "back"}:
             return None
         match self.last:

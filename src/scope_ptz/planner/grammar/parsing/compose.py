@@ -108,7 +108,7 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
             out[-len(visited) :] = [
                 replace(step, places=(*visited, *places))
             ]  # "visit gate, then yard, and stop at the first with a van"
-        case SameAt():
+        case SameAt() if out:
             out.append(AtPlaces(step.places, done_at_place(out)))
         case _:
             return False
@@ -116,9 +116,9 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
 
 
 def _restates(first: Move, second: Move) -> bool:
-    """Return whether a move without a verb and an amount follows one with an amount: "6 degrees of tilt, upwards".
+    """Return whether a move without a verb and an amount may restate the previous one: "6 degrees of tilt, upwards".
 
-    It may only say the same in other words, so it must not be made as another move.
+    Such a move must not be made in addition.
     """
     if second.has_verb:
         return False

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.planner.grammar.conditions import (
+from scope_ptz.planner.grammar.instruction_tree.conditions import (
     Answered,
     Condition,
     Joined,
@@ -267,7 +267,7 @@ def named_thing(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
 
 
 def _names_a_thing(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes are a known noun with what describes it: "smoke", "queue at the gate", unlike "open"."""
+    """Return whether lexemes are a known noun with its modifiers: "smoke", "queue at the gate", unlike "open"."""
     head = next((i for i, x in enumerate(lexemes) if x.has("PREP")), len(lexemes))
     return 0 < head < 4 and all(x.has("FREE", "DET") for x in lexemes[:head]) and is_noun(lexemes[head - 1].word)
 

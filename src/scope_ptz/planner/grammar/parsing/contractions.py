@@ -9,6 +9,9 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 
 _CONDITIONS = ("IF", "WHEN", "UNLESS", "UNTIL", "WHILE")
+_CHECKS = frozenset({"check", "make_sure", "ensure", "verify", "confirm"})
+"""Verbs before a statement to be checked: "check the gate's shut"."""
+
 _ENDS = ("COMMA", "STOP", "QUESTION", "COLON", "THEN", "DASH", "IFNOT")
 _SUBJECTS = ("FREE", "PRESET", "SOMEONE")
 _VERBS = ("BE", "HAVEV", "MODAL", "DOV")
@@ -19,7 +22,7 @@ def with_contractions(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     out = list(lexemes)
     is_condition = False
     for i, x in enumerate(out):
-        is_condition = (is_condition or x.has(*_CONDITIONS)) and not x.has(*_ENDS)
+        is_condition = (is_condition or x.has(*_CONDITIONS) or x.word in _CHECKS) and not x.has(*_ENDS)
         if not is_condition or x.word != "'s" or not i or i + 1 >= len(out) or not out[i - 1].has(*_SUBJECTS):
             continue
         end = next((j for j in range(i, len(out)) if out[j].has(*_ENDS)), len(out))

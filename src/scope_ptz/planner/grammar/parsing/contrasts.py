@@ -1,7 +1,7 @@
-"""Drop what is denied beside what is meant: "go to the cove, not the pool", "pan right, not left, 20", "not the gate, the yard".
+"""Drop negated alternatives: "go to the cove, not the pool", "pan right, not left, 20", "not the gate, the yard".
 
-What is denied must be of the same kind as what is meant: a direction, a preset, or pan, tilt or zoom. Other negations are left as
-they are.
+A negated alternative must be of the same kind as the other one: a direction, a preset, or pan, tilt or zoom. Other negations are
+left as they are.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _AHEAD = rf"(FILLER|COMMA|no|correction|COLON)* {_DENIED} (NUM DEG?)? (COMMA|COL
 
 
 def without_denials(repaired: Repaired) -> Repaired:
-    """Return an instruction without what is denied beside what is meant."""
+    """Return an instruction without its negated alternatives."""
     lexemes = repaired.lexemes
     if match_start("(FILLER)* (BE|DOV|WHQ|HOWMANY|MODAL)", lexemes):
         return repaired
@@ -42,12 +42,12 @@ def without_denials(repaired: Repaired) -> Repaired:
 
 
 def _alike(lexemes: Sequence[Lexeme], denied: Lexeme) -> bool:
-    """Return whether words name something of the same kind as what is denied, and not the same."""
+    """Return whether lexemes name something of the same kind as the negated alternative, but not the same thing."""
     kind = next(kind for kind in _KINDS if denied.has(*kind))
     return any(x.has(*kind) and x.word != denied.word for x in lexemes)
 
 
 def _is_complete(lexemes: Sequence[Lexeme], denied: Lexeme) -> bool:
-    """Return whether the words after a denial are a command of their own: a preset, or a move with an amount."""
+    """Return whether the words after a negated alternative are a complete command: a preset, or a move with an amount."""
     end = next((i for i, x in enumerate(lexemes) if x.has(*ENDS)), len(lexemes))
     return _alike(lexemes[:end], denied) and (denied.has("PRESET") or any(x.has("NUM") for x in lexemes[:end]))

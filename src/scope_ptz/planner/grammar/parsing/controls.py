@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from scope_ptz.planner.grammar.instruction_tree import DoAgain, EachTime, Forbid, Report, SameAt, Snap, Step, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, Source
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
@@ -14,7 +14,7 @@ _NEGATION = "(NEGATED|(SELF)? (do|MODAL|need) not|DOV not)"
 
 _SUMS = frozenset({"add", "sum", "total", "together", "sum_up", "add_up", "total_up", "tot_up"})
 _DIFFERENCES = frozenset({"difference", "the_difference"})
-"""Words of clauses that ask to add or subtract what the clauses before them counted: "... and add them up"."""
+"""Words of clauses that ask to add or subtract the earlier counts: "... and add them up"."""
 
 
 def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
@@ -117,6 +117,8 @@ def _forbidden(lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
     rest = lexemes[match.size :] if match else lexemes
     if not rest:
         return None
+    if search("(past|beyond|over|above|under|below|MORE|MORETHAN|FEWERTHAN|further) (than)? NUM", rest):
+        raise NotUnderstoodError(lexemes)  # "zoom in, but don't go past 3x"
     no_picture = "(FILLER|DET|any|MORE|need for)* PICTURE (FILLER|BE|needed|required|wanted|necessary|allowed|(at|of|on|for) _+)*"
     if full_match(no_picture, rest):
         return (Forbid(),)  # "go to the gate, no photos"

@@ -59,7 +59,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 
 
 def _is_vantage(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the last clause only says from where the question before it is asked: "is it open? Look from the yard."."""
+    """Return whether the last clause only states from where to answer a question: "is it open? Look from the yard."."""
     is_asked = clauses[-1].is_question and not any(x.has("OPEN") for x in lexemes)
     if len(clauses) < 2 or is_asked or any(x.has("THEN") for x in lexemes):
         return False

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from scope_ptz.planner.grammar.conditions import Negated, Quantity, Seen
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
     Bound,
@@ -17,6 +16,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
     ZoomTo,
 )
+from scope_ptz.planner.grammar.instruction_tree.conditions import Negated, Quantity, Seen
 from scope_ptz.planner.grammar.parsing.branches import Branches, bound_of
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstoodError

@@ -110,7 +110,7 @@ class Reader:
         return steps
 
     def _with_adjuncts(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
-        """Read a clause with words that repeat it, or do it elsewhere: "... each time", "... at every preset", "twice, ..."."""
+        """Read a clause with words that repeat it or carry it out elsewhere: "... each time", "... at every preset"."""
         if (
             (match := full_match(r"(?P<body>_+?) (COMMA)? (EACHTIME|at ATATIME) (FILLER|INTURN|AGAINWORD)*", lexemes))
             and not asked
@@ -204,7 +204,9 @@ class Reader:
         if full_match("(BE)? (SOMEONE|NOONE|anything|nothing)", rest):
             question = text_of(self.source, rest)
             return (AtPlaces(places, (Ask(f"{'' if rest[0].has('BE') else 'Is '}{question} there?"),)),)
-        if full_match("BE (DET|ANY|SELF)* FREE{1,3}", rest) and is_only_noun(rest[-1]):
+        if full_match("BE (DET|ANY|SELF)* FREE{1,3} (still|yet|already)", rest) or (
+            full_match("BE (DET|ANY|SELF)* FREE{1,3}", rest) and is_only_noun(rest[-1])
+        ):
             return (AtPlaces(places, (Ask(f"{text_of(self.source, rest)} there?"),)),)  # "is the van at the gate?"
         try:
             body = self.read(rest, asked=asked)

@@ -1,7 +1,7 @@
 """Read self-repairs: "pan left 20, sorry, I meant right 20" is read as "pan right 20".
 
 In a repair, a speaker retracts words, says that they do ("no", "sorry", "I mean", "make that"), and says what to do instead.
-A repair replaces a direction, a number or a preset of the clause before it, turns its direction round ("no, the other way"), or
+A repair replaces a direction, a number or a preset of the previous clause, reverses its direction ("no, the other way"), or
 replaces a single command as a whole ("scratch that, tilt down 5"). Anything else is left as it is, and the user is asked.
 """
 
@@ -107,7 +107,7 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     old, new = before[_last_clause(before) :], after[: _first_end(after)]
     if not old or not new:
         return None
-    changed = _with_preset(old, new) or _turned_round(old, new) or _with_amount(old, new)
+    changed = _with_preset(old, new) or _with_direction_reversed(old, new) or _with_amount(old, new)
     if changed is not None:
         rest = after[len(new) :]
         if rest and rest[0].has("DASH") and not editing.has("retraction"):
@@ -129,7 +129,7 @@ def _first_end(lexemes: Sequence[Lexeme]) -> int:
 
 
 def _replaces_all(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> bool:
-    """Return whether a command comes instead of all that was said before, which is a single command."""
+    """Return whether a command replaces everything before it, which must be a single command."""
     ways = sum(x.has(*_WAYS) for x in before)
     first = next((x for x in after if not x.has("FILLER", "FIRSTLY", "INSTEAD")), None)
     is_command = first is not None and first.has(*VERBS, "HOME", "PRESET")
@@ -149,8 +149,8 @@ def _with_preset(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme
     return (*old[: places[-1]], *match["preset"], *old[places[-1] + 1 :])
 
 
-def _turned_round(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:
-    """Return a clause with its only direction turned round: "pan right 30, no, the other way"."""
+def _with_direction_reversed(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:
+    """Return a clause with its only direction reversed: "pan right 30, no, the other way"."""
     match = full_match(_NEW_WAY, new)
     ways = [i for i, x in enumerate(old) if x.has(*_WAYS)]
     if match is None or len(ways) != 1:

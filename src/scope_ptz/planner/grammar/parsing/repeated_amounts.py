@@ -1,4 +1,4 @@
-"""Resolve amounts that refer to the turn before: "another 10", "half of that back", "by the same amount"."""
+"""Resolve amounts that refer to the previous turn: "another 10", "half of that back", "by the same amount"."""
 
 from __future__ import annotations
 

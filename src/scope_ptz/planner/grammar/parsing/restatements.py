@@ -1,4 +1,4 @@
-"""Recognise moves that may only say again what was just said: "pan left 10, ten degrees to the left"."""
+"""Recognise moves that may only restate the previous move: "pan left 10, ten degrees to the left"."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 
 def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
-    """Return whether a move goes the same way as the move before it: "pan left 10, ten degrees to the left".
+    """Return whether a move goes the same way as the previous move: "pan left 10, ten degrees to the left".
 
     It may just be a rewording of that move, so it must not be carried out as a second one.
     """
@@ -26,7 +26,7 @@ def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
 
 
 def says_size_again(move: Move, clause: Clause) -> bool:
-    """Return whether a clause only repeats that the move before it is small or large: "a hair to the right, just slightly"."""
+    """Return whether a clause only repeats that the previous move is small or large: "a hair to the right, just slightly"."""
     match = full_match("(FILLER|AMOUNTISH)* ((?P<little>LITTLE)|(?P<lot>LOT)) (in fact|FILLER)*", clause.lexemes)
     if match is None:
         return False

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scope_ptz.english.grammar.parts_of_speech import verb_form
-from scope_ptz.planner.grammar.conditions import Answered, Condition, Negated, Quantity, Seen
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtIntervals,
     AtPlaces,
     Count,
     DoAgain,
-    EachTime,
     GoToPreset,
     If,
     Linked,
@@ -20,71 +18,49 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Mention,
     Move,
     Read,
-    Repeat,
-    Snap,
     Step,
-    Track,
     Unclear,
     ZoomTo,
 )
+from scope_ptz.planner.grammar.instruction_tree.conditions import Answered, Condition, Negated, Quantity, Seen
 from scope_ptz.planner.grammar.parsing.asides import (
     elliptical_condition,
     is_ability,
     is_courtesy,
     is_need,
-    is_news,
-    is_reason,
-    is_shared_knowledge,
-    is_wish,
+    takes_back,
+    withdraws,
 )
 from scope_ptz.planner.grammar.parsing.branches import bound_of
 from scope_ptz.planner.grammar.parsing.calculations import calculated_afterwards
 from scope_ptz.planner.grammar.parsing.compose import axis_of, compose
-from scope_ptz.planner.grammar.parsing.loops import Loops
 from scope_ptz.planner.grammar.parsing.parts.clause import (
-    DIRECTIONS,
-    MOTION_VERBS,
     VERBS,
     Clause,
     NotUnderstoodError,
     Source,
-    trimmed,
 )
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
-from scope_ptz.planner.grammar.parsing.restatements import says_again, says_size_again
+from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
+from scope_ptz.planner.grammar.parsing.restatements import says_again
 from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
+from scope_ptz.planner.grammar.parsing.tours import Tours
 
 _SEARCHING = frozenset({"look_for", "search_for", "have_a_look_for", "take_a_look_for"})
-_LOOKS = (Ask, Count, Read, Snap)
-"""Steps that are carried out at each of several presets visited one by one."""
-
-_TOO_MUCH = "(FILLER|LITTLE|LOT|PRON|BE|DET|AMOUNTISH)* too (LOT|LITTLE|much|FREE|ADVERB|CLOSER|WIDER|tight|UP|DOWN)"
-"""A comment on the move before: "left 20, too far, back 5"."""
-
-_WANTS_A_LOOK = "(DET)? FREE{1,2} (wants|needs|WRAPPER|TAKE-S|SHOW-S) (to)? (DET)? (look|see|SEE|FREE look|SHOW)"
-"""A reason for the move before: "tilt down 10, the foreman wants a look at the pit"."""
-
-_NO_MORE = (
-    "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"
-)
-"""A comment on the amount of the move before: "left 20, not more"."""
-
 _REACHED = (
     "(it|them|one|PRON)|SELF (HAVEV|have|got|SEE|FIND|find) (found|got)? (it|them|one|PRON)|(it|PRON) (BE) (VISIBLE|found|NOW)+"
 )
-"""Words after "when" for the end of the loop before: "pan left until you see a van. When you have it, ..."."""
-
-_PERIODS = "(shift|day|week|watch|month|season|term|play|round)"
-_TIME_OF_DAY = f"(FILLER)* (DET)? (end|start|beginning|middle|close) of (DET|my|our|SELF)* ({_PERIODS}|FREE {_PERIODS}) (FILLER)*"
-"""Words that only say what time it is: "end of shift, go home"."""
+"""Words after "when" for the end of the previous loop: "pan left until you see a van. When you have it, ..."."""
 
 _WHICH_FIRST = Unclear("Which of the two shall I do first?")
+_IN_ANY_CASE = Unclear("Shall I do the last part in any case, or only if I do not do the first?")
+_WITHDRAWN = Unclear("Shall I do that, or not?")
 _SAME_MOVE = Unclear("Is that part of the same move, or another one? Please give each move its amount.")
 
 
-class Sentences(Loops):
+class Sentences(Tours):
     """Reads a list of clauses from left to right."""
 
     def steps(self) -> list[Step]:
@@ -107,13 +83,19 @@ class Sentences(Loops):
         """Return the linked steps of the next clause, with the clauses that belong to it."""
         clause = self._take()
         match clause.marker:
+            case "" if (
+                not withdraws(clause)
+                and not takes_back(clause)
+                and adds_nothing(clause, self._peek(), self.last, is_first=self.next == 1)
+            ):
+                return []
             case "":
                 return self._main(clause)
             case "WHILE" | "UNTIL":
                 return [Linked(clause.link, self._loop_ahead(clause))]
             case "IF" if is_courtesy(clause.lexemes):
                 return []
-            case "WHEN" | "AFTER" if self._follows_loop() and full_match(_REACHED, clause.lexemes):
+            case "WHEN" | "AFTER" if self._follows_search() and full_match(_REACHED, clause.lexemes):
                 return [Linked("then", step) for step in self._block([])]
             case "WHEN" | "AFTER" if (place := _arrival(self.reader.source, clause)) is not None:
                 return [Linked(clause.link, place), *(Linked("then", step) for step in self._block([]))]
@@ -129,16 +111,18 @@ class Sentences(Loops):
                 return []
         raise NotUnderstoodError(clause.lexemes)
 
-    def _follows_loop(self) -> bool:
-        """Return whether the clause before this one is the end of a loop: "until you see a van"."""
-        return self.next > 1 and self.clauses[self.next - 2].marker in {"UNTIL", "WHILE"}
+    def _follows_search(self) -> bool:
+        """Return whether the previous clause looks for something: "until you see a van", "find the van"."""
+        ends_loop = self.next > 1 and self.clauses[self.next - 2].marker in {"UNTIL", "WHILE"}
+        return ends_loop or isinstance(self.last, ZoomTo)
 
     # Main clauses ------------------------------------------------------------------------------------------------------
     def _main(self, clause: Clause) -> list[Linked]:
         """Return the steps of a main clause, with what follows it: "until ...", "if ...", "before ..."."""
         after = self._peek()
-        if self._adds_nothing(clause, after):
-            return []
+        is_last = after is None or after.link == "."
+        if (len(self.clauses) > 1 and withdraws(clause)) or (self.next > 1 and is_last and takes_back(clause)):
+            return [Linked(clause.link, _WITHDRAWN)]
         if times := self._times_of_all(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:
@@ -157,6 +141,8 @@ class Sentences(Loops):
             return [Linked(clause.link, self.last)]
         before = self.last
         steps = self._read(clause)
+        if self._lists_pictures(steps):
+            return []
         if (
             clause.link == ","
             and says_again(before, steps)
@@ -201,8 +187,7 @@ class Sentences(Loops):
             self._take()
             return [Linked(clause.link, place), *(Linked("then", step) for step in steps)]
         if after.marker in {"IF", "UNLESS", "WHEN"} and after.link in {"", ","} and steps and self._is_trailing(clause):
-            self._take()
-            return [Linked(clause.link, _with_body(there, self._trailing(after, done)))]
+            return [Linked(clause.link, self._with_condition(there, done))]
         if after.marker in {"IFSO", "IFNOT"} and after.link == "" and not after.lexemes and steps:
             self._take()
             answered: Condition = Answered() if after.marker == "IFSO" else Negated(Answered())
@@ -213,30 +198,12 @@ class Sentences(Loops):
             self._take()
         return self._ended(clause, steps)
 
-    def _adds_nothing(self, clause: Clause, after: Clause | None) -> bool:
-        """Return whether a clause only gives a reason, opens the next clause, or says again how far the last move went."""
-        if (
-            clause.link in {",", "and", "."}
-            and self.next > 1
-            and (is_reason(clause.lexemes) or is_news(clause) or is_shared_knowledge(clause))
-        ):
-            return True
-        is_move_next = after is not None and after.link == "," and not after.marker and after.lexemes[0].has(*MOTION_VERBS)
-        wants_a_look = full_match(f"(FILLER)* ({_WANTS_A_LOOK}) (FILLER|COMMA)*", clause.lexemes)
-        if is_move_next and (is_wish(clause.lexemes) or wants_a_look):
-            return True  # "I need to see the door, pan left 20", "the foreman wants a look, pan left 20"
-        words = [x.word for x in clause.lexemes if not x.has("FILLER", "COMMA")]
-        if self.next == 1 and words == ["right"] and after is not None and _is_full_sentence(after):
-            return True  # "right, count the cars"
-        if self.next == 1 and after is not None and full_match(_TIME_OF_DAY, clause.lexemes):
-            return True
-        if len(self.clauses) > 1 and clause.link in {",", "."} and full_match(_TOO_MUCH, clause.lexemes):
-            return True
-        if clause.link in {",", "and", "."} and isinstance(self.last, Move) and full_match(_NO_MORE, clause.lexemes):
-            return True
-        if clause.link != "," or not isinstance(self.last, Move):
-            return False
-        return says_size_again(self.last, clause) or bool(match_start(_WANTS_A_LOOK, clause.lexemes))
+    def _with_condition(self, there: AtPlaces | None, steps: tuple[Step, ...]) -> Step:
+        """Return steps with the condition that follows them, to be carried out at places if there are any."""
+        condition = self._take()
+        if condition.marker == "UNLESS" and (later := self._peek()) is not None and later.link == "then":
+            return _IN_ANY_CASE  # "pan left unless there is a van, then pan right"
+        return _with_body(there, self._trailing(condition, steps))
 
     def _with_order(self, clause: Clause, steps: tuple[Step, ...], before: Step | None) -> list[Linked] | None:
         """Return the steps of a clause and of the "before ..." or "after ..." that follows it; None if the two are separate.
@@ -267,54 +234,6 @@ class Sentences(Loops):
             steps = (before,)  # "count the cars now, and again after panning left"
         first, second = (steps, other) if after.marker == "BEFORE" else (other, steps)
         return [Linked(clause.link, s) for s in first] + [Linked("then", s) for s in second]
-
-    def _tour(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked] | None:
-        """Return the steps of a clause that visits presets one by one, with what is to be done at each; None for other clauses."""
-        if not steps or not all(isinstance(step, GoToPreset) for step in steps):
-            return None
-        size = 0  # of the list of presets that the clause begins
-        while (other := self._peek(size)) is not None and _lists_place(self.reader.source, other):
-            size += 1
-        listed = self.clauses[self.next : self.next + size]
-        act = self._peek(size)
-        is_each = any(x.has("EVERY") for x in clause.lexemes)
-        is_in_turn = any(x.has("INTURN") for part in (clause, *listed) for x in part.lexemes)
-        links = {",", "and", ":", "then"} if is_each else {",", "and", ":"} if is_in_turn else set[str]()
-        if len(steps) + size < 2 or act is None or act.marker or act.link not in links:
-            return None
-        visits = list(steps)
-        for _ in range(size):
-            visits += self._read(self._take())
-        each = list(self._read(self._take()))  # "look at each of gate and yard and count the people there"
-        if any(isinstance(step, Move | ZoomTo | Track) for step in each):
-            return [Linked(clause.link, Unclear("Shall I do that at each of them, or only at the last one?"))]
-        if not all(isinstance(step, _LOOKS) for step in each):
-            return [*self._ended(clause, tuple(visits)), *(Linked(act.link, step) for step in each)]
-        rest: list[Step] = []
-        while not rest and (more := self._peek()) is not None and more.link == "and" and not more.marker:
-            steps = self._read(self._take())
-            (each if all(isinstance(step, _LOOKS) for step in steps) else rest).extend(steps)
-        return [*self._ended(clause, tuple(visits)), Linked(",", EachTime(tuple(each))), *(Linked("and", step) for step in rest)]
-
-    def _times_of_all(self, clause: Clause) -> Step | None:
-        """Return the repetition of "three times: pan left 20 and count the cars"."""
-        match = full_match(
-            (
-                r"(FILLER|(do|execute|perform|carry_out|run) (DET following|this|that|it)?|REPEAT|REPEAT SELF)* "
-                r"((?P<number>NUM) X|X (?P<number>NUM)|(?P<twice>TWICE)|"
-                r"(?P<thrice>THRICE)) "
-                r"(COMMA|FILLER|do this|INTURN)*"
-            ),
-            clause.lexemes,
-        )
-        after = self._peek()
-        if not match or clause.link not in {"", "."} or after is None or after.link not in {":", ","}:
-            return None
-        times = round(match["number"][0].value) if match["number"] else 2 if match.has("twice") else 3
-        body: list[Step] = []
-        while self.next < len(self.clauses) and (not body or self.clauses[self.next].link not in {"."}):
-            body = compose(self._linked(), body)
-        return Repeat(tuple(body), max(1, min(times, 50)))
 
     # Order -------------------------------------------------------------------------------------------------------------
     def _ordered(self, clause: Clause) -> list[Linked]:
@@ -359,23 +278,6 @@ def _arrival(source: Source, clause: Clause) -> GoToPreset | None:
     return GoToPreset(place) if place is not None else None
 
 
-def _is_full_sentence(clause: Clause) -> bool:
-    """Return whether a clause is a sentence of its own, so that a word before it, such as "right,", is only an opener."""
-    return (
-        clause.link in {",", ".", ":"}
-        and bool(clause.lexemes)
-        and (
-            clause.is_question or not clause.lexemes[0].has("NUM", "LITTLE", "LOT", "MORE", "AMOUNTISH", "DET", "PREP", *DIRECTIONS)
-        )
-    )
-
-
-def _lists_place(source: Source, clause: Clause) -> bool:
-    """Return whether a clause only names another preset of a list: "..., yard and reception"."""
-    lexemes = trimmed(clause.lexemes, "INTURN", "FILLER", "COMMA")
-    return clause.link in {",", "and"} and not clause.marker and not clause.is_question and bool(places_of(source, lexemes))
-
-
 def _merged(steps: list[Step]) -> list[Step]:
     """Merge "go to A if there is" and "to B if there is not" into one condition with two branches."""
     if len(steps) < 2:
@@ -403,7 +305,7 @@ def _presence(clause: Clause, step: Step) -> Step:
 
 
 def _denies(condition: Condition, other: Condition) -> bool:
-    """Return whether a condition is that nothing is seen of what the condition before it looks for: "if none is visible"."""
+    """Return whether a condition is the opposite of the previous one: "if none is visible" after "if you see a van"."""
     if not isinstance(condition, Seen) or not isinstance(other, Seen) or condition.quantity != Quantity():
         return False
     return other.quantity == Quantity("==", 0) and other.thing.text in {"", condition.thing.text}

@@ -1,4 +1,4 @@
-"""Read a thing that is named before what is asked about it: "barrels, how many?", "the blue van: is it locked?"."""
+"""Read a thing that is named before the question about it: "barrels, how many?", "the blue van: is it locked?"."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.courtesy import completes_question
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import IRREGULAR_PLURALS, is_noun_phrase, thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
@@ -49,7 +49,7 @@ _IDENTITIES = (
     "(((number|licence|license|registration|reg) plate|numberplate|registration) (of|off|on|from)|"
     "(plate|registration|reg|serial|fleet) (number (off|on|from)|number_of))"
 )
-"""What identifies a thing and can only be read: "I need the number plate of the blue lorry"."""
+"""Texts that identify a thing: "I need the number plate of the blue lorry"."""
 
 
 def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> str | None:
@@ -73,6 +73,9 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     for x in lexemes[subject + 1 : subject + 4]:
         if x.word in _STATES or (x.word.endswith("ing") and x.has("FREE")) or x.word in {"wearing", "holding", "carrying"}:
             return f"{text}?"
+    is_plural = lexemes[-1].word.endswith("s") or lexemes[-1].word in IRREGULAR_PLURALS
+    if full_match("FREE{1,3}", lexemes) and is_plural and is_noun_phrase(lexemes):
+        return f"Are there any {continued(text)}?"  # "people (at the gate)?"
     return None
 
 
@@ -101,7 +104,7 @@ def _described(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
 
 
 def _is_personal(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether a question is about the one who is asked: "how are you?", unlike "what do you see?"."""
+    """Return whether a question is about the planner itself: "how are you?", unlike "what do you see?"."""
     perception = ("SEE", "READ", "TELL", "COUNT", "SHOW", "AIM-ING", "AIM", "FIND", "SEE-ING", "TRACK", "SCAN")
     return any(x.word in {"you", "your"} for x in lexemes) and not any(x.has(*perception) for x in lexemes)
 
@@ -172,7 +175,10 @@ def question_step(
         if rest[0].word in _PROPERTIES and match_start("_ (of|on|for)", rest) and not search(_NO_TOPIC, rest):
             return Ask(f"the {text_of(source, rest)}{end}", scope, embedded=True)  # "confirm colour of the beacon"
         if not search(_NO_TOPIC, rest) and rest[0].word in {"the", "its", "their", "his", "her", "this", "that"}:
-            if lexemes[0].has("SHOW", "FIND", "SWITCH") and not lexemes[0].has("TELL"):
+            is_property = any(x.word in _PROPERTIES for x in rest[:3])
+            if (lexemes[0].word == "see" and not is_property) or (
+                lexemes[0].has("SHOW", "FIND", "SWITCH") and not lexemes[0].has("TELL")
+            ):
                 return None
             return Ask(text_of(source, rest) + end, scope, embedded=True)
         if match_start("about", rest):
@@ -185,6 +191,8 @@ def _untold_question(
 ) -> Step | tuple[Step, ...] | None:
     """Read questions without "tell me", whole or shortened: "is it open?", "over five trucks in view?", "barrier open?"."""
     end = "?" if asked else ""
+    if lexemes[0].word == "see":
+        return None  # "(would it be possible to) see the orchard at full zoom?" is a command
     if lexemes[0].word == "whether" and not search(_NO_TOPIC, lexemes):
         return Ask(text_of(source, lexemes) + end, scope, embedded=True)  # "I was wondering whether it is open"
     if asked and match_start("(SOMEONE|NOONE|everyone|everybody|nothing|something) _", lexemes):
@@ -193,12 +201,14 @@ def _untold_question(
         return Ask(f"Are there {continued(text_of(source, lexemes))}?", scope)  # "over five trucks in view?"
     if search("between (DET)? PRESET (PRESETNOUN)? and (DET)? PRESET", lexemes) and is_question(lexemes):
         return Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?")
+    if not asked and match_start("(FILLER|COMMA)* (NOONE|nothing)", lexemes):
+        raise NotUnderstoodError(lexemes)  # "nothing moving over there" is a remark or a condition, not a question
     if is_question(lexemes) and not _is_personal(lexemes):
         is_indirect = not asked and (lexemes[0].has("WHQ") or lexemes[0].word == "how")
         return Ask(text_of(source, lexemes) + end, scope, embedded=is_indirect)  # "I need to know what colour it is"
-    tag = full_match("(?P<told>_+) COMMA (BE|DOV|HAVEV|MODAL|can|do) (not)? (PRON|it|there|they)", lexemes) if asked else None
-    if tag and tag["told"][0].word != "it" and not search(f"NOT|not|{_NO_TOPIC}", tag["told"]):
-        return Ask(f"whether {text_of(source, tag['told'])}?", scope, embedded=True)  # "the gate is open, isn't it?"
+    tag = full_match("(?P<statement>_+) COMMA (BE|DOV|HAVEV|MODAL|can|do) (not)? (PRON|it|there|they)", lexemes) if asked else None
+    if tag and tag["statement"][0].word != "it" and not search(f"NOT|not|{_NO_TOPIC}", tag["statement"]):
+        return Ask(f"whether {text_of(source, tag['statement'])}?", scope, embedded=True)  # "the gate is open, isn't it?"
     if asked and (placed := _with_options_at_place(source, lexemes)) is not None:
         return placed
     if asked and (search("COLON", lexemes) or match_start("(DET)? FREE+ of ", lexemes)) and not search(_NO_TOPIC, lexemes):

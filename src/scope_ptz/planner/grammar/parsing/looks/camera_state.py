@@ -42,6 +42,17 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     ):
         return Back(zoom_only=any(x.has("ZOOMNOUN", "ZOOM") or x.word == "enlargement" for x in lexemes))
+    is_at_preset = full_match(
+        "(FILLER|TELL|me|us)* WHQ PRESETNOUN (BE|DOV|SELF|CAMERA|this|that|it|PRON|at|on|in|looking|AIM-ING|VISIBLE|NOW|FILLER)+",
+        lexemes,
+    )
+    is_zoomed = full_match(
+        "(FILLER)* how (far|LOT|CLOSER|tight|close|wide) (in|IN)? BE (SELF|CAMERA|it|DET) (CAMERA)? (ZOOM-ED)? (IN|OUT)? "
+        "(NOW|FILLER)*",
+        lexemes,
+    )
+    if is_at_preset or is_zoomed:
+        return CameraState()  # "which preset are we on?", "how far are you zoomed in?"
     if full_match(r"(FILLER)* HELP (FILLER)*", lexemes):
         return Help()
     if (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.parts_of_speech import present_participle, verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
@@ -16,7 +17,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import IRREGULAR_PLURALS, described, thing_of, things_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
@@ -30,7 +31,8 @@ _LOOKING = r"(got|HAVEV|TELL|TELL-ING|COUNT|COUNT-ING|SHOW|TAKE|DESCRIBE|READ|SE
 
 _SEEING = (
     r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ)|there BE|SELF "
-    r"(can|could|do|have)? (SEE|have|got)|HAVEV SELF (got)?|do we have|can be SEE-ED|can be seen|BE VISIBLE|"
+    r"(can|could|do|have)? (SEE|have|got (up|out|over)?)|HAVEV SELF (got (up|out|over)?)?|do we have|"
+    r"can be SEE-ED|can be seen|BE VISIBLE|"
     r"are we SEE-ING|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
     r"altogether)"
 )
@@ -63,6 +65,14 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
             return _count_those(source, (*match["whole"], *match["rest"]), view)
         whole = thing_of(source, trimmed(match["whole"], "VISIBLE"))  # "of the people in view, how many wear a hat?"
         return Count((Thing(f"{whole.text} {part} {text_of(source, match['rest'][1:])}"),), view) if whole and whole.text else None
+    compared = full_match(
+        rf"{SKIP} {ME} HOWMANY (?P<thing>_+?) (BE there|BE VISIBLE|BE)? (at|on|in) (?P<first>DET? PRESET) COMMA? THAN "
+        "(at|on|in)? (?P<second>DET? PRESET) (FILLER)*",
+        lexemes,
+    )
+    if compared is not None and (thing := thing_of(source, compared["thing"])) is not None:
+        first, second = place_of(source, compared["first"]), place_of(source, compared["second"])
+        return AtPlaces((first, second), (Count((thing,)),)) if first and second else None  # "how many ... in A compared to B?"
     if match := full_match(rf"{SKIP} {_LOOKING}* {ME} HOWMANYMORE (?P<first>_+) than (?P<second>_+)", lexemes):
         return None
     if match := full_match(
@@ -111,16 +121,22 @@ def _counted(
     if full_match("_+ in (AMOUNTISH|DET)* NUM (MINUTES|HOURS)", rest):
         return Unclear("I cannot wait. Shall I count them now?")  # "count the vans in ten minutes"
     rest = trimmed(rest, "FILLER", "COMMA", "ALSO")
-    while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also"}:
+    while len(rest) > 1 and rest[-1].word in {"too", "as_well", "also", "total"}:
         rest = rest[:-1]
     rest, inner = without_view(trimmed(without_sum(rest), "FILLER", "COMMA", "AMOUNTISH"))
     view = view or inner
-    if full_match(r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again)*", rest) and not any(
-        x.has("FREE") for x in rest
-    ):
+    if full_match(
+        r"of? (of them|PRON|of those|more|there|BE|VISIBLE|SELF|can|SEE|now|NOW|are|again|HAVEV|got|have)*", rest
+    ) and not any(x.has("FREE") for x in rest):
         return Count((Thing(),), view)
+    # "How many people wait?" counts people waiting.
+    if (acting := full_match("(?P<thing>FREE{1,3}) (?P<verb>FREE)", rest)) is not None and how is not None:
+        verb, noun = acting["verb"][0].word, acting["thing"][-1].word
+        if verb_form(verb) == "base" and (noun.endswith("s") or noun in IRREGULAR_PLURALS):
+            return Count((Thing(f"{text_of(source, acting['thing'])} {present_participle(verb)}"),), view)
     if match := full_match(
-        rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|INTURN)*", rest
+        rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|INTURN)*",
+        rest,
     ):
         things = things_of(source, match["thing"])
         if things:
@@ -134,7 +150,10 @@ def _counted(
 
 def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> Step | None:
     """Read "how many cars are in the left lane" or "... are red" as a count of a longer description."""
-    if match := full_match(r"(?P<part>_+?) (does|do|has|have) (?P<whole>_+?) (have|got|show|contain)", rest):
+    if match := full_match(
+        r"(?P<part>_+?) (does|do|has|have) (?P<whole>_+?) (have|got|show|contain)|(?P<part>_+?) (has|have) (?P<whole>DET PRESET)",
+        rest,
+    ):
         part, whole = thing_of(source, match["part"]), thing_of(source, match["whole"])
         if part and (place := place_of(source, match["whole"])) is not None:
             return AtPlaces((place,), (Count((part,), view),))  # "how many windows does the back gate have?"
@@ -154,6 +173,8 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
     text = text_of(source, words)
     negated = match.has("not")
     if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words) or search("(COMMA|AND) WHQ", words):
+        return None
+    if words and words[0].word in {"we", "i", "you"}:
         return None
     if not thing.text:
         return Count((Thing(f"{'not ' if negated else ''}{text} ones"),), view)

@@ -67,7 +67,7 @@ def picture_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequence[Lexeme]) -> Step | None:
-    """Return the pictures that are taken of what follows "take a picture"."""
+    """Return the pictures for the words after "take a picture"."""
     rest = _without_purpose(trimmed(rest, "FILLER", "COMMA", "AGAINWORD", "NOW", "INTURN", "DASH"))
     if (match := full_match("(?P<rest>_+?) as (it|they) (BE|looks) _*", rest)) is not None:
         rest = match["rest"]
@@ -102,7 +102,7 @@ def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequenc
 
 
 def _without_purpose(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return what follows "a picture" without the words for whom or for what it is: "for the incident report"."""
+    """Return the words after "a picture" without its purpose or recipient: "for the incident report"."""
     for i, x in enumerate(lexemes):
         if i and x.word == "for":
             return tuple(lexemes[:i])

@@ -162,7 +162,7 @@ def _counts_at_presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | tupl
         match := full_match(
             (
                 r"(FILLER|TELL|SELF|WHQ|BE|DET|in|COMPARE|of)* (COUNTNOUN|HOWMANY|difference|sum|total|COUNT) (COUNTNOUN|"
-                r"in|of|DET|number)* (?P<thing>_+?) (BE there|VISIBLE)* between (?P<places>_+)"
+                r"in|of|DET|number)* (?P<thing>_+?) (BE there|VISIBLE|total)* between (?P<places>_+)"
             ),
             lexemes,
         )

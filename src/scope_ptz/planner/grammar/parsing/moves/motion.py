@@ -127,7 +127,7 @@ def _is_about_turning(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step of the parts of a turn."""
+    """Return the step for a turn with the given parts."""
 
     def has(*classes: str) -> bool:
         return any(x.has(*classes, *(f"{name}-ING" for name in classes)) for x in silent)
@@ -139,12 +139,17 @@ def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme])
     axes = {AXES[way][0] for way in ways}
     if len(ways) > len(axes):
         return _CONTRADICTION
+    said_twice = len(found.amounts) > len(ways) and search("(NUM DEG?|LITTLE|LOT) COMMA (FILLER|MORE)* (NUM|LITTLE|LOT)", lexemes)
+    if said_twice or any(search(f"{way} COMMA (FILLER)* {way}", lexemes) for way in ways):
+        return Unclear("How far shall I turn in all?")  # "left, left, left"
     if search("RIGHT (UP|DOWN)", lexemes) and not search("right (hand|side)", lexemes) and len(found.amounts) < 2:
         return Unclear("Shall I also turn right?")  # "tilt it right down"
     if (has("TILT") and ways and "tilt" not in axes) or (has("PAN") and ways and "pan" not in axes):
         return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
     if found.aims:
         return Move(tuple(found.aims)) if not found.parts and found.target is None else _UNCLEAR_WAY
+    if match_start("(FILLER|COMMA)* UP to NUM", lexemes):
+        return Unclear("Is that the angle to tilt to, or the most that I shall turn?")
     if found.target is not None:
         return _target(found, ways, has, lexemes)
     if not ways:
@@ -201,6 +206,8 @@ def _undirected(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequen
     is_axis = has("PAN", "TILT", "PANNOUN", "TILTNOUN") or bool(search("PAN|TILT", lexemes))
     if len(set(found.amounts)) > 1 or (has("PAN") and has("TILT")):
         return _UNCLEAR_WAY
+    if len(found.amounts) > 1 and search("COMMA", lexemes):
+        return Unclear("How far shall I turn in all?")  # "5 more, 5"
     if has("INCREASE", "DECREASE") and is_axis and amount:
         return Move((Turn(axis, -1 if has("DECREASE") else 1, amount),))
     if amount and amount.kind == "degrees" and any(x.has("ABSOLUTE") or x.word in {"set", "put"} for x in lexemes) and is_axis:

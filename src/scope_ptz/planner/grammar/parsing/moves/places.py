@@ -17,7 +17,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
 
@@ -64,6 +64,8 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     ):
         place = place_of(source, opened["place"])
         return GoToPreset(place) if place else None
+    if any(x.has("SNAP") for x in lexemes):
+        return None  # "capture the gate"
     if match := full_match(rf"{_GO} {PLACE} {_TAIL}", lexemes) or full_match(
         (
             rf"(PAN|TILT|TURN|AIM|SWITCH|CARRY) (CAMERA|it|FILLER|over|AMOUNTISH)* (LEFT|RIGHT|UP|DOWN) (over|back|"
@@ -163,7 +165,7 @@ def _how(lexemes: Sequence[Lexeme]) -> Any:
     if words & {"use", "using"}:
         return "use"
     if "at" in words and any(x.has("AIM") for x in lexemes) and not any(x.has("SWITCH") for x in lexemes):
-        return "look"
+        return "look" if any(x.has(*DIRECTIONS) for x in lexemes) else "show"
     if any(x.has("SWITCH", "CARRY", "TURN", "SWITCH-ING", "CARRY-ING", "AIM", "PAN") for x in lexemes) or "to" in words:
         return "go"
     return "show" if any(x.has("SHOW", "FIND") for x in lexemes) else "bare"

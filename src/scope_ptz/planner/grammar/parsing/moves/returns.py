@@ -1,4 +1,4 @@
-"""Read clauses that turn back by a part of the turn before, or by as much again: "then half of that back", "30 the other way"."""
+"""Read clauses that turn back by part of the previous turn, or by as much again: "then half of that back", "30 the other way"."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MULTIPLE = (
     r"((?P<fraction>FRACTION)|(?P<twice>TWICE)|(?P<thrice>THRICE)|(?P<multiple>NUM) X) (of)? "
     r"(SAMEAMOUNT|as (far|high|low)|DET (amount|distance|angle)|that|it)"
 )
-"""A multiple of the turn before: "half of that", "twice as much", "three times as far"."""
+"""A multiple of the previous turn: "half of that", "twice as much", "three times as far"."""
 
 _VERB = "(FILLER|CARRY|TURN|SWITCH|AIM|PAN|TILT)? (it|CAMERA|DET CAMERA|then|FILLER)*"
 _HOW_FAR = (
@@ -34,7 +34,7 @@ def return_step(lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def multiple_of(match: Match) -> float:
-    """Return how many times the turn before a match of ``MULTIPLE`` asks for."""
+    """Return the multiple of the previous turn that a match of ``MULTIPLE`` asks for."""
     if match.has("fraction"):
         return fraction_of(match["fraction"][0])
     if match.has("multiple"):

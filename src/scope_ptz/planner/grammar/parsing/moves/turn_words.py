@@ -35,6 +35,7 @@ _CHUNKS = (
     ("turn", r"LIMIT AROUND"),
     ("right angle", r"(by|through|DET)* ((?P<fraction>FRACTION) (of)? (DET)? )?RIGHTANGLE"),
     ("parts", r"(in|over) (?P<count>NUM) STEPNOUN"),
+    ("times", r"(in|over)? (?P<number>NUM) STEPNOUN (?=(to|DET)* (LEFT|RIGHT|UP|DOWN) (of|by|at|COMMA)* NUM DEG)"),
     ("steps", r"(in|by|with|using|at)? (DET)? (?P<count>NUM) (jumps of|STEPNOUN of)? (?P<size>NUM) DEG? STEPNOUN"),
     ("steps", r"(?P<count>NUM) STEPNOUN of (?P<size>NUM) DEG?"),
     ("steps", r"(in|with|by|using|at)? (DET)? STEPNOUN of (about|AMOUNTISH)? (?P<size>NUM) DEG?"),

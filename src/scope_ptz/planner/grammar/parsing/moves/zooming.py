@@ -141,7 +141,8 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
             match_start(
                 (
                     r"(FILLER|NOW|FIRSTLY|BACK)* (OUT LITTLE|OUT LOT|IN LOT) (FILLER)*|(FILLER)* (IN|OUT) as far as|"
-                    r"(FILLER|FIRSTLY)* NOW IN LITTLE (FILLER)*|"
+                    r"(FILLER|FIRSTLY)* NOW IN LITTLE (FILLER)*|(FILLER|NOW|FIRSTLY|BACK)* IN "
+                    r"((?!a_bit|bit|a_little|a_step) LITTLE|LITTLE (more|further|closer)|MORE) (FILLER)* \Z|"
                     r"(FILLER|DET|BACK)* (IN|OUT)? (BACK)? NUM (X|PERCENT)|(CARRY|SWITCH|DET|CAMERA|FILLER)* (to|at) "
                     r"NUM X|(FILLER|FIRSTLY|DET|"
                     r"BACK)* (IN|OUT) (by (AMOUNTISH)* NUM|X NUM|(by)? FRACTION)|CARRY (it|"
@@ -239,7 +240,7 @@ def _amount(name: str, match) -> tuple[str, float]:  # type: ignore[no-untyped-d
 
 
 def _step(amounts: list[tuple[str, float]], silent: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step of the words of a zoom."""
+    """Return the step for a zoom, given its amounts and its other words."""
     verbs = next((x for x in silent if x.has("DOUBLE", "TRIPLE", "QUADRUPLE", "HALVE")), None)
     inwards = any(x.has(*_INWARDS, *(f"{c}-ING" for c in _INWARDS)) for x in silent)
     outwards = any(x.has(*_OUTWARDS, *(f"{c}-ING" for c in _OUTWARDS)) for x in silent)
@@ -282,10 +283,12 @@ def _step(amounts: list[tuple[str, float]], silent: Sequence[Lexeme], lexemes: S
 
 
 def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequence[Lexeme]) -> Step:
-    """Return the zoom by an amount: inwards, outwards, or without a stated direction."""
+    """Return the step that zooms by an amount, inwards, outwards, or in no stated direction."""
     kind, value = amount
     if search("as wide", lexemes) and kind in {"fraction", "factor"} and value > 0:
         return Move((Zoom("factor", 1 / value),))  # half as wide is twice as close
+    if kind == "to" and sign == 0 and search("at (AMOUNTISH)* NUM PERCENT", lexemes):
+        return _NOT_CLEAR
     if kind == "to" and value > _MAX_PLAUSIBLE_FACTOR and not search("X", lexemes):
         return Unclear("Is that a factor or a percentage?")
     if kind == "to" or (kind == "factor" and bare and search(r"(set|put|make|ABSOLUTE) ", lexemes)):

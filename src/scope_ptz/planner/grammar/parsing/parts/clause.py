@@ -1,4 +1,4 @@
-"""The clause: a part of an instruction with one verb, and the errors of reading one."""
+"""The clause: a part of an instruction with one verb, and the error for a clause that cannot be read."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Source:
     """The text of an instruction, and the presets of the camera; none if they are unknown.
 
     Attributes:
-        has_moved: Whether an earlier clause moves the camera. Then "the people on the bridge" are looked for from there.
+        has_moved: Whether an earlier clause moves the camera. If so, "the people on the bridge" are sought in the new view.
     """
 
     text: str

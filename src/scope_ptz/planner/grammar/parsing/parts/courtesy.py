@@ -29,6 +29,7 @@ _FUNCTION_CLASSES = (
 _OPENERS = "|".join((
     f"({_I_WOULD}|it (MODAL|BE)) (be|BE)? {_VERY} ({GLAD}|good|nice|helpful|great|lovely|useful) ({_IF_YOU_WOULD}|if SELF)",
     f"{_I_WOULD} appreciate (it|this)? {_VERY} ({_IF_YOU_WOULD}|if SELF)",
+    f"{_I_WOULD} {_VERY} (appreciate|welcome) {_VERY} (?=DET|NUM|PICTURE)",
     f"{_I_WOULD} (be|BE)? {_VERY} ({GLAD}) (to (?=know|TELL)|to (learn|hear|see)|for (?=DET|NUM|PICTURE|ANY))",
     f"SELF (MODAL|DOV)? (BE)? (wonder|wondering|wondered) (if|whether|FILLER)* (SELF MODAL|SELF|WRAPPER)? {_JUST}",
     f"{_WOULD_YOU} {_JUST} (trouble|bother|ask|get|persuade|beg|request|invite) SELF (FILLER)* to",
@@ -54,7 +55,7 @@ _OPENERS = "|".join((
     "DET (FREE|next|MORE)? (job|task|thing|step|order|request) (WRAPPER|for SELF|FILLER)* BE (to)?(?! (not|FREE|ADVERB))",
     "(FILLER|LEADFILLER(?! NUM)|FIRSTLY|COMMA|QUOTE|AND|BUT|INSTEAD|PURPOSE)",
 ))  # fmt: skip
-"""What opens a command and adds nothing to it: courtesy, who wants it, and "what I need is"."""
+"""Openers that add nothing to a command: courtesy, who wants it, and "what I need is"."""
 
 
 def is_polite(lexemes: Sequence[Lexeme]) -> bool:
@@ -76,7 +77,7 @@ _FOR_WHOM = (
     "for (DET|my|our|SELF)* (FREE|DET)? (survey|report|study|log|logbook|records|audit|inventory|stocktake|meeting|paperwork|"
     "newsletter|website|boss|manager|client|police|insurance|statistics|file|girl|lad|lads|team|office|council|foreman|supervisor|handover)"
 )
-"""For whom or for what a command is: "for the parking survey"."""
+"""The recipient or purpose of a command: "for the parking survey"."""
 
 _MEANT_IN_QUESTIONS = frozenset({
     "today", "tonight", "morning", "evening", "afternoon", "good", "great", "nice", "lovely", "perfect", "excellent",

@@ -47,6 +47,9 @@ _RELATIVE = (
 )
 """Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
 
+IRREGULAR_PLURALS = frozenset({"people", "men", "women", "children", "folk", "sheep", "cattle", "police", "deer", "geese"})
+"""Plural nouns that do not end in "s"."""
+
 
 def described(text: str) -> str:
     """Return a description without function words and without the verb of its relative clause.
@@ -63,6 +66,8 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     lexemes = trimmed(lexemes, "FILLER", "COMMA", "QUOTE", "AND")
     if not lexemes:
         return None
+    if all(x.has("NUM", "SECONDS", "MINUTES", "HOURS") for x in lexemes):
+        return None  # "stop after ten seconds"
     if full_match(r"(all|both|each)? (of)? PRON (one|ones|there|here)?", lexemes) and _PRONOUN.fullmatch(
         " ".join(x.word for x in lexemes)
     ):
@@ -115,7 +120,7 @@ def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def has_noun(lexemes: tuple[Lexeme, ...]) -> bool:
-    """Return whether lexemes have a word that can name a thing."""
+    """Return whether lexemes contain a word that can name a thing."""
     for before, x in pairwise(lexemes):
         after = lexemes[lexemes.index(x) + 1 : lexemes.index(x) + 2]
         if x.word in {"one", "ones"} and (
@@ -153,7 +158,7 @@ def has_noun(lexemes: tuple[Lexeme, ...]) -> bool:
 
 
 def is_noun(word: str) -> bool:
-    """Return whether a word is a noun that the lexicons of English know."""
+    """Return whether a word is a noun in the lexicons of English."""
     words = word.replace("_", " ")
     return lexicon().concept(words) is not None or is_common_noun(words)
 
@@ -191,6 +196,8 @@ def things_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Thing, ...] | 
     lexemes = trimmed(lexemes, "FILLER", "COMMA", "QUOTE")
     if any(x.word in {"i_mean", "i_meant", "er", "erm", "oops", "sorry"} for x in lexemes):
         return None  # "the cows, I mean the sheep"
+    if search("COMMA (DET)? PRESET (first|FIRSTLY|ORDINAL)", lexemes):
+        return None  # "count the cars, gate first" lists places
     parts: list[list[Lexeme]] = [[]]
     for i, x in enumerate(lexemes):
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None

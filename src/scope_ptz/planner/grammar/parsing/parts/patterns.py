@@ -2,7 +2,7 @@
 
 A pattern is a regular expression whose letters are lexemes. A word in capitals is a class of the lexicon, a word in small letters
 is that word, and "_" is any lexeme: "(COUNT|tally) DET? (?P<things>_+)". Alternation, groups, repetition and look-ahead are those
-of regular expressions. Spaces mean nothing.
+of regular expressions. Spaces have no meaning.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class _Pattern:
         self._source, self._is_compiled = source, False
 
     def may_match(self, names: frozenset[str]) -> bool:
-        """Return False if the names of all words and classes lack one that the pattern needs."""
+        """Return False if a word or class that the pattern needs is missing."""
         return self._is_compiled or is_met(self._requirement, names)
 
     @cached_property

@@ -63,6 +63,8 @@ def places_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[PresetRef, ...
     for x in lexemes:
         if x.has("AND", "COMMA", "OR", "THEN", "THAN"):
             parts.append([])
+        elif x.has("PRESET") and parts[-1] and parts[-1][-1].has("PRESET"):
+            parts.append([x])  # "in yard dock and roof"
         else:
             parts[-1].append(x)
     refs = [place_of(source, part) for part in parts if part]

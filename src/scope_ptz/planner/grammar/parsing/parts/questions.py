@@ -25,7 +25,7 @@ r"EVERY|VISIBLE|LEADMORE|MORE|NONE|it|NOW|everyone|everybody|everything|ATLEAST|
 r"(can|could|did|does|would|will|might|MODAL) (SELF|DET|PRON|SOMEONE|FREE|EVERY|ANY) (ADVERB|FILLER)* "
 r"(SEE|READ|TELL|FREE|count|spot|be|find|have|BE|HAVEV|look|fit|get|make_out|identify|LOOKSLIKE)"
 ),
-    r"(anyone|anybody|anything|NOONE|nothing) (?!(HAVEV|MODAL)) (_)+ \Z",
+    r"(anyone|anybody|anything|NOONE|nothing) (?!(HAVEV|MODAL|BUT|EXCEPT)) (_)+ \Z",
     r"from (LEFT|RIGHT|nearest|UP|DOWN|top|bottom) to _+? (WHQ|in which|which|what)",
     r"(put|rank|arrange|sort) _+? in_order (of|by|from) _+",
     r"(out_of|of|among|between) _+ (COMMA) (which|what|who)",

@@ -103,7 +103,13 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
         lead = full_match(r"(?P<prep>at|from|in|on|using|for|for each|between|across|to) (?P<place>_+)", tail)
-        is_past_particle = before.word in _PARTICLES and len(lexemes) > size + 1 and lexemes[len(lexemes) - size - 2].has("FREE")
+        is_past_particle = (
+            before.word in _PARTICLES and len(lexemes) > size + 1 and lexemes[len(lexemes) - size - 2].has("FREE", "HAVEV")
+        )
+        if before.has("BE", "HAVEV") or before.word == "'s":
+            subject = lexemes[len(lexemes) - size - 2] if len(lexemes) > size + 1 else None
+            if subject is not None and subject.word in {"whatever", "whoever", "whichever"}:
+                continue  # "the plate of whatever is on the weighbridge"
         is_likeness = before.word == "like" and lexemes[0].has("WHQ")  # "what is the queue like at the gate?"
         if not lead or (
             before.has("PREP", "DET", "AND") and not before.has("VISIBLE", "ADVERB") and not is_likeness and not is_past_particle

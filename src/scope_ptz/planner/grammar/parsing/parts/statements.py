@@ -37,7 +37,7 @@ def without_time_ahead(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def is_comment(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes comment on a command without a subject: "lost my bearings", "far too close", "can't see it"."""
+    """Return whether lexemes are a comment without a subject: "lost my bearings", "far too close", "can't see it"."""
     words = [x for x in lexemes if not x.has("FILLER", "COMMA")]
     if not words:
         return False
@@ -54,6 +54,8 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
 
 def is_event(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "before" only say what happens later: "I forget", "the ferry leaves"."""
+    if full_match("SELF (CARRY|SWITCH|KEEP|HALT|leave|finish|close) (on|off|along|up|down)? (FILLER)*", lexemes):
+        return True  # "we move on"
     if any(x.has(*_COMMANDS, "NUM", "DEG") for x in lexemes):
         return False
     ends_in_verb = len(lexemes) > 1 and _is_noun(lexemes[-2]) and verb_form(lexemes[-1].word) == "third person"
@@ -61,7 +63,7 @@ def is_event(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
-    """Yield the numbers of lexemes that can be the subject at the beginning of a clause."""
+    """Yield each number of lexemes that can form the subject at the beginning of a clause."""
     if lexemes and _is_pronoun(lexemes[0]):
         yield 1
     for end, lexeme in enumerate(lexemes[:_MAX_SUBJECT], 1):
@@ -112,7 +114,7 @@ def _is_adverb(lexeme: Lexeme) -> bool:
     known = parts_of_speech(lexeme.word)
     if lexeme.has("FILLER") and "VERB" in known and "ADV" not in known:
         return False  # "my children love it"
-    return lexeme.has("ADVERB", "FILLER") or parts_of_speech(lexeme.word) == {"ADV"}
+    return lexeme.has("ADVERB", "FILLER") or known == {"ADV"}
 
 
 def _is_pronoun(lexeme: Lexeme) -> bool:

@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     BEFORE_NOUN,
     ENDS,
     FRAGMENT,
+    FURTHER,
     GERUNDS,
     LOOSE_FRAGMENT,
     NOUN_LIKE,
@@ -24,6 +25,7 @@ from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     STARTS,
     STATEMENT,
     WITHOUT_MOVING,
+    ZOOM_FRAGMENT,
 )
 from scope_ptz.planner.grammar.parsing.segments.subordinate_clauses import SubordinateClauses
 
@@ -31,7 +33,7 @@ _SETTING = f"{SET_THERE}|at (DET|LIMIT|full|maximum|max|minimum|min|FREE)* (ZOOM
 """The beginning of words that say how the camera is set at a preset: "... zoomed in", "... at full zoom", "... at 3x"."""
 
 _ASKS_MORE = "(what|which) FREE{1,2} (BE|HAVEV|DOV|MODAL) DET _|(what|which|who|where|WHQ) (BE|DOV|HAVEV) DET _"
-"""The beginning of a question about another thing than the count before it: "... and what does the notice say?"."""
+"""The beginning of a question about another thing than the previous count: "... and what does the notice say?"."""
 
 _BEFORE_THAT = frozenset({
     "so", "think", "believe", "reckon", "say", "says", "said", "sure", "guess", "hope", "know", "mean", "means", "suppose",
@@ -61,6 +63,10 @@ class ClauseBoundaries(SubordinateClauses):
         if match_start("(at|with)? NUM DEG (apart|intervals)", rest) or search("NUM DEG apart \\Z", self.now):
             return False  # "three photos, 10 degrees apart, moving left"
         if first.has("THEN") or self._marker_at(j) or match_start(STARTS, rest) or match_start(FRAGMENT, rest):
+            return True
+        if full_match(f"(FILLER)* {FURTHER}", self.now) and match_start(FURTHER, rest):
+            return True
+        if match_start(ZOOM_FRAGMENT, rest) and not self._is_question() and not self.marker:
             return True
         if j > i and self.lexemes[j - 1].has("WRAPPER"):
             return True

@@ -92,6 +92,14 @@ FRAGMENT = (
 """Beginnings of moves without a verb, as in "left 20" or "10 degrees up"."""
 
 
+FURTHER = "((another|MORE) (NUM DEG?|LITTLE)|(NUM DEG?|LITTLE) (more|further|MORE))"
+"""More of the previous turn, as in "left 5, another 5, another 5"."""
+
+
+ZOOM_FRAGMENT = r"(NOW)? (IN|OUT) (LITTLE|LOT|LIMIT|MORE)+ (FILLER)* (STOP|COMMA|THEN|AND|\Z)"
+"""A zoom without a verb, as in "..., now in a bit"."""
+
+
 LOOSE_FRAGMENT = (
     r"(AMOUNTISH|BACK|to|PREP|over|the|DET|MORE|IN|OUT)* (LEFT|RIGHT|UP|DOWN|NUM|FRACTION|LITTLE|LOT|LIMIT|"
     r"SAMEAMOUNT|BACK|TWICE|VERTICALUP|VERTICALDOWN)"

@@ -1,4 +1,4 @@
-"""The clause that is being read: its words so far, and what can be said about them."""
+"""The clause that is being read: its words so far, and their properties."""
 
 from __future__ import annotations
 
@@ -52,6 +52,7 @@ class OpenClause:
         return lexeme.word not in NOUNS_TOO or (
             after is None
             or after.has(*AFTER_VERB)
+            or (lexeme.word == "set" and after.has("PAN", "TILT", "ZOOM", "PANNOUN", "TILTNOUN", "ZOOMNOUN"))
             or after.word in {"to", "at", "on", "for", "towards", "whether", "if", "that", "what"}
         )
 
@@ -70,7 +71,7 @@ class OpenClause:
         )
 
     def _awaits(self, rest: Sequence[Lexeme]) -> bool:
-        """Return whether the words after a separator complete the move before it: "left, about ten degrees", "up and left 10"."""
+        """Return whether the words after a separator complete the previous move: "left, about ten degrees", "up and left 10"."""
         is_exact = bool(match_start("(AMOUNTISH|COMMA|by)* NUM", rest))
         has_amount = any(x.has("NUM", "FRACTION", "LIMIT") or (not is_exact and x.has("LITTLE", "LOT")) for x in self.now)
         has_way = any(x.has(*DIRECTIONS) for x in self.now)

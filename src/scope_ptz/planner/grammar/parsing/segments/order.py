@@ -6,18 +6,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Clause, NotUnderstoodError, trimmed
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _BEFORE_FIRST = ("PICTURE", "NUM", "DEG", "HOME", *DIRECTIONS, "IN", "OUT", "X", "PERCENT", "PRON", "LITTLE", "LOT")
 """Classes of the words that can end a command."""
 
 
 def in_order(clauses: Sequence[Clause]) -> list[Clause]:
-    """Return clauses with those that say "first" before the command that they follow.
+    """Return clauses in execution order: a clause that says "first" comes before the command that it follows.
 
     Raises:
-        NotUnderstoodError: It is unclear which clauses come first, or before which others.
+        NotUnderstoodError: It is unclear which clauses come first, or which clauses they precede.
     """
-    clauses = [_without_needless_first(clauses, i) for i in range(len(clauses))]
+    clauses = _with_start_first([_without_needless_first(clauses, i) for i in range(len(clauses))])
     for i, clause in enumerate(clauses):
         if clause.marker != "FIRST" and not _says_first_at_end(clauses, i):
             continue
@@ -30,6 +31,19 @@ def in_order(clauses: Sequence[Clause]) -> list[Clause]:
         begun = [replace(clause, link="", marker="", opener=None, lexemes=lexemes), *first[1:]]
         return [*begun, replace(earlier[0], link="then"), *later]
     return clauses
+
+
+def _with_start_first(clauses: list[Clause]) -> list[Clause]:
+    """Return clauses with the starting place first: "take three pictures, starting at the gate"."""
+    *before, last = clauses or [Clause("", "", ())]
+    if not before or any(clause.marker or clause.link == "." for clause in clauses) or last.is_question:
+        return clauses
+    if (
+        full_match("(FILLER)* (starting|beginning) (at|from|with|on|in) (DET)? (PRESET|HOME) (PRESETNOUN|FILLER)*", last.lexemes)
+        is None
+    ):
+        return clauses
+    return [replace(last, link=""), replace(before[0], link="then"), *before[1:]]
 
 
 def _without_needless_first(clauses: Sequence[Clause], i: int) -> Clause:

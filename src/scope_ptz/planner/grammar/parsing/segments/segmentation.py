@@ -31,8 +31,14 @@ _OPENER = (
 
 def clauses_of(lexemes: Sequence[Lexeme]) -> list[Clause]:
     """Return the clauses of an instruction."""
-    if (group := full_match("(?P<group>OPEN _+ CLOSE) (?P<times>X NUM|NUM X|TWICE|THRICE) (STOP|FILLER)*", lexemes)) is not None:
-        lexemes = (*group["times"], *group["group"])  # "(pan left 20, photo) x3"
+    times = "(?P<times>X NUM|NUM X|TWICE|THRICE)"
+    group = full_match(
+        f"(?P<group>OPEN _+ CLOSE) {times} (STOP|FILLER)*|{times} COLON? (?P<group>OPEN _+ CLOSE) (STOP|FILLER)*", lexemes
+    )
+    if group is not None and not any(x.has("OPEN", "CLOSE") for x in group["group"][1:-1]):
+        inner = [replace(x, word=",", classes=frozenset({"COMMA"})) if x.has("STOP") else x for x in group["group"][1:-1]]
+        colon = replace(inner[0], word=":", end=inner[0].start, classes=frozenset({"COLON"}))
+        lexemes = (*group["times"], colon, *inner)  # "(pan left 20; photo) x3"
     return _Splitter(lexemes).split()
 
 
@@ -104,8 +110,8 @@ class _Splitter(ClauseBoundaries):
         ):
             self.now.append(lexeme)
             return i + 1
-        if lexeme.has("COMMA") and [x.word for x in self.now] == ["close_up"]:
-            return i + 1  # "close-up, conveyor belt"
+        if lexeme.has("COMMA") and len(self.now) == 1 and (self.now[0].word == "close_up" or self.now[0].has("EACHTIME")):
+            return i + 1  # "close-up, conveyor belt", "at each, count the people"
         if lexeme.has("COMMA") and self.now and all(x.has("INTURN") for x in self.now):
             self.order, self.now = tuple(self.now), []
             return i + 1  # "one by one, go through the presets"

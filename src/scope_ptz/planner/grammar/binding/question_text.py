@@ -1,0 +1,110 @@
+"""Recognise and rewrite the wording of a question, before it is passed to perception."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
+from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
+
+_BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
+_WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
+_FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
+_EXISTENCE = re.compile(
+    r"(?:(?:is|are) there|(?:can|do) you see|(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
+    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) (?:an? |any |the |some )?(.+?)"
+    r"(?: anywhere| in view| visible| right now| here| there| present|"
+    r" in (?:the )?(?:picture|frame|shot|image|sight)| on screen)?\s*\?*$",
+    re.IGNORECASE,
+)
+_TWO_QUESTIONS = re.compile(
+    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?)"
+    r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
+    re.IGNORECASE,
+)
+_WINNER = re.compile(
+    r"what(?:['’]s| is) the (?:total|sum|difference|result|answer)\W*|how many (?:is that|are there) (?:in total|"
+    r"altogether|together)\W*"
+    r"|where (?:there )?(?:are|is) (?:the )?(?:most|fewest|least)\W*"
+    r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    re.IGNORECASE,
+)
+_ANY_THERE = re.compile(
+    r"(?:is there|are there|(?:can|do) you see|is|are) (?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
+    re.IGNORECASE,
+)
+_DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
+_POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
+_PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
+_IMPERSONAL = re.compile(
+    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like|\w+ing)\b"
+    r"|\bwhat('s| is) it\b|\bit is\b",
+    re.IGNORECASE,
+)
+_THE_THING_AND_IT = re.compile(r"\bthe \w+.*\b(it|they|them)\b")
+_AT_PRESET = re.compile(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| position)?\?*", re.IGNORECASE)
+
+
+def is_answered_by_counts(question: str) -> bool:
+    """Return whether earlier counts answer the question, such as "which has the most?", so that it need not be asked."""
+    return bool(_WINNER.fullmatch(question.strip()) or _ANY_THERE.fullmatch(question.strip()))
+
+
+def is_request_to_describe(question: str) -> bool:
+    """Return whether the question is the bare request "describe", "describe each view" or the like."""
+    return bool(_DESCRIBE.fullmatch(question.strip()))
+
+
+def is_about_the_future(question: str, *, embedded: bool) -> bool:
+    """Return whether the question is about something that may happen later, as in "let me know if anything moves".
+
+    Args:
+        question: The question.
+        embedded: Whether it is part of another sentence.
+    """
+    return bool(_WAITING.match(question) or (embedded and _FUTURE.match(direct_question(question))))
+
+
+def is_impersonal(text: str) -> bool:
+    """Return whether "it" in the text refers to no object, as in "is it raining?"."""
+    return bool(_IMPERSONAL.search(text))
+
+
+def two_questions(question: str) -> tuple[str, str] | None:
+    """Split "is there a van, and if so, what colour is it?" into its two questions; None for a single question."""
+    match = _TWO_QUESTIONS.fullmatch(question.strip())
+    return (f"{match['seen']}?", match["more"]) if match else None
+
+
+def with_antecedent(question: str, antecedent: str) -> str:
+    """Replace the first pronoun of a question with the antecedent, unless it refers to something in the question itself.
+
+    Args:
+        question: The question. A bare "who's?" becomes "who's there?".
+        antecedent: The description that a pronoun refers to; empty if there is none.
+    """
+    if _BARE_WHO_OR_WHAT.fullmatch(question.strip()):
+        question = f"{question.strip(' ?')} there?"
+    if not antecedent or is_impersonal(question) or _THE_THING_AND_IT.search(question):
+        return question
+    return _POSSESSIVE.sub(f"the {antecedent}'s", _PRONOUN.sub(f"the {antecedent}", question, count=1), count=1)
+
+
+def sought_thing(question: str) -> str:
+    """Return the description in a question about existence ("is there a red van?"); empty for other questions."""
+    match = _EXISTENCE.match(question)
+    return match[1] if match else ""
+
+
+def split_at_preset(question: str, presets: Sequence[str]) -> tuple[str, str] | None:
+    """Split a question that ends with a preset ("is it open at gate?") into the question and the name of the preset.
+
+    Returns:
+        The question without the place, and the preset's name; None if the question does not end with one of the presets.
+    """
+    match = _AT_PRESET.fullmatch(question.strip())
+    if not match or not (match[5] or (not match[3] and match[2].lower() != "in")):
+        return None
+    name = match_exactly(match[4], presets)
+    return (f"{match[1]}?", name) if name else None

@@ -1,0 +1,114 @@
+"""Calculations with counts: comparisons, totals, differences and rankings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.grammar.instruction_tree.conditions import Comparison, PresetRef, Thing
+    from scope_ptz.tools.arguments import View
+
+
+@dataclass(frozen=True, slots=True)
+class CompareWithBefore:
+    """Compare a count with the count before the last moves ("are there more than before?").
+
+    Attributes:
+        thing: The objects to count; if its text is empty, the objects of the last count.
+    """
+
+    thing: Thing
+    comparison: Comparison = "more"
+
+
+@dataclass(frozen=True, slots=True)
+class WhichPreset:
+    """Count objects at each of several presets, and report which preset shows the most (or fewest).
+
+    Attributes:
+        go: Whether to go to that preset afterwards.
+        any_of: Whether to report which presets show any of the objects, instead of the preset with the most.
+        yes_no: Whether the answer is yes or no. The question is then whether the first preset shows the most, or with ``any_of``,
+            whether any of the presets shows any of the objects.
+        rank: The requested place in the order: 1 for the most, 2 for the second most.
+    """
+
+    thing: Thing
+    comparison: Comparison = "more"
+    places: tuple[PresetRef, ...] = ()
+    go: bool = False
+    any_of: bool = False
+    yes_no: bool = False
+    rank: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class FirstWith:
+    """Go to one preset after the other, and stay at the first that shows an object. If ``places`` is empty, try every preset.
+
+    Attributes:
+        last: Whether to begin with the last preset, so that the camera stays at the last one that shows an object.
+    """
+
+    thing: Thing
+    places: tuple[PresetRef, ...] = ()
+    last: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """Compare the counts of two descriptions in one view.
+
+    Attributes:
+        yes_no: Whether the question is whether there are more (or fewer) of the first than of the second.
+    """
+
+    first: Thing
+    second: Thing
+    comparison: Comparison = "more"
+    view: View | None = None
+    yes_no: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """One number of a calculation: how many objects there are at a preset or, if ``place`` is None, in the current position.
+
+    Attributes:
+        everywhere: Whether the number stands for one number at each preset.
+    """
+
+    thing: Thing
+    place: PresetRef | None = None
+    view: View | None = None
+    everywhere: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Total:
+    """Count objects of several kinds, or at several presets, and add the counts."""
+
+    parts: tuple[Tally, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Count twice, and report how many more objects there are in the first count than in the second."""
+
+    first: Tally
+    second: Tally
+
+
+@dataclass(frozen=True, slots=True)
+class RankCounts:
+    """Count objects of several kinds, or at several presets, and list them in the order of their counts.
+
+    Attributes:
+        first: Whether the list begins with the kind or preset with the most ("more") or the fewest objects.
+        winner: Whether only the first is asked for ("which are there most of?").
+    """
+
+    parts: tuple[Tally, ...]
+    first: Comparison = "more"
+    winner: bool = False
