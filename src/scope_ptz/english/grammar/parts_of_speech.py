@@ -35,18 +35,3 @@ def verb_form(word: str) -> VerbForm | None:
     if word.endswith("ing"):
         return "participle"
     return "third person" if word.endswith("s") else "past"
-
-
-@lru_cache(maxsize=1024)
-def present_participle(word: str) -> str:
-    """Return the present participle of a verb in lower case: "waiting" for "wait" or "waits".
-
-    Raises:
-        ValueError: The word is not a verb.
-    """
-    from lemminflect import getAllLemmas, getInflection
-
-    lemmas = getAllLemmas(word).get("VERB", ())
-    if not lemmas:
-        raise ValueError(f"'{word}' is not a verb.")
-    return str(getInflection(lemmas[0], "VBG")[0])

@@ -25,7 +25,7 @@ def verb_forms(verb: str) -> dict[str, tuple[str, ...]]:
     if first.endswith("y") and first[-2:-1] not in _VOWELS:
         third = f"{first[:-1]}ies"
     stems = _stems(first)
-    ing = tuple(f"{stem}ing" for stem in stems)
+    ing = (f"{first[:-2]}ying",) if first.endswith("ie") else tuple(f"{stem}ing" for stem in stems)  # "lying"
     past = _IRREGULAR_PAST.get(first) or tuple(
         f"{first[:-1]}ied" if first.endswith("y") and first[-2:-1] not in _VOWELS else f"{stem}ed" for stem in stems
     )

@@ -243,7 +243,7 @@ class ClauseReading:
         if is_aimed and (again := full_match("(FILLER|to)* (?P<target>NUM) X (FILLER)*", clause.lexemes)):
             return (Move((Aim("zoom", again["target"][0].value),)),)  # "zoom to 2x, then 10x"
         if moves and isinstance(self.last, AtIntervals) and any(isinstance(step, Snap) and step.times > 1 for step in steps):
-            return (Unclear("How far shall I turn in all?"),)  # "every 15 degrees to the right take a picture, four pictures"
+            return (Unclear("How far shall I turn in all?"),)  # "pan right 60, a picture every 15 degrees, four pictures"
         if moves and [x.word for x in clause.lexemes[:2]] == ["make", "that"]:
             return (Unclear("Which way shall I turn, and how far?"),)  # a correction of something that was not said
         if moves and self.has_zoomed_in and any(x.word == "back_out" for x in clause.lexemes) and not search("NUM", clause.lexemes):

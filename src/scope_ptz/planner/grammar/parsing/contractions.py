@@ -1,4 +1,7 @@
-"""Read "'s" in a condition as "is" where it cannot be a possessive: "if the gate's open", unlike "if the driver's door is open"."""
+"""Read "'s" as "is" where it cannot be a possessive: "if the gate's open", unlike "if the driver's door is open".
+
+This applies to conditions and to statements that are to be checked: "make sure the gate's shut".
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ _VERBS = ("BE", "HAVEV", "MODAL", "DOV")
 
 
 def with_contractions(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes with "'s" as "is" in conditions that have no other auxiliary verb."""
+    """Return lexemes with "'s" as "is" in conditions and statements to be checked that have no other auxiliary verb."""
     out = list(lexemes)
     is_condition = False
     for i, x in enumerate(out):

@@ -83,11 +83,9 @@ class Sentences(Tours):
         """Return the linked steps of the next clause, with the clauses that belong to it."""
         clause = self._take()
         match clause.marker:
-            case "" if (
-                not withdraws(clause)
-                and not takes_back(clause)
-                and adds_nothing(clause, self._peek(), self.last, is_first=self.next == 1)
-            ):
+            case "" if self._takes_back(clause):
+                return [Linked(clause.link, _WITHDRAWN)]
+            case "" if adds_nothing(clause, self._peek(), self.last, is_first=self.next == 1):
                 return []
             case "":
                 return self._main(clause)
@@ -111,6 +109,12 @@ class Sentences(Tours):
                 return []
         raise NotUnderstoodError(clause.lexemes)
 
+    def _takes_back(self, clause: Clause) -> bool:
+        """Return whether a clause takes back or forbids another one: "I changed my mind", or "no, don't" at the end."""
+        after = self._peek()
+        is_last = self.next > 1 and (after is None or after.link == ".")
+        return (len(self.clauses) > 1 and withdraws(clause)) or (is_last and takes_back(clause))
+
     def _follows_search(self) -> bool:
         """Return whether the previous clause looks for something: "until you see a van", "find the van"."""
         ends_loop = self.next > 1 and self.clauses[self.next - 2].marker in {"UNTIL", "WHILE"}
@@ -120,9 +124,6 @@ class Sentences(Tours):
     def _main(self, clause: Clause) -> list[Linked]:
         """Return the steps of a main clause, with what follows it: "until ...", "if ...", "before ..."."""
         after = self._peek()
-        is_last = after is None or after.link == "."
-        if (len(self.clauses) > 1 and withdraws(clause)) or (self.next > 1 and is_last and takes_back(clause)):
-            return [Linked(clause.link, _WITHDRAWN)]
         if times := self._times_of_all(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.execution.answer_sentences import continued
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
@@ -17,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.courtesy import completes_question
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import IRREGULAR_PLURALS, is_noun_phrase, thing_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase, thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
@@ -73,8 +74,7 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     for x in lexemes[subject + 1 : subject + 4]:
         if x.word in _STATES or (x.word.endswith("ing") and x.has("FREE")) or x.word in {"wearing", "holding", "carrying"}:
             return f"{text}?"
-    is_plural = lexemes[-1].word.endswith("s") or lexemes[-1].word in IRREGULAR_PLURALS
-    if full_match("FREE{1,3}", lexemes) and is_plural and is_noun_phrase(lexemes):
+    if full_match("FREE{1,3}", lexemes) and is_plural(lexemes[-1].word) and is_noun_phrase(lexemes):
         return f"Are there any {continued(text)}?"  # "people (at the gate)?"
     return None
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from scope_ptz.english.grammar.parts_of_speech import present_participle, verb_form
+from scope_ptz.english import is_plural
+from scope_ptz.english.grammar.parts_of_speech import verb_form
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import (
     AtPlaces,
@@ -15,9 +16,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import IRREGULAR_PLURALS, described, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, thing_of, things_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
@@ -131,9 +133,9 @@ def _counted(
         return Count((Thing(),), view)
     # "How many people wait?" counts people waiting.
     if (acting := full_match("(?P<thing>FREE{1,3}) (?P<verb>FREE)", rest)) is not None and how is not None:
-        verb, noun = acting["verb"][0].word, acting["thing"][-1].word
-        if verb_form(verb) == "base" and (noun.endswith("s") or noun in IRREGULAR_PLURALS):
-            return Count((Thing(f"{text_of(source, acting['thing'])} {present_participle(verb)}"),), view)
+        verb = acting["verb"][0].word
+        if verb_form(verb) == "base" and is_plural(acting["thing"][-1].word):
+            return Count((Thing(f"{text_of(source, acting['thing'])} {verb_forms(verb)['ing'][0]}"),), view)
     if match := full_match(
         rf"(?P<thing>_+?) {_SEEING}+ (VISIBLE|FILLER|FULL|NOW|there|altogether|present|out there|INTURN)*",
         rest,

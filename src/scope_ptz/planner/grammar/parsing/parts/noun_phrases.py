@@ -47,9 +47,6 @@ _RELATIVE = (
 )
 """Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
 
-IRREGULAR_PLURALS = frozenset({"people", "men", "women", "children", "folk", "sheep", "cattle", "police", "deer", "geese"})
-"""Plural nouns that do not end in "s"."""
-
 
 def described(text: str) -> str:
     """Return a description without function words and without the verb of its relative clause.
