@@ -80,6 +80,7 @@ def test_objects_of_the_caller_are_evaluated_and_stay_open(tasks: tuple[scope_pt
     assert not planner.closed
 
 
+@pytest.mark.full
 def test_a_planner_object_scores_like_the_named_planner(
     results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...], tmp_path: Path
 ) -> None:

@@ -94,7 +94,7 @@ def test_classes_have_a_description(name: str) -> None:
 
 @pytest.mark.usefixtures("scenes_cache")
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.full] if name == "evaluate" else []) for name in (*FUNCTIONS, *OURS)]
+    "name", [pytest.param(name, marks=[] if name == "open" else [pytest.mark.full]) for name in (*FUNCTIONS, *OURS)]
 )
 def test_examples_in_docstrings_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

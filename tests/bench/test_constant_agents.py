@@ -31,7 +31,9 @@ from tests.bench.sample_runs import samples
 pytestmark = pytest.mark.anyio
 
 
-@pytest.mark.parametrize("split", ["core", "lite", "unseen"])
+@pytest.mark.parametrize(
+    "split", ["lite", pytest.param("core", marks=pytest.mark.full), pytest.param("unseen", marks=pytest.mark.full)]
+)
 def test_constant_answers_rarely_pass(split: str) -> None:
     level = chance_level(load_split(split))
     assert level.without_calls.correct == 0

@@ -92,7 +92,10 @@ def test_ctrl_c_at_any_time_leaves_no_incomplete_run_folder(
 
 # Standard streams ------------------------------------------------------------------------------------------------------
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
-@pytest.mark.parametrize("command", ["plan 'pan right 5'", "tools", "--help", "scene list --json"])
+@pytest.mark.parametrize(
+    "command",
+    ["plan 'pan right 5'", *(pytest.param(line, marks=pytest.mark.full) for line in ("tools", "--help", "scene list --json"))],
+)
 def test_a_full_disk_behind_stdout_is_one_line_and_exit_code_1(environment: dict[str, str], command: str) -> None:
     run_result = shell(environment, f"$SCOPE {command} > /dev/full")
     assert run_result.returncode == 1
@@ -153,7 +156,9 @@ def scenes_copy(scenes: Path, tmp_path: Path, environment: dict[str, str]) -> Pa
     return copy
 
 
-@pytest.mark.parametrize("file", ["scene.json", "mast/manifest.json", "mast/base.png"])
+@pytest.mark.parametrize(
+    "file", ["scene.json", *(pytest.param(name, marks=pytest.mark.full) for name in ("mast/manifest.json", "mast/base.png"))]
+)
 def test_a_pipe_instead_of_a_file_is_an_immediate_error(environment: dict[str, str], scenes_copy: Path, file: str) -> None:
     (path,) = (scenes_copy / SCENE).glob(file.replace(".png", ".*"))
     path.unlink()

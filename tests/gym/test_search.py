@@ -114,6 +114,7 @@ def test_targets_can_be_chosen(make: Make) -> None:
         make(SEARCH, scene=YARD, targets=["unicorn"]).reset(seed=1)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("policy", [RandomLooks, Sweep, Greedy])
 def test_baselines_find_targets_with_perfect_perception(policy: type[Any], make: Make) -> None:
     env = make(SEARCH, scene=YARD, perception="ground-truth", frames=False)

@@ -59,6 +59,7 @@ async def test_a_text_is_found_where_it_is(perception_backend: Perception) -> No
     assert 0.1 < point.x < 0.5 and 0.6 < point.y < 0.8
 
 
+@pytest.mark.full
 @pytest.mark.anyio
 async def test_a_wall_without_text_gives_no_texts_and_no_answer(perception_backend: Perception) -> None:
     frame = pictures.frame()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.regression.gate import compare_evaluations
 from scope_ptz.bench.engine.run_totals import accuracy
@@ -24,6 +26,7 @@ from tests.cli.conftest import Scope
 from tests.support.misbehaving import Misbehaving, Say, good
 
 
+@pytest.mark.full
 def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None:
     facts = TaskFacts(
         id="q-1", dataset="theirs", stratum="imported", scene=SCENE, viewpoint="mast", preset="yard",

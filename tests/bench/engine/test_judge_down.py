@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
 from scope_ptz.bench.judging.judgement_tally import JudgementTally, judge_of_every_run
@@ -95,6 +97,7 @@ def models_then_verdicts(*names: str) -> Behaviour:
     return behave
 
 
+@pytest.mark.full
 def test_a_second_judge_is_called_although_the_first_is_complete(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
     for name in ("judge-a", "judge-b"):
         with Misbehaving(then=models_then_verdicts(name)) as server:

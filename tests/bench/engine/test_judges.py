@@ -7,6 +7,7 @@ import json
 from collections import Counter
 from pathlib import Path
 
+import pytest
 from rich.console import Console
 
 from scope_ptz.bench.engine.judgement_journal import Journal
@@ -86,6 +87,7 @@ def test_only_failed_judgements_are_repeated(scope: Scope, log_copy: Path) -> No
     assert {j.repeat for t in trials for j in t.judgements} == {0}
 
 
+@pytest.mark.full
 def test_a_sweep_of_pairs_resumes_and_judges(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(TASKS[2:], tmp_path / "tasks.jsonl")
     options = ("--tasks", str(tmp_path / "tasks.jsonl"), "--out", str(tmp_path / "logs"))

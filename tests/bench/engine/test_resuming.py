@@ -185,6 +185,7 @@ def test_a_stalling_server_is_an_outcome(scope: Scope, tmp_path: Path) -> None:
     assert trial.tool_calls == {}
 
 
+@pytest.mark.full
 def test_labels_are_kept_with_reused_runs(scope: Scope, tmp_path: Path) -> None:
     tasks, logs = turning_tasks(11), tmp_path / "logs"
     dump_tasks(tasks, tmp_path / "tasks.jsonl")

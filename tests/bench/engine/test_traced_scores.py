@@ -342,6 +342,7 @@ def test_a_task_outside_the_split_is_not_correct(honest: Evaluation, tmp_path: P
     assert {"task-unknown", "sample-missing"} <= {finding.kind for finding in evaluation.findings}
 
 
+@pytest.mark.full
 def test_unpublished_tasks_must_match_the_card(log_copy: Path, tmp_path: Path) -> None:
     """The tasks of this log are private, so only the digest on the run card can show that they were changed."""
     before = read_evaluation(log_copy)
@@ -355,6 +356,7 @@ def test_unpublished_tasks_must_match_the_card(log_copy: Path, tmp_path: Path) -
     assert "tasks-changed" in {finding.kind for finding in evaluation.findings}
 
 
+@pytest.mark.full
 def test_an_edited_log_is_named_in_the_report_and_the_terminal(scope: Scope, log_copy: Path, tmp_path: Path) -> None:
     names = failures(read_evaluation(log_copy))
     log = edit_log(log_copy, tmp_path / "attacked.eval", claim_everything, names)

@@ -73,6 +73,7 @@ def judge_gold(gold: Path, out: Path, url: str, *options: str) -> Result:
     )
 
 
+@pytest.mark.full
 def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) -> None:
     out = tmp_path / "verdicts.jsonl"
     with m.Misbehaving(then=good_judge) as server:

@@ -150,6 +150,7 @@ def unmarked_value(cell: object) -> float:
     return float(cell.value)  # type: ignore[attr-defined]
 
 
+@pytest.mark.full
 def test_the_simulation_has_the_strengths_that_it_states() -> None:
     items, pair = core_items(), paper_pairs()[0]
     assert len(items) == 536

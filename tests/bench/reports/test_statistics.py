@@ -81,6 +81,7 @@ def test_strata_of_one_cluster_are_named_and_have_no_interval() -> None:
     assert whole is not None and whole.single_cluster_strata == ()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", range(5))
 def test_the_micro_variance_is_that_of_a_clustered_regression(seed: int) -> None:
     from statsmodels.regression.linear_model import OLS  # type: ignore[import-untyped]

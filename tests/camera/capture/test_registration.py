@@ -55,6 +55,7 @@ def test_a_rotation_keeps_lengths_and_turns_by_its_angle(vector: NDArray[np.floa
     assert turn_deg(np.eye(3), turn) == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.full
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**31), st.floats(0.0, 0.4), st.floats(0.97, 1.03), st.floats(-1.5, 1.5))
 def test_errors_of_poses_and_of_the_focal_length_and_a_drift_are_found(

@@ -197,6 +197,7 @@ def call(number: int, name: str, /, **arguments: Any) -> dict[str, Any]:
     return {"jsonrpc": "2.0", "id": number, "method": "tools/call", "params": {"name": name, "arguments": arguments}}
 
 
+@pytest.mark.full
 def test_stdout_carries_only_messages_and_the_program_ends_with_its_input(scenes: None, tmp_path: Path) -> None:
     with started(tmp_path) as program:
         assert exchange(program, INITIALIZE)["result"]["protocolVersion"] == OLDER

@@ -499,6 +499,7 @@ def test_without_expected_calls_the_check_has_no_result(tmp_path: Path) -> None:
 # The command
 
 
+@pytest.mark.full
 def test_the_command_writes_tasks_and_a_report(tmp_path: Path, analytic_folder: Path) -> None:
     import_rows(tmp_path, {"file_location": "analytic_yard.blend", "preset_start": ""}, {"file_location": "moon.blend"})
     out = tmp_path / "new" / "tasks.jsonl"
