@@ -56,7 +56,7 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
         sample=sample,
         headline=verdict.headline,
         reason=verdict.reason,
-        error_mode=error_mode(task, episode),
+        error_mode=error_mode(task, episode, verdict=verdict),
         checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         collateral=verdict.moved_needlessly,
         outcome=episode.outcome,

@@ -27,7 +27,7 @@ from scope_ptz.factory.scenes import scene_search
 from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.settings import load_settings
-from scope_ptz.simulator.library import Library
+from scope_ptz.simulator.library import OPEN_VIEWPOINTS, Library
 from scope_ptz.simulator.pack import Scene
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
+VIEWPOINTS_WITHOUT_PICTURES = 3
+"""Number of open viewpoints when no frames are rendered. A viewpoint then takes less memory, and tasks often use several."""
 MAX_CACHED_VIEWS = 150
 """Maximum number of views with cached ground truth. Runs are ordered by viewpoint, so consecutive runs share views."""
 
@@ -78,6 +80,7 @@ def eval_context(
     seed: int,
     planner: Planner | None = None,
     perception: ResolvedPerception | None = None,
+    pictures: bool = True,
 ) -> EvalContext:
     """Create the context for an evaluation.
 
@@ -86,10 +89,12 @@ def eval_context(
         planner: The planner; None to create the one that the engine requests by name.
         perception: The resolved perception backend, which is created immediately so that errors are reported before the first run;
             None to create the one that the engine requests by name.
+        pictures: Whether frames are rendered.
     """
     from scope_ptz.factory.validation_perception import TruthCache
 
-    scenes, cache = Library(scene_search(load_settings())), TruthCache(MAX_CACHED_VIEWS)
+    open_viewpoints = OPEN_VIEWPOINTS if pictures else VIEWPOINTS_WITHOUT_PICTURES
+    scenes, cache = Library(scene_search(load_settings()), open_viewpoints), TruthCache(MAX_CACHED_VIEWS)
     backend = evaluation_perception(perception, scenes, seed, cache) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:

@@ -59,7 +59,7 @@ class EvaluationSession:
         self.agent_name = self.agent.name if self.agent is not None else BUILT_IN_AGENT
         self.agent_source = self.agent.source if self.agent is not None else ""
         self.planner = evaluation_planner(pair.planner) if self.agent is None else None
-        self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
+        self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception, pictures=options.pictures)
         self.entries: tuple[Entry, ...] = select_entries(
             self.context.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )

@@ -31,9 +31,9 @@ from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.stored_run import STORE, StoredRun, sample_name, trace_of
 from scope_ptz.bench.engine.traces.scored_trials import published_entry, scored_trial, with_packaged_presets
-from scope_ptz.bench.engine.traces.traced_trials import TRIAL
+from scope_ptz.bench.engine.traces.traced_trials import TRIAL, cached_trial
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.scoring.trials import Trial
+from scope_ptz.bench.scoring.trials import LogFinding, Trial
 from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
@@ -87,16 +87,22 @@ async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
     folder = Path(entry.facts.scene)
     stored = state.store.get(STORE)
     stored_run = with_packaged_presets(StoredRun.from_store(stored) if stored else StoredRun("", {}, ""), entry.world)
-    trial, fault = scored_trial(entry, stored_run, state.epoch, folder, failed=True)
+    trial, fault = _scored(entry, stored_run, state.epoch, folder)
     needs_truths = trial.headline == "incorrect" and fault is None and not stored_run.truths
     if needs_truths and context is not None and context.true_count is not None:
         stored_run = await _with_truths(entry, stored_run, context.true_count)
         if stored_run.truths:
             state.store.set(STORE, stored_run.to_store())
-            trial, _ = scored_trial(entry, stored_run, state.epoch, folder, failed=True)
+            trial, _ = _scored(entry, stored_run, state.epoch, folder)
     if context is not None:
         context.watcher.run_ended(sample_name(entry.facts.id, state.epoch), trial)
     return trial
+
+
+def _scored(entry: Entry, stored_run: StoredRun, epoch: int, folder: Path) -> tuple[Trial, LogFinding | None]:
+    """Return the result of ``scored_trial``. A complete run is cached, because its log is usually read soon afterwards."""
+    trial, fault = cached_trial(entry, stored_run, epoch, folder)
+    return (trial, None) if fault is None else scored_trial(entry, stored_run, epoch, folder, failed=True)
 
 
 async def _with_truths(entry: Entry, stored_run: StoredRun, true_count: TrueCount) -> StoredRun:

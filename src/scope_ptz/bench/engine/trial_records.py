@@ -66,6 +66,7 @@ def _verdict_of_checks(entry: Entry, stored_run: StoredRun, trace: Trace) -> dic
             episode,
             truth if stored_run.truths else None,
             exact_perception=trace.started.perception in EXACT_PERCEPTION,
+            verdict=verdict,
         ),
         "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         "collateral": verdict.moved_needlessly,

@@ -101,7 +101,12 @@ class _Case:
 
 
 def error_mode(
-    task: Task, episode: Episode, truth: CountTruth | None = None, *, exact_perception: bool = False
+    task: Task,
+    episode: Episode,
+    truth: CountTruth | None = None,
+    *,
+    exact_perception: bool = False,
+    verdict: Verdict | None = None,
 ) -> ErrorMode | None:
     """Return the error mode of a failed run.
 
@@ -111,11 +116,12 @@ def error_mode(
         truth: Function that returns the true count for an observation. If None, the task's evidence shows whether a count is wrong.
         exact_perception: Whether perception was the exact ground truth. If so, a wrong or missing answer is always the agent's
             error.
+        verdict: The verdict on the run; None to execute the checks.
 
     Returns:
         The error mode, or None if the run is correct, could not be scored, or was broken by infrastructure.
     """
-    verdict = score_episode(task, episode)
+    verdict = verdict or score_episode(task, episode)
     if verdict.headline != "incorrect":
         return None
     case = _Case(task, episode, verdict, truth, exact_perception)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
@@ -40,7 +42,15 @@ def meaning_of(state: State) -> Understanding:
     if offer is not None and (reply := yes_or_no(state.instruction)) is not None:
         thing, question = offer
         return Understanding((LookCloser(Thing(thing), question),) if reply == "yes" else (Forbid(any_move=True),))
-    return understand(state.instruction, state.briefing.presets, state.conversation)
+    if state.conversation:
+        return understand(state.instruction, state.briefing.presets, state.conversation)
+    return _understand_first_turn(state.instruction, state.briefing.presets)
+
+
+@lru_cache(maxsize=64)
+def _understand_first_turn(instruction: str, presets: tuple[str, ...]) -> Understanding:
+    """Return the meaning of the first instruction of a conversation. Each step of its run asks for it again."""
+    return understand(instruction, presets)
 
 
 def decide_on(meaning: Understanding, state: State) -> Decision:

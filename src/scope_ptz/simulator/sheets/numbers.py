@@ -155,5 +155,6 @@ class NumberAtlas(Atlas):
         """Write numbers to the part of the sheet that starts at row ``y`` and column ``x``."""
         codes = self._codes.encode(numbers)
         self.sheet[y : y + codes.shape[0], x : x + codes.shape[1]] = codes
-        rows, columns = np.nonzero(codes == RARE)
-        self._rare.write(rows + y, columns + x, numbers[rows, columns])
+        if codes.max() == RARE:
+            rows, columns = np.nonzero(codes == RARE)
+            self._rare.write(rows + y, columns + x, numbers[rows, columns])

@@ -37,7 +37,8 @@ class LoggedPlanner(Planner):
         self.sees = planner.sees if planner is not None else False
         prompt = getattr(planner, "prompt", None)
         self._prompt = prompt if isinstance(prompt, Prompt) else load_prompt(DEFAULT_PROMPT)
-        self._tools = tool_infos()
+        # A planner without a prompt sends no tools to a model. Inspect would copy and log their schemas at every step.
+        self._tools = tool_infos() if planner is None or isinstance(prompt, Prompt) else []
 
     @property
     def details(self) -> dict[str, str]:

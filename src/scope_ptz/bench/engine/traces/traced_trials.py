@@ -94,7 +94,7 @@ def traced_trial(sample: Mapping[str, Any], path: Path, split: str) -> TracedTri
         trial, fault = unusable_trial(entry, epoch, judgements, "task-unknown", detail)
     else:
         failed = sample.get("error") is not None
-        trial, fault = _cached_trial(entry, stored_run, epoch, path, judgements, failed=failed)
+        trial, fault = cached_trial(entry, stored_run, epoch, path, judgements, failed=failed)
     if fault is not None:
         findings.append(fault)
     else:
@@ -113,8 +113,8 @@ def _entry_of(sample: Mapping[str, Any], *, published_split: bool) -> tuple[Entr
         return published, True
 
 
-def _cached_trial(
-    entry: Entry, stored_run: StoredRun, epoch: int, path: Path, judgements: tuple[Judgement, ...], *, failed: bool
+def cached_trial(
+    entry: Entry, stored_run: StoredRun, epoch: int, path: Path, judgements: tuple[Judgement, ...] = (), *, failed: bool = False
 ) -> tuple[Trial, LogFinding | None]:
     """Return the result of ``scored_trial``. Faultless results are cached by a digest of everything that affects them."""
     content = (
