@@ -30,6 +30,7 @@ _FUSED_WORDS = {
     "gonna": ("going", "to"), "goto": ("go", "to"), "youre": ("you", "are"), "howmany": ("how", "many"),
     "couldnt": ("could", "not"), "shouldnt": ("should", "not"), "wasnt": ("was", "not"), "hasnt": ("has", "not"),
     "havent": ("have", "not"),
+    "wouldnt": ("would", "not"), "werent": ("were", "not"), "mustnt": ("must", "not"), "aint": ("is", "not"),
 }  # fmt: skip
 _AFTER_ID = re.compile(r" (?:like|love|prefer|appreciate|be|rather|say)\b")
 """A word after "id" that shows that it stands for "I'd"."""

@@ -12,14 +12,15 @@ _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORE
 _WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
 _FUTURE = re.compile(r"Is it true that (?:an?|any\w*|some\w*) ", re.IGNORECASE)  # "let me know if anything moves"
 _EXISTENCE = re.compile(
-    r"(?:(?:is|are) there|(?:can|do) you see|(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
-    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) (?:an? |any |the |some )?(.+?)"
+    r"(?:(?:(?:is|are) there|(?:can|do) you see|do (?:we|you) have|have (?:we|you) got|"
+    r"(?:is|are)(?= (?:an?|any|some) .* (?:in view|visible|around|"
+    r"here|there|present|in (?:the )?(?:picture|frame|shot|image|sight)|on screen)\b)) |(?=any ))(?:an? |any |the |some )?(.+?)"
     r"(?: anywhere| in view| visible| right now| here| there| present|"
     r" in (?:the )?(?:picture|frame|shot|image|sight)| on screen)?\s*\?*$",
     re.IGNORECASE,
 )
 _TWO_QUESTIONS = re.compile(
-    r"(?P<seen>(?:can you see|do you see|is there|are there) (?:an?|any|some) [^,?]+?)"
+    r"(?P<seen>(?:can you see|do you see|is there|are there|do we have|have we got) (?:an?|any|some) [^,?]+?)"
     r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
     re.IGNORECASE,
 )
@@ -31,7 +32,8 @@ _WINNER = re.compile(
     re.IGNORECASE,
 )
 _ANY_THERE = re.compile(
-    r"(?:is there|are there|(?:can|do) you see|is|are) (?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
+    r"(?:is there|are there|(?:can|do) you see|do we have|have we got|is|are) "
+    r"(?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
     re.IGNORECASE,
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)

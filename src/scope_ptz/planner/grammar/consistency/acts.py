@@ -1,4 +1,4 @@
-"""Find the acts of an instruction that its plan does not carry out."""
+"""Find the acts of an instruction that its plan does not carry out, and the conditions that it does not test."""
 
 from __future__ import annotations
 
@@ -15,6 +15,32 @@ _TAKING = frozenset({"take", "taking", "snap", "grab", "save", "capture", "shoot
 _TAKE_REACH = 4  # words between "take" and "picture"
 _TURNS = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt"}
 _ZOOMING = frozenset({"zoom", "zooming", "magnify"})
+_TESTS = (
+    ast.Seen, ast.Readable, ast.Statement, ast.Outnumbers, ast.PresetOutnumbers, ast.Ask, ast.Count, ast.Read, ast.BeforeAfter,
+    ast.Compare, ast.CompareWithBefore, ast.Tally, ast.Total, ast.Difference, ast.RankCounts, ast.WhichPreset, ast.FirstWith,
+    ast.CameraState, ast.Rescope, ast.WhatAbout, ast.Help,
+)  # fmt: skip
+"""Conditions that perception answers, and steps whose answer can be one."""
+_COURTEOUS = frozenset({
+    "you", "may", "might", "could", "would", "can", "please", "possible", "trouble", "bother", "mind", "ok", "okay", "fine",
+    "alright", "problem", "convenient", "want", "like", "wish", "time", "need", "needed", "necessary", "help", "helps",
+    "so", "not", "yes", "no",
+})  # fmt: skip
+"""Words after "if" that make it courtesy, or refer to an earlier answer: "if it is no trouble", "if need be", "if so"."""
+_COURTESY_REACH = 7  # words after "if"
+
+
+def ignored_conditions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return each "if" and "unless" of a plan that tests nothing."""
+    if evidence.has(*_TESTS):
+        return []
+    return [
+        word
+        for i, word in enumerate(words)
+        if word.text in {"if", "unless"}
+        and not word.is_described
+        and not any(later.text in _COURTEOUS for later in words[i + 1 : i + 1 + _COURTESY_REACH])
+    ]
 
 
 def omitted_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:

@@ -13,7 +13,7 @@ from difflib import SequenceMatcher
 
 from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.consistency.acts import omitted_acts
+from scope_ptz.planner.grammar.consistency.acts import ignored_conditions, omitted_acts
 from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
@@ -53,6 +53,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
                 *ignored_directions(words, evidence),
                 *contradicted_zoom(words, evidence),
                 *omitted_acts(words, evidence),
+                *ignored_conditions(words, evidence),
                 *unvisited_presets(words, evidence, presets),
             )
         }.values(),

@@ -104,7 +104,7 @@ def contradicted_zoom(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     """Return the words that name a change of the magnification in the direction opposite to that of the plan."""
     senses = {"in": _zoom_words(words, _ZOOM_IN), "out": _zoom_words(words, _ZOOM_OUT)}
     texts = {word.text for word in words}
-    if evidence.has(ast.ZoomTo, ast.Track):
+    if evidence.has(ast.ZoomTo, ast.Track, ast.Back):
         return []
     if senses["in"] and evidence.zooms == {"out"} and not senses["out"] and not texts & _FACTORS_OUT:
         return senses["in"]

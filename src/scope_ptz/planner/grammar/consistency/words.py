@@ -62,7 +62,7 @@ def words_of(text: str) -> list[Word]:
     words: list[Word] = []
     for match in _WORD.finditer(plain):
         word = Word(unicodedata.normalize("NFKC", match.group()).replace("−", "-"), match.start(), match.end())
-        word.text = corrected_word(word.text)
+        word.text = "and" if word.text == "&" else corrected_word(word.text)
         if word.text == "clockwise" and words and words[-1].text in {"anti", "counter"}:
             words[-1] = Word("anticlockwise", words[-1].start, word.end)
         else:

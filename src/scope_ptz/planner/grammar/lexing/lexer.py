@@ -89,6 +89,7 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
     tokens = _without_inner_hyphens(_without_list_marks(tokenise(text)))
     known = {part for preset in presets for part in re.findall(r"[^\W\d_]+", preset.lower())}
     words = [_preset_word(token.text, known) if _is_near(token.text, known) else corrected_word(token.text) for token in tokens]
+    words = ["and" if word == "&" else word for word in words]
     out: list[Lexeme] = []
     i = 0
     while i < len(tokens):

@@ -13,6 +13,7 @@ from scope_ptz.planner.grammar.parsing.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.repairs import repaired, unresolved_editing
+from scope_ptz.planner.grammar.parsing.rewordings import reworded
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first
@@ -46,7 +47,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     lexemes = lexemes_of(text, presets) if len(text) <= MAX_CHARS else ()
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
-    meant = without_denials(repaired(with_contractions(lexemes), text))
+    meant = without_denials(repaired(with_contractions(reworded(lexemes)), text))
     lexemes, text = meant.lexemes, meant.text
     if unresolved := unresolved_editing(lexemes):
         return Parsed(text, None, _quoted(text, unresolved))

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.courtesy import completes_question
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase, thing_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import PROPERTIES, is_noun_phrase, thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
@@ -39,13 +39,6 @@ _STATES = frozenset({
 })  # fmt: skip
 """Adjectives that end a question without a verb, such as "barrier up?" and "floor wet by the fountain?"."""
 
-_PROPERTIES = frozenset({
-    "colour", "color", "state", "status", "number", "type", "make", "price", "text", "name", "size", "height", "condition", "plate",
-    "position", "registration", "reading", "level", "temperature",
-})  # fmt: skip
-"""Nouns that end a question about a thing, such as "excavator colour?"."""
-
-
 _IDENTITIES = (
     "(((number|licence|license|registration|reg) plate|numberplate|registration) (of|off|on|from)|"
     "(plate|registration|reg|serial|fleet) (number (off|on|from)|number_of))"
@@ -57,6 +50,9 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     """Return the question that "barrier open?", "driver wearing a helmet?" and "excavator colour?" stand for; None for others."""
     if (question := _identity_question(source, lexemes)) is not None:
         return question
+    wanted = full_match("(give (me|us) the)? (?P<what>FREE (of|on) DET _+)", lexemes)
+    if wanted and wanted["what"][0].word in PROPERTIES and not search(f"{_NO_TOPIC}|COMMA", lexemes):
+        return f"What is the {continued(text_of(source, wanted['what']))}?"  # "give me the colour of the van"
     if (
         not asked
         or search(_NO_TOPIC, lexemes)
@@ -65,10 +61,10 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     ):
         return None
     text = text_of(source, lexemes)
-    if lexemes[-1].word in _PROPERTIES and 1 < len(lexemes) < 6:
+    if lexemes[-1].word in PROPERTIES and 1 < len(lexemes) < 6:
         article = "" if lexemes[0].has("DET") else "the "
         return f"What is {article}{continued(text)}?"
-    if lexemes[0].word in _PROPERTIES and match_start("_ (of|on|for) _", lexemes):
+    if lexemes[0].word in PROPERTIES and match_start("_ (of|on|for) _", lexemes):
         return f"What is the {continued(text)}?"
     subject = 1 if lexemes[0].has("DET", "EVERY") else 0
     for x in lexemes[subject + 1 : subject + 4]:
@@ -172,10 +168,10 @@ def question_step(
             and not search(_NO_TOPIC, rest)
         ):
             return Ask("whether " + text_of(source, rest) + end, scope, embedded=True)  # "make sure the gate is shut"
-        if rest[0].word in _PROPERTIES and match_start("_ (of|on|for)", rest) and not search(_NO_TOPIC, rest):
+        if rest[0].word in PROPERTIES and match_start("_ (of|on|for)", rest) and not search(_NO_TOPIC, rest):
             return Ask(f"the {text_of(source, rest)}{end}", scope, embedded=True)  # "confirm colour of the beacon"
         if not search(_NO_TOPIC, rest) and rest[0].word in {"the", "its", "their", "his", "her", "this", "that"}:
-            is_property = any(x.word in _PROPERTIES for x in rest[:3])
+            is_property = any(x.word in PROPERTIES for x in rest[:3])
             if (lexemes[0].word == "see" and not is_property) or (
                 lexemes[0].has("SHOW", "FIND", "SWITCH") and not lexemes[0].has("TELL")
             ):

@@ -160,8 +160,10 @@ def close_up_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         if not match:
             continue
         words = trimmed(match["thing"], "FILLER")
-        if search("PRESETNOUN (for|of|CALLED)", words[:3]):
-            return None  # "show me the preset for the laundry room"
+        if shown := full_match("DET (good|nice|proper|tight|clear)? close_up (VIEWNOUN|PICTURE)? (of|on) (?P<thing>_+)", words):
+            words = tuple(shown["thing"])  # "let me see a close-up of the van"
+        if search("PRESETNOUN (for|of|CALLED)", words[:3]) or (words and words[-1].word == "preset"):
+            return None  # "show me the preset for the laundry room", "look at the higway preset"
         if (
             not words
             or words[0].has("WHQ", "HOWMANY", "IF")

@@ -52,7 +52,8 @@ def picture_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     if full_match(
         rf"{SKIP} (TAKE|TAKE-ING|and|SNAP) (DET)? (ANOTHER|NUM|one|ORDINAL) (one|PICTURE|ANOTHER)? {SKIP}", lexemes
     ) and any(
-        x.word in {"take", "snap", "taking", "shoot", "grab", "capture", "photograph", "record", "save", "store"} for x in lexemes
+        x.word in {"take", "snap", "taking", "shoot", "grab", "capture", "photograph", "record", "save", "store", "get"}
+        for x in lexemes
     ):
         return Snap()
     if full_match(

@@ -56,8 +56,10 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
             x for x in silent if x.word in {"on", "at", "in", "with", "across", "along", "is", "are", "that", "one", "of", "into"}
         ]
     unread += [x for x in lexemes if x.word == "one" and not match_start("one DEG", lexemes[lexemes.index(x) :])]
-    if (camera := search("CAMERA (?P<number>NUM)(?! (DEG|X))", lexemes)) is not None:
-        unread += camera["number"]  # "camera 2 left" is about another camera
+    named = search("CAMERA (?P<number>NUM)(?! (DEG|X))", lexemes)
+    if named is not None and not search("DET CAMERA NUM", lexemes):
+        unread += named["number"]  # "camera 2 left" is about another camera, unlike "turn the camera 20 left"
+    unread += [x for x in lexemes if x.word == "any"]  # "any left?" is no turn
     if lexemes[-1].word in DANGLING and not found.directions:
         unread.append(lexemes[-1])
     if unread == [lexemes[0]] and found.directions and found.amounts and _moves_camera(lexemes):

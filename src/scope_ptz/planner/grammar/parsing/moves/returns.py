@@ -20,7 +20,7 @@ _HOW_FAR = (
     rf"(by|AMOUNTISH)* ((?P<number>NUM) DEG?|(?P<little>LITTLE)|(?P<lot>LOT)|{MULTIPLE}|(?P<same>SAMEAMOUNT)|"
     r"(?P<half>halfway|half_way)|DET? (?P<fraction>FRACTION) (of the way|of DET? way)?)"
 )
-_BACK = "(BACK|go_back|come_back|turn_back|swing_back|move_back|head_back)"
+_BACK = "(BACK|return|go_back|come_back|turn_back|swing_back|move_back|head_back)"
 _OTHER_WAY = "(in|to|DET)* (other|opposite) (way|direction|side)"
 
 

@@ -47,6 +47,12 @@ _RELATIVE = (
 )
 """Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
 
+PROPERTIES = frozenset({
+    "colour", "color", "state", "status", "number", "type", "make", "price", "text", "name", "size", "height", "condition", "plate",
+    "position", "registration", "reading", "level", "temperature",
+})  # fmt: skip
+"""Nouns for a property of a thing. They end a shortened question, such as "excavator colour?"."""
+
 
 def described(text: str) -> str:
     """Return a description without function words and without the verb of its relative clause.

@@ -27,6 +27,8 @@ r"(SEE|READ|TELL|FREE|count|spot|be|find|have|BE|HAVEV|look|fit|get|make_out|ide
 ),
     r"(anyone|anybody|anything|NOONE|nothing) (?!(HAVEV|MODAL|BUT|EXCEPT)) (_)+ \Z",
     r"from (LEFT|RIGHT|nearest|UP|DOWN|top|bottom) to _+? (WHQ|in which|which|what)",
+    r"any (?!(chance|luck|news|idea|ideas|way|reason|time|moment|joy|day|minute|good|problem|problems|questions))"
+    r" (FREE|SOMEONE) (?!(SELF|MODAL))",
     r"(put|rank|arrange|sort) _+? in_order (of|by|from) _+",
     r"(out_of|of|among|between) _+ (COMMA) (which|what|who)",
 )  # fmt: skip

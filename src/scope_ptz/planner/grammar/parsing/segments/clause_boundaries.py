@@ -35,6 +35,15 @@ _SETTING = f"{SET_THERE}|at (DET|LIMIT|full|maximum|max|minimum|min|FREE)* (ZOOM
 _ASKS_MORE = "(what|which) FREE{1,2} (BE|HAVEV|DOV|MODAL) DET _|(what|which|who|where|WHQ) (BE|DOV|HAVEV) DET _"
 """The beginning of a question about another thing than the previous count: "... and what does the notice say?"."""
 
+_COMMANDS = (
+    "(SWITCH|CARRY|TURN|AIM|PAN|SHOW) (BACK|AROUND|over|across|straight|right|back|up|down)* (to|at|on_to|onto|towards)"
+    " (DET|PRESETNOUN)* (PRESET|HOME)|(SWITCH|CARRY) (BACK|right|straight)* HOME|"
+    "(TAKE|SNAP) (DET|ANOTHER|NUM)* PICTURE|"
+    "ENLARGE|WIDEN|ZOOM (IN|OUT)|"
+    "(SWITCH|CARRY|TURN|AIM|PAN|TILT) (the)? CAMERA? (LEFT|RIGHT|UP|DOWN) (by|to)? (NUM|LITTLE|LOT|AMOUNTISH)"
+)
+"""Beginnings of commands that follow a condition without a comma: "if the gate is shut head over to the yard"."""
+
 _BEFORE_THAT = frozenset({
     "so", "think", "believe", "reckon", "say", "says", "said", "sure", "guess", "hope", "know", "mean", "means", "suppose",
     "see", "like",
@@ -125,7 +134,12 @@ class ClauseBoundaries(SubordinateClauses):
 
     def _ends_condition(self, i: int) -> bool:
         """Return whether a verb and its object follow a complete condition: "if there is a truck waiting read its plate"."""
-        if self.marker not in {"IF", "UNLESS", "WHEN"} or not self._is_verb(i) or not match_start("_ (DET|PRON)", self.lexemes[i:]):
+        if self.marker not in {"IF", "UNLESS", "WHEN"} or not self._is_verb(i):
+            return False
+        if match_start(_COMMANDS, self.lexemes[i:]) and self.now[-1].has(*NOUN_LIKE, "ADVERB"):
+            states = any(x.has("BE", "HAVEV", "SEE", "NOONE", "NONE", "ANY") for x in self.now)
+            return states or (self.now[0].word == "of" and len(self.now) > 1)  # "in case of smoke go home"
+        if not match_start("_ (DET|PRON)", self.lexemes[i:]):
             return False
         is_complete = any(x.has("BE", "HAVEV", "SEE") for x in self.now[:-1])
         return (
@@ -184,7 +198,9 @@ class ClauseBoundaries(SubordinateClauses):
         if (
             before.has("NUM", "DEG")
             and self._is_motion()
-            and match_start("(TAKE|SNAP) (DET|NUM|ANOTHER) PICTURE", self.lexemes[i:])
+            and match_start(
+                "(TAKE|SNAP) (DET|NUM|ANOTHER) PICTURE|(TAKE|SNAP) ANOTHER \\Z|COUNT (DET|EVERY|FREE)|READ DET", self.lexemes[i:]
+            )
         ):
             return True  # "pan right 60 take a picture"
         if (

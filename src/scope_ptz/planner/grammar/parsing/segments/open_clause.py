@@ -67,7 +67,7 @@ class OpenClause:
         return (
             self._is_free_of_nouns()
             and not self._is_question()
-            and any(x.has(*MOTION_VERBS, *DIRECTIONS, *GERUNDS, "CLOSER", "WIDER", "HOME") for x in self.now)
+            and any(x.has(*MOTION_VERBS, *DIRECTIONS, *GERUNDS, "CLOSER", "WIDER", "ENLARGE", "WIDEN", "HOME") for x in self.now)
         )
 
     def _awaits(self, rest: Sequence[Lexeme]) -> bool:
@@ -90,7 +90,9 @@ class OpenClause:
         if no_way and any(x.has("PAN", "TILT", "TURN", "DEG") for x in self.now):
             return True  # "6 more degrees of tilt, upwards"
         two_ways = has_way and match_start("(LEFT|RIGHT|UP|DOWN)", rest) and self.now[-1].has(*DIRECTIONS)
-        return not has_amount and (((has_way or bool(search("IN|OUT", self.now))) and bool(only_amount)) or bool(two_ways))
+        return not has_amount and (
+            ((has_way or bool(search("IN|OUT|ENLARGE|WIDEN", self.now))) and bool(only_amount)) or bool(two_ways)
+        )
 
     def _is_order(self) -> bool:
         """Return whether presets are listed in order to compare them: "put gate and yard in order of ...", "whichever of ..."."""

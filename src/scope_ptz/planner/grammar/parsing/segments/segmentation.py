@@ -28,6 +28,12 @@ _OPENER = (
 )
 """Words before a comma that only open an instruction: "control to camera two, ...", "step test, ...", "do the rounds, ..."."""
 
+_COURTESY_FIRST = (
+    "(FILLER|LEADFILLER|COMMA)* (WRAPPER|MODAL SELF) (FILLER|LEADFILLER|COMMA|WRAPPER)*"
+    " (?=IF (?!SELF MODAL)|UNLESS|for NUM SECONDS|NUM X COLON|(TWICE|THRICE) COLON)"
+)
+"""Courtesy before a condition, a duration or a number of times."""
+
 
 def clauses_of(lexemes: Sequence[Lexeme]) -> list[Clause]:
     """Return the clauses of an instruction."""
@@ -39,7 +45,20 @@ def clauses_of(lexemes: Sequence[Lexeme]) -> list[Clause]:
         inner = [replace(x, word=",", classes=frozenset({"COMMA"})) if x.has("STOP") else x for x in group["group"][1:-1]]
         colon = replace(inner[0], word=":", end=inner[0].start, classes=frozenset({"COLON"}))
         lexemes = (*group["times"], colon, *inner)  # "(pan left 20; photo) x3"
-    return _Splitter(lexemes).split()
+    return _Splitter(_without_courtesy_before_condition(lexemes)).split()
+
+
+def _without_courtesy_before_condition(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return lexemes without "could you" before a condition, a duration or a number: "could you, if there is a van, zoom in"."""
+    kept: list[Lexeme] = []
+    i = 0
+    while i < len(lexemes):
+        if (not kept or kept[-1].has(*ENDS)) and (match := match_start(_COURTESY_FIRST, lexemes[i:])):
+            i += match.size
+            continue
+        kept.append(lexemes[i])
+        i += 1
+    return tuple(kept)
 
 
 class _Splitter(ClauseBoundaries):
