@@ -31,6 +31,9 @@ _AFTER_RIGHT = frozenset({
 })  # fmt: skip
 """Words before which "right" may mean "exactly"."""
 
+_PARTS = frozenset({"side", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
+"""Nouns that make "the left" and "the right" a place."""
+
 _BEFORE_LEFT = frozenset({"are", "is", "were", "was", "people", "cars", "none", "nothing", "anything", "any", "have", "has"})
 _MOTION = frozenset({
     "pan", "tilt", "look", "move", "go", "point", "aim", "angle", "pitch", "nudge", "tip", "swing", "camera", "it", "lens", "view",
@@ -74,6 +77,8 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
     """Return whether a word can only be a direction: not "right now", "none left" or "bring up"."""
     before = words[i - 1].text if i else ""
     after = words[i + 1].text if i + 1 < len(words) else ""
+    if before in {"the", "our", "its"} and after in _PARTS and direction in {"left", "right"}:
+        return False  # "the light from the right side"
     if words[i].text == "right":
         return after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"
     if words[i].text == "left":

@@ -27,6 +27,9 @@ class NumberClaim:
     is_fraction: bool = False
 
 
+_BEFORE_SHARE = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "got"})
+_AFTER_SHARE = frozenset({"the", "full", "out", "empty", "open", "closed", "hidden", "cut", "missing", "gone"})
+"""Words around "half" in a remark about what the picture shows."""
 _LONG_TIMES = frozenset({"minute", "minutes", "min", "mins", "hour", "hours"})
 
 
@@ -68,6 +71,10 @@ def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     after = words[start + used].text if start + used < len(words) else ""
     if before == "in" and after in _LONG_TIMES:
         return True  # "we start loading in five minutes" is only a remark: a plan cannot wait
+    if after == "o" and words[start + used + 1 : start + used + 2] and words[start + used + 1].text == "clock":
+        return True
+    if used_words[0].text == "half" and before in _BEFORE_SHARE and after in _AFTER_SHARE:
+        return True  # "the net's half out of frame", "half the crowd is cut off"
     return before in {*_NAMED, "the", "these", "those"} or any(
         word.is_described or word.is_negated or word.text in _VAGUE for word in used_words
     )

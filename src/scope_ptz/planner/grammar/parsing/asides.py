@@ -122,7 +122,9 @@ def explains(clause: Clause, clauses: int) -> bool:
     clause = replace(clause, lexemes=without_time_ahead(clause.lexemes))
     if not (match_start(STATEMENT, clause.lexemes) or is_statement(clause.lexemes) or is_comment(clause.lexemes)):
         return False
-    if any(x.has("HOWMANY") or x.word in {"know", "tell", "whether"} for x in clause.lexemes):
+    knows = match_start("(FILLER|COMMA|NOW)* SELF know (this|it|that|you|DET)", clause.lexemes)  # "I know this sounds picky"
+    asks = frozenset({"tell", "whether"} if knows else {"know", "tell", "whether"})
+    if any(x.has("HOWMANY") or x.word in asks for x in clause.lexemes):
         return False  # "I need to know how the bins are placed"
     denies = any(x.has("NOT") for x in clause.lexemes)
     if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):

@@ -14,6 +14,8 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.parsing.parts.clause import Clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
+_HALF_TURN_DEG = 180.0
+
 
 def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
     """Return whether a move goes the same way as the previous move: "pan left 10, ten degrees to the left".
@@ -26,7 +28,10 @@ def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
 
 
 def says_size_again(move: Move, clause: Clause) -> bool:
-    """Return whether a clause only repeats that the previous move is small or large: "a hair to the right, just slightly"."""
+    """Return whether a clause only repeats how far the previous move goes: "a hair to the right, just slightly"."""
+    half_turn = full_match("(FILLER|AMOUNTISH|DET|LIMIT)* (?P<number>NUM) DEG? (FILLER)*", clause.lexemes)
+    if half_turn is not None and half_turn["number"][0].value == _HALF_TURN_DEG:
+        return move.parts == (Turn("pan", 1, Amount("degrees", _HALF_TURN_DEG)),)  # "turn around, a full 180"
     match = full_match("(FILLER|AMOUNTISH)* ((?P<little>LITTLE)|(?P<lot>LOT)) (in fact|FILLER)*", clause.lexemes)
     if match is None:
         return False

@@ -25,7 +25,10 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
             out.append(replace(x, word="let_me_see", end=lexemes[i + 1].end, classes=frozenset({"SHOW", "SHOW-ED"})))
             i += 2
             continue
-        if x.word == "return" and after is not None and after.has(*DIRECTIONS):
+        if x.word == "right_now" and out and out[-1].word == "the":  # "over to the right now"
+            out += [replace(x, word="right", end=x.start + 5, classes=frozenset({"RIGHT", "ADVERB"}))]
+            out += [replace(x, word="now", start=x.end - 3, classes=frozenset({"NOW", "FILLER"}))]
+        elif x.word == "return" and after is not None and after.has(*DIRECTIONS):
             out += [replace(x, word="go", classes=frozenset({"CARRY"})), replace(x, word="back", classes=frozenset({"BACK"}))]
         else:
             out.append(x)

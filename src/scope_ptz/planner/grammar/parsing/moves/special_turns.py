@@ -31,6 +31,8 @@ _NO_CLOCK = Unclear(
 def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a turn whose words name no direction and amount: "turn around", "level the camera"."""
     glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
+    if (clock := full_match(f"{glue} (to|at|towards) SELF (?P<hour>NUM) (o_'_clock|o_clock) {glue}", lexemes)) is not None:
+        return _to_hour(clock["hour"][0].value, lexemes)
     if search(CLOCK_POSITION, lexemes):
         return _NO_CLOCK
     if any(x.word in {"bearing", "heading"} for x in lexemes) and any(x.has("NUM") for x in lexemes):
@@ -97,6 +99,16 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     if any(x.has("COMPASS") for x in lexemes) and any(x.has(*TURN_VERBS) for x in lexemes):
         return _NO_COMPASS
     return None
+
+
+def _to_hour(hour: float, lexemes: Sequence[Lexeme]) -> Step:
+    """Return the turn to "your nine o'clock": 12 is where the camera points, and each hour is 30 degrees clockwise."""
+    if not (any(x.word == "your" for x in lexemes) and 1 <= hour <= 12 and hour == int(hour)):
+        return _NO_CLOCK
+    pan_deg = 30.0 * (hour % 12)
+    return (
+        Move((Turn("pan", 1 if pan_deg <= 180 else -1, Amount("degrees", min(pan_deg, 360 - pan_deg))),)) if pan_deg else _NO_CLOCK
+    )
 
 
 def _targets(lexemes: Sequence[Lexeme]) -> Step:

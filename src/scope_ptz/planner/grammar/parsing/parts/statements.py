@@ -16,6 +16,16 @@ _PRONOUNS = frozenset({
 _PLURAL_PRONOUNS = frozenset({"i", "we", "they", "you", "these", "those"})
 _MAX_SUBJECT = 7  # maximum number of words of a subject
 _COMMANDS = (*VERBS, "HOME", "PRESET")
+_ONLY_PAST = frozenset({
+    "came", "went", "saw", "took", "fell", "broke", "began", "blew", "drove", "flew", "grew", "rang", "ran", "spoke", "wore",
+    "gave", "ate", "froze", "stole", "threw", "woke", "rode", "swam", "forgot", "knew", "shook",
+})  # fmt: skip
+"""Past forms that are no participles, so they follow a subject: "the shouting came from behind", unlike "the car parked here"."""
+_ACTIVITIES = frozenset({
+    "got", "getting", "seeing", "hearing", "missing", "losing", "checking", "testing", "trying", "having", "expecting", "waiting",
+})  # fmt: skip
+"""Forms of verbs that command no camera: "..., getting glare off the water"."""
+_PARTS = frozenset({"side", "hand", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
 
 
 def is_statement(lexemes: Sequence[Lexeme]) -> bool:
@@ -43,6 +53,8 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
         return False
     if full_match("(MODAL|DOV) not (SEE|READ|FREE) _*|(do)? NEGATED (FREE) _*|no FREE|not FREE", words):
         return not words[1].has("FREE") or verb_form(words[-1].word if len(words) < 3 else words[2].word) in {"base", None}
+    if words[0].word in _ACTIVITIES and len(words) > 1 and not any(x.has("NUM", "HOME", "PRESET") for x in words):
+        return not any(x.has(*VERBS) for x in words[1:])
     if any(x.has(*_COMMANDS) for x in words):
         return False
     if words[0].has("FREE") and verb_form(words[0].word) in {"participle", "past"}:
@@ -67,14 +79,23 @@ def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
     if lexemes and _is_pronoun(lexemes[0]):
         yield 1
     for end, lexeme in enumerate(lexemes[:_MAX_SUBJECT], 1):
-        has_is = end > 1 and end < len(lexemes) and lexemes[end].word == "'s"
+        has_is = end < len(lexemes) and lexemes[end].word == "'s" and (end > 1 or _is_described(lexemes[end + 1 :]))
         if has_is and "NOUN" in parts_of_speech(lexeme.word):
             yield end  # "the stock check's at noon"
             return
-        if not (_is_nominal(lexeme) or lexeme.has("DET", "PREP", "NUM", "EVERY", "ANY", "CAMERA") or _is_possessive(lexeme)):
+        is_part = lexeme.word in {"left", "right"} and end < len(lexemes) and lexemes[end].word in _PARTS
+        is_gerund = end == 2 and lexemes[0].has("DET") and lexeme.word.endswith("ing")
+        is_share = end == 1 and lexeme.has("FRACTION") and len(lexemes) > 1 and lexemes[1].has("DET")
+        is_function = lexeme.has("DET", "PREP", "NUM", "ORDINAL", "EVERY", "ANY", "CAMERA") or _is_possessive(lexeme)
+        if not (_is_nominal(lexeme) or is_function or is_part or is_share or is_gerund or (lexeme.word in _PARTS and end > 1)):
             return
-        if _is_noun(lexeme):
+        if _is_noun(lexeme) or is_gerund or (lexeme.word in _PARTS and end > 1):
             yield end
+
+
+def _is_described(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether an adjective is all that follows: "(dust's) thick", unlike "(dust's) edge"."""
+    return len(lexemes) == 1 and lexemes[0].has("FREE") and "ADJ" in parts_of_speech(lexemes[0].word)
 
 
 def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
@@ -97,7 +118,10 @@ def _is_predicate(lexemes: Sequence[Lexeme], start: int) -> bool:
         return (form == "base" and subject.word in _PLURAL_PRONOUNS and subject.word != "you") or form in {"third person", "past"}
     if form == "third person":
         is_only_verb = "NOUN" not in parts_of_speech(lexeme.word)
-        return is_only_verb or (after is not None and (after.has("DET", "PRON", "SELF") or verb_form(after.word) == "participle"))
+        is_followed = after is not None and (after.has("DET", "PRON", "SELF") or after.word == "to")
+        return is_only_verb or is_followed or (after is not None and verb_form(after.word) == "participle")
+    if lexeme.word in _ONLY_PAST:
+        return True
     if (
         form == "base"
         and subject.word.endswith("s")
