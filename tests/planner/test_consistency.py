@@ -219,3 +219,11 @@ def test_a_zoom_target_in_the_other_direction_is_not_approached() -> None:
     stage = Stage([0], pose=Pose(zoom=4))
     assert "4x" in stage.run("zoom in to 2x").text
     assert stage.calls == []
+
+
+@pytest.mark.parametrize("courtesy", ["", "please ", "can you please ", "could you, ", "would you kindly "])
+@pytest.mark.parametrize("condition", ["if there is a van", "unless the gate is shut", "if that sidewalk's icy"])
+@pytest.mark.parametrize("command", [", go home", " return home", " take a picture", ", pan left 10, otherwise zoom in"])
+def test_a_condition_is_tested_before_its_command_or_asked_about(courtesy: str, condition: str, command: str) -> None:
+    made = plan(f"{courtesy}{condition}{command}", ("yard",))
+    assert not made.understood or made.calls[0].name in {"count_objects", "query_answer"}

@@ -144,3 +144,31 @@ def test_parts_of_speech_of_words() -> None:
         "base", "third person", "past", "participle", None,
     ]  # fmt: skip
     assert not parts_of_speech("florp")
+
+
+@pytest.mark.parametrize(
+    ("text", "is_one"),
+    [
+        ("the shouting came from behind us", True),
+        ("the light from the right side disturbs", True),
+        ("half the crowd is cut off", True),
+        ("the lady from the council wishes to see the block", True),
+        ("the left lane", False),
+        ("the cars parked by the gate", False),
+    ],
+)
+def test_subjects_have_parts_sides_and_gerunds(text: str, is_one: bool) -> None:
+    assert is_statement(lexemes_of(text)) is is_one
+
+
+@pytest.mark.parametrize(
+    ("instruction", "names"),
+    [
+        ("right, that's lunch. Go home.", ["go_home"]),
+        ("go to the yard and I want to see the van", ["go_to_preset", "zoom_to_object"]),
+        ("tilt up a lot, I want to see the roof", ["adjust_ptz"]),
+        ("bit of glare so tilt down", ["adjust_ptz"]),
+    ],
+)
+def test_a_wish_is_a_command_unless_it_is_the_reason_for_a_move(instruction: str, names: list[str]) -> None:
+    assert [call.name for call in plan(instruction, PRESETS).calls] == names

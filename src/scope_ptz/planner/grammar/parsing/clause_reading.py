@@ -183,7 +183,8 @@ class ClauseReading:
         steps = tuple(calculated(clause.lexemes, step) for step in steps)
         same = full_match(f"HOWMANY BE (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)})", clause.lexemes)
         if same and isinstance(self.last, Count) and len(words := self.last.things[-1].text.split()) in {1, 2} and len(steps) == 1:
-            return (Count((Thing(f"{same['state'][0].word} {words[-1]}"),), self.last.view),)  # "... and how many are moving?"
+            things = [word for word in words if not word.endswith("ing")] or words  # "people" of "people standing"
+            return (Count((Thing(f"{same['state'][0].word} {things[-1]}"),), self.last.view),)  # "... and how many are moving?"
         if (
             len(steps) == 1
             and slip is not None

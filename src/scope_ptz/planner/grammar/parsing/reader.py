@@ -97,8 +97,9 @@ class Reader:
         if asked and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
             lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"
         if enough := full_match(
-            "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT)) ((MODAL|should) (do|DOACT|do_it|be enough|suffice)|"
-            "BE enough) (nicely|fine|FILLER)*",
+            "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT)) ((MODAL|should|ought to|WRAPPER) "
+            "(do|DOACT|do_it|suffice|be (enough|ideal|great|perfect|good|fine|nice|lovely|better|grand|plenty|FILLER))|"
+            "BE (enough|plenty)) (nicely|fine|FILLER)*",
             lexemes,
         ):
             lexemes = tuple(enough["body"])  # "a quarter turn to the left will do it"

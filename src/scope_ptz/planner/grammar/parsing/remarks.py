@@ -6,6 +6,7 @@ from scope_ptz.planner.grammar.instruction_tree import Move, Step
 from scope_ptz.planner.grammar.parsing.asides import is_news, is_reason, is_shared_knowledge, is_wish
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 from scope_ptz.planner.grammar.parsing.restatements import says_size_again
 
 _TOO_MUCH = "(FILLER|LITTLE|LOT|PRON|BE|DET|AMOUNTISH)* too (LOT|LITTLE|much|FREE|ADVERB|CLOSER|WIDER|tight|UP|DOWN)"
@@ -63,6 +64,8 @@ def _is_full_sentence(clause: Clause) -> bool:
         clause.link in {",", ".", ":"}
         and bool(clause.lexemes)
         and (
-            clause.is_question or not clause.lexemes[0].has("NUM", "LITTLE", "LOT", "MORE", "AMOUNTISH", "DET", "PREP", *DIRECTIONS)
+            clause.is_question
+            or is_statement(clause.lexemes)
+            or not clause.lexemes[0].has("NUM", "LITTLE", "LOT", "MORE", "AMOUNTISH", "DET", "PREP", *DIRECTIONS)
         )
     )

@@ -25,7 +25,13 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
             out.append(replace(x, word="let_me_see", end=lexemes[i + 1].end, classes=frozenset({"SHOW", "SHOW-ED"})))
             i += 2
             continue
-        if x.word == "right_now" and out and out[-1].word == "the":  # "over to the right now"
+        if x.word in {"into", "close_to"} and out and _is_approach(out, x):
+            ways = [] if out[-1].has("IN", "ENLARGE") else [replace(x, word="in", end=x.start, classes=frozenset({"IN", "GLUE"}))]
+            out += [
+                *ways,
+                replace(x, word="on", classes=frozenset({"ADVERB", "GLUE", "PREP"})),
+            ]  # "zoom into it", "get close to it"
+        elif x.word == "right_now" and out and out[-1].word == "the":  # "over to the right now"
             out += [replace(x, word="right", end=x.start + 5, classes=frozenset({"RIGHT", "ADVERB"}))]
             out += [replace(x, word="now", start=x.end - 3, classes=frozenset({"NOW", "FILLER"}))]
         elif x.word == "return" and after is not None and after.has(*DIRECTIONS):
@@ -52,3 +58,12 @@ def _is_reason(before: Sequence[Lexeme]) -> bool:
         sentence.append(x)
     moves = any(x.has(*DIRECTIONS, "PAN", "TILT", "ZOOM", "ENLARGE", "WIDEN", "IN", "OUT") for x in sentence)
     return moves and not sentence[0].has("AND", "THEN")
+
+
+def _is_approach(before: Sequence[Lexeme], preposition: Lexeme) -> bool:
+    """Return whether "into" or "close to" after these lexemes says what to zoom in on: "zoom into", "zoom in close to"."""
+    words = [x for x in before[-4:] if not x.has("FILLER", "CAMERA", "DET", "IN")]
+    if not words:
+        return False
+    verb = words[-1]
+    return verb.has("ZOOM", "ENLARGE") or (preposition.word == "close_to" and verb.word in {"get", "go", "move", "come"})

@@ -93,8 +93,8 @@ def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
             (
                 r"(LISTING|SHOW|TELL|WHQ|DET|SELF|me|us|FILLER|list of|DOV|BE|have|HAVEV|there|available|saved|stored|"
                 r"defined|of|EVERY|know|for|VISIBLE|got|set|up|does|CAMERA|can|MODAL|use|i|to|go|list|the|names of|"
-                r"HOWMANY|NAMES|name|names|save|PICTURES|SWITCH|CARRY|in|on|has|been|this|choose|from|and|which|existing|"
-                r"configured|exist|at|here|them|saving|offer|your|what|hold|save-ED|keep)* (presets|preset list|positions|"
+                r"HOWMANY|NAMES|name|names|save|PICTURES|SWITCH|CARRY|in|on|has|been|this|choose|from|and|which|existing|options|choices|"
+                r"configured|exist|at|here|them|saving|offer|your|my|our|what|hold|save-ED|keep)* (presets|preset list|positions|"
                 r"views|bookmarks|"
                 r"PRESETNOUN) (LISTING|SHOW|DET|SELF|FILLER|list|DOV|BE|have|HAVEV|there|available|saved|stored|for|of|to|"
                 r"can|MODAL|SWITCH|i|go|does|CAMERA|exist|are|you|know|got|set|up|this|use|defined|configured|on|in|the|"

@@ -57,6 +57,7 @@ r"MAX)? (TURNNOUN|(of the|the)? (way|LIMIT) AROUND|way AROUND|of the way AROUND)
     ("part", r"(AMOUNTISH|DET)* ((?P<times>NUM) )?(?P<fraction>FRACTION) (of)? ((?P<number>NUM)|DET)? DEG"),
     ("turn", r"by DET? (?P<fraction>FRACTION)"),
     ("turn", r"DET (?P<fraction>quarter) (?=(to)? (DET|SELF)? (LEFT|RIGHT))"),
+    ("couple", r"(by|just)? (a_couple_of|couple_of) (more)? DEG"),
     ("axis", r"(?P<axis>PANNOUN|TILTNOUN) (to|of|at|is)? (?P<number>NUM) DEG?"),
     ("target", (
 r"(to|at|until it is at) (DET|ABSOLUTE|PANNOUN|TILTNOUN|TURNNOUN|of|exactly)* (?P<number>NUM) DEG? "
@@ -158,6 +159,8 @@ def _add(found: TurnParts, name: str, match: Match) -> None:
     elif name == "part":
         times = match["times"][0].value if match["times"] else 1.0
         found.parts.append(Amount("degrees", times * fraction_of(match["fraction"][0]) * (value if value is not None else 1.0)))
+    elif name == "couple":
+        found.parts.append(Amount("degrees", 2.0))
     elif name == "axis":
         found.aims.append(Aim("pan" if match["axis"][0].has("PANNOUN") else "tilt", value or 0.0))
     elif name == "target":

@@ -193,6 +193,10 @@ class ClauseBoundaries(SubordinateClauses):
             and lexeme.has("PAN", "TILT", "ZOOM", "TAKE", "SWITCH", "CARRY", "TRACK", "TURN")
         ):
             return True
+        if match_start("(PAN|TILT) FILLER* (STOP|COMMA|AND|THEN|QUESTION|\\Z)", self.lexemes[i:]) and search(
+            "NUM DEG? of? (LEFT|RIGHT|UP|DOWN) \\Z", self.now
+        ):
+            return False  # "ten degrees of right pan"
         if self._lists_targets(i) or (lexeme.has("TURNNOUN", "ZOOMNOUN") and search(r"DET NUM (DEG|X)? \Z", self.now)):
             return False  # "give me a 4 degree pan"
         if (

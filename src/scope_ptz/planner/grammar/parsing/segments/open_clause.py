@@ -63,6 +63,13 @@ class OpenClause:
     def _is_free_of_nouns(self) -> bool:
         return not any(x.has("FREE") for x in self.now)
 
+    def _names_only_a_thing(self) -> bool:
+        """Return whether the clause so far has only nouns and their modifiers, and neither a verb nor an amount."""
+        words = [x for x in self.now if not x.has("FILLER", "COMMA", "LEADFILLER")]
+        known = ("FREE", "DET", "ANY", "PREP", "LITTLE", "LOT", "ADVERB", "NONE")
+        is_command = any(x.has(*VERBS, *DIRECTIONS, "NUM", "PRESET", "HOME", "PICTURE") for x in words)
+        return not self.marker and any(x.has("FREE") for x in words) and not is_command and all(x.has(*known) for x in words)
+
     def _is_motion(self) -> bool:
         return (
             self._is_free_of_nouns()

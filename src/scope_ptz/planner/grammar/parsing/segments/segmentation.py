@@ -155,6 +155,7 @@ class _Splitter(ClauseBoundaries):
             self.now.append(lexeme)
             return i + 1  # "zoom in, but only a little"
         if lexeme.word == "so" and self.now and i + 1 < len(self.lexemes) and self._is_verb(i + 1):
+            self.marker = "REASON" if self._names_only_a_thing() else self.marker  # "bit of glare, so tilt down"
             self._close()
             self.link = "and"
             return i + 1  # "the picture is too dark, so pan right"
