@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -33,6 +34,8 @@ SUPERSEDED_FOLDER = "superseded"
 """Name of the folder for logs whose runs have been carried over to another log."""
 
 LOG_LEVEL = "error"
+TRACE_LEVEL = "INFO"
+"""Level of Inspect's own trace file, unless INSPECT_TRACE_LEVEL is set. At its default, every call is written to that file too."""
 """Minimum level of Inspect's own log messages."""
 
 
@@ -201,6 +204,7 @@ async def run(task: Task, setup: EngineSetup, earlier: Sequence[StoredLog]) -> P
     metadata = {CARD: card.model_dump(mode="json"), IDENTITY: setup.identity}
     if deciding_judge:
         metadata[DECIDING_JUDGE_KEY] = deciding_judge
+    os.environ.setdefault("INSPECT_TRACE_LEVEL", TRACE_LEVEL)
     logs = await eval_async(
         await _resume_task(task, earlier) if earlier else task,
         model=setup.planner or setup.perception,

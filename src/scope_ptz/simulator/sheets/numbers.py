@@ -19,6 +19,9 @@ RARE = 255
 BLOCK_HEIGHT_PX, BLOCK_WIDTH_PX = 32, 64
 """Size of a block of ``SparseNumbers``: 4096 bytes, at two bytes per pixel."""
 
+_HAS_16_BIT_LUT = int(cv2.__version__.split(".")[0]) >= 5
+"""Whether OpenCV's ``LUT`` accepts 16-bit numbers. It takes a third of the time of ``np.take``."""
+
 Numbers = NDArray[np.uint16]
 Indices = NDArray[np.integer]
 
@@ -40,6 +43,8 @@ class NumberCodes:
 
     def encode(self, numbers: Numbers) -> NDArray[np.uint8]:
         """Return the codes for numbers, ``RARE`` where a number has no code."""
+        if _HAS_16_BIT_LUT and numbers.size:
+            return np.asarray(cv2.LUT(numbers, self._codes), np.uint8).reshape(numbers.shape)
         return np.asarray(np.take(self._codes, numbers))
 
     def decode(self, codes: NDArray[np.uint8]) -> Numbers:

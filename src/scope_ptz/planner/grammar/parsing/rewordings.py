@@ -14,39 +14,47 @@ _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "
 
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes with "let me see the yard" for "I want to see the yard", and "go back left" for "return left"."""
+    """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
-        x, after = lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None
-        beyond = lexemes[i + 2] if i + 2 < len(lexemes) else None
-        is_wish = x.has("WRAPPER") and x.word.endswith(_WISHES) and after is not None and after.word == "see"
-        if is_wish and _is_shown(beyond) and not _is_reason(out):
-            out.append(replace(x, word="let_me_see", end=lexemes[i + 1].end, classes=frozenset({"SHOW", "SHOW-ED"})))
+        if _is_wish(out, lexemes[i:]):
+            out.append(_as(lexemes[i], "let_me_see", "SHOW", "SHOW-ED"))
             i += 2
-            continue
-        if x.word in {"into", "close_to"} and out and _is_approach(out, x):
-            ways = [] if out[-1].has("IN", "ENLARGE") else [replace(x, word="in", end=x.start, classes=frozenset({"IN", "GLUE"}))]
-            out += [
-                *ways,
-                replace(x, word="on", classes=frozenset({"ADVERB", "GLUE", "PREP"})),
-            ]  # "zoom into it", "get close to it"
-        elif x.word == "right_now" and out and out[-1].word == "the":  # "over to the right now"
-            out += [replace(x, word="right", end=x.start + 5, classes=frozenset({"RIGHT", "ADVERB"}))]
-            out += [replace(x, word="now", start=x.end - 3, classes=frozenset({"NOW", "FILLER"}))]
-        elif x.word == "return" and after is not None and after.has(*DIRECTIONS):
-            out += [replace(x, word="go", classes=frozenset({"CARRY"})), replace(x, word="back", classes=frozenset({"BACK"}))]
         else:
-            out.append(x)
-        i += 1
+            out += _other_words(out, lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None)
+            i += 1
     return tuple(out)
 
 
-def _is_shown(lexeme: Lexeme | None) -> bool:
-    """Return whether a lexeme can begin the name of a thing or preset to be shown."""
-    if lexeme is None or lexeme.has(*_NOT_SHOWN) or lexeme.word in _ABSTRACT:
+def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
+    """Return the lexemes that replace one of them, or that lexeme itself."""
+    last = before[-1] if before else None
+    if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
+        way = [] if last.has("IN", "ENLARGE") else [_as(lexeme, "in", "IN", "GLUE")]
+        return [*way, _as(lexeme, "on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
+    if lexeme.word == "right_now" and last is not None and last.word == "the":
+        return [_as(lexeme, "right", "RIGHT", "ADVERB"), _as(lexeme, "now", "NOW", "FILLER")]  # "over to the right now"
+    if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
+        return [_as(lexeme, "go", "CARRY"), _as(lexeme, "back", "BACK")]
+    return [lexeme]
+
+
+def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
+    """Return another word at the place of a lexeme."""
+    return replace(lexeme, word=word, classes=frozenset(classes))
+
+
+def _is_wish(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes begin with a wish to see a thing or preset that is not the reason for a move."""
+    if len(lexemes) < 3 or not lexemes[0].has("WRAPPER") or not lexemes[0].word.endswith(_WISHES) or lexemes[1].word != "see":
         return False
-    return lexeme.has("DET", "PRESET", "FREE")
+    return _is_shown(lexemes[2]) and not _is_reason(before)
+
+
+def _is_shown(lexeme: Lexeme) -> bool:
+    """Return whether a lexeme can begin the name of a thing or preset to be shown."""
+    return lexeme.has("DET", "PRESET", "FREE") and not lexeme.has(*_NOT_SHOWN) and lexeme.word not in _ABSTRACT
 
 
 def _is_reason(before: Sequence[Lexeme]) -> bool:
