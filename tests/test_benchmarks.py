@@ -25,7 +25,8 @@ def run(name: str, *arguments: str, folder: Path) -> str:
     return result.stdout
 
 
-@pytest.mark.parametrize("name", ["plan_latency", pytest.param("startup", marks=pytest.mark.full)])
+@pytest.mark.full
+@pytest.mark.parametrize("name", ["plan_latency", "startup"])
 def test_a_benchmark_prints_ratios(name: str, tmp_path: Path) -> None:
     assert " x " in run(name, *SMALL_WORKLOADS[name], folder=tmp_path)
 

@@ -187,6 +187,7 @@ def test_a_pipe_instead_of_an_argument_is_an_immediate_error(
     assert str(path) in run_result.stderr and "not a regular file" in run_result.stderr
 
 
+@pytest.mark.full
 def test_a_bad_folder_does_not_hide_other_scenes(environment: dict[str, str], scenes_copy: Path) -> None:
     for name, content in (("broken", "{"), ("empty", "{}"), ("deep", "[" * 100_000), ("renamed", "")):
         (scenes_copy / name).mkdir()

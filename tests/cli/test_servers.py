@@ -101,6 +101,7 @@ def test_an_unreachable_server_is_reported_once_and_immediately(scope: Scope) ->
     assert verdicts == {"list of models": "failed", "an answer": "failed"}
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("behaviour", [status(500), body("<html>", "text/html"), body('{"choices": []}'), body("{")])
 def test_bad_servers_fail_checks_without_a_crash(scope: Scope, behaviour: Behaviour) -> None:
     with Misbehaving(then=behaviour) as server:
@@ -114,6 +115,7 @@ def test_models_without_a_server_cannot_be_checked(scope: Scope) -> None:
     assert (result.code, result.err.count("\n")) == (2, 1)
 
 
+@pytest.mark.full
 def test_perception_is_checked_on_a_frame(scope: Scope) -> None:
     with Misbehaving(then=good(moondream=MOONDREAM)) as server:
         code, verdicts = checks(scope, "--perception", "moondream2", "--perception-url", server.url)

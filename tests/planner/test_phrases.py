@@ -154,6 +154,21 @@ PLANS = [
     ("is the door open? go to the gate", "query_answer(question=is the door open?, view=current); go_to_preset(name=gate)"),
     ("is this the gate?", "query_answer(question=is this the gate?, view=current)"),
     ("is it the gate", "query_answer(question=is it the gate?, view=current)"),
+    ("what is being done here", "query_answer(question=what is being done here, view=current)"),
+    ("is it back to normal?", "query_answer(question=is it back to normal?, view=current)"),
+    ("is the home view on?", "query_answer(question=is the home view on?, view=current)"),
+    (
+        "at the highway and the gate: take a picture at each",
+        "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
+    ),
+    (
+        "at each of highway and gate, take a picture",
+        "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
+    ),
+    (
+        "take a picture at each: highway, gate",
+        "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
+    ),
     ("crank it left", "adjust_ptz(pan_deg=-10)"),
     ("all the way left", "adjust_ptz(pan_deg=-360)"),
     ("pan until the van is centred", "zoom_to_object(description=van)"),

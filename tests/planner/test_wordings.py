@@ -46,7 +46,7 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "swing": words(r"\bpan (?=left|right)", "swing "),
     "get closer": words(r"\bzoom in\b(?! on| to)", "get closer"),
     "till": words(r"\buntil\b", "till"),
-    "straight apostrophes": lambda text: text.replace("'", "’"),
+    "curly apostrophes": lambda text: text.replace("'", "’"),
 }
 
 

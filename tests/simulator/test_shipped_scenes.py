@@ -103,6 +103,7 @@ def test_some_texts_are_legible_only_when_zoomed_in(scene: Scene) -> None:
     assert len(close - wide) >= 3
 
 
+@pytest.mark.full
 def test_partial_occlusions(viewed: Scene) -> None:
     shares = []
     for preset in viewed.file.presets:

@@ -80,6 +80,7 @@ def shared_unit(analytic_scene: Scene) -> VapixUnit:
     return VapixUnit(VirtualDevice(analytic_scene, width=320, height=180, time_scale=1e6))
 
 
+@pytest.mark.full
 @given(arguments=st.dictionaries(NAMES, TEXTS, max_size=4))
 def test_any_request_gets_a_documented_reply(shared_unit: VapixUnit, arguments: dict[str, str]) -> None:
     reply = ptz(shared_unit, Arguments(arguments), ROOT)

@@ -144,7 +144,7 @@ class SCOPE_PT_pictures(_Panel, bpy.types.Panel):
         if session.state == "connected":
             layout.operator("scope.look", icon="OUTLINER_OB_CAMERA")
         if session.executor is not None and session.executor.pictures:
-            layout.label(text=f"{session.executor.pictures} pictures, the last in {session.executor.picture_s:.2f} s")
+            layout.label(text=f"Pictures: {session.executor.pictures} (the last took {session.executor.picture_s:.2f} s)")
 
 
 def _draw_lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:

@@ -272,8 +272,10 @@ class VirtualDevice:
             with_name = (preset.number for preset in self._presets.values() if preset.name == name)
             unused = (k for k in range(1, MAX_PRESETS + 1) if k not in self._presets)
             number = next(with_name, None) or next(unused, None)
-        if number is None or not 1 <= number <= MAX_PRESETS:
+        if number is None:
             raise CameraError(f"All {MAX_PRESETS} presets are in use. Remove one first.")
+        if not 1 <= number <= MAX_PRESETS:
+            raise CameraError(f"The number of a preset is from 1 to {MAX_PRESETS}, not {number}.")
         self._presets[number] = DevicePreset(number, name, self.pose())
         return self._presets[number]
 

@@ -38,6 +38,7 @@ def test_counts_hold_for_all_thresholds_and_nearby_poses(yard: RobustTruth, anal
             assert len(visible_blocks) == len(blocks)
 
 
+@pytest.mark.full
 def test_a_barely_visible_object_makes_its_kind_uncertain(analytic_scene: Scene) -> None:
     """The border of the frame cuts off a block by more or by less than the thresholds allow."""
     certain, uncertain = 0, 0

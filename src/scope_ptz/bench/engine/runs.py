@@ -34,9 +34,9 @@ SUPERSEDED_FOLDER = "superseded"
 """Name of the folder for logs whose runs have been carried over to another log."""
 
 LOG_LEVEL = "error"
-TRACE_LEVEL = "INFO"
-"""Level of Inspect's own trace file, unless INSPECT_TRACE_LEVEL is set. At its default, every call is written to that file too."""
 """Minimum level of Inspect's own log messages."""
+TRACE_LEVEL = "INFO"
+"""Level of Inspect's own trace file, unless INSPECT_TRACE_LEVEL is set. At Inspect's default level, every call is written to it."""
 
 
 @dataclass(frozen=True, slots=True)

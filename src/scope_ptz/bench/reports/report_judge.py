@@ -14,9 +14,9 @@ from scope_ptz.bench.scoring.trials import Judgement, Trial
 def select_judge(runs: Sequence[ReportRun]) -> str | None:
     """Select the judge whose verdicts are shown in a report; return None if no run was judged.
 
-    This is the judge that decides most of the trials that only a judge can score. Ties are resolved by the number of trials on
-    which the judge gave a verdict, then by the number of trials that it judged, then by name. A judge without verdicts is selected
-    only if no judge has given a verdict.
+    This is the judge that decides the largest number of the trials that only a judge can score. Ties are resolved by the number of
+    trials on which the judge gave a verdict, then by the number of trials that it judged, then by name. A judge without verdicts is
+    selected only if no judge has given a verdict.
     """
     deciding, with_verdict, judged = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):

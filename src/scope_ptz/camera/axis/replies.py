@@ -59,7 +59,7 @@ class QueuePlace:
     Attributes:
         place: Position in the queue: 1 has control, 2 and above are waiting, and 0 is not in the queue.
         seconds: Seconds of control left, or seconds until control; -1 if unknown.
-        poll_s: Seconds after which the place must be renewed.
+        poll_s: Seconds within which the client must renew its place.
     """
 
     place: int
@@ -187,7 +187,7 @@ def parse_queue(body: bytes) -> QueuePlace:
 
 
 def check_done(body: bytes) -> None:
-    """Raise ``VapixError`` if the reply is not empty, which means that the device refused the command."""
+    """Check the reply to a command, which is empty on success. Raise ``VapixError`` if it is an error message."""
     if body.strip():
         decode_text(body)
 

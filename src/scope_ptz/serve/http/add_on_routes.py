@@ -143,7 +143,7 @@ def _find(station: Station, client: Client, connection: str) -> AddOnConnection:
 
 def _answer(connection: AddOnConnection, number: int, reply: Reply) -> None:
     if not connection.answer(number, reply):
-        raise UnknownNameError("request that waits for a reply", str(number), ())
+        raise UnknownNameError("pending request", str(number), ())
 
 
 def _one_line(text: str) -> str:

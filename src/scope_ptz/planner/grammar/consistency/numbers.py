@@ -71,8 +71,8 @@ def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     after = words[start + used].text if start + used < len(words) else ""
     if before == "in" and after in _LONG_TIMES:
         return True  # "we start loading in five minutes" is only a remark: a plan cannot wait
-    if after == "o" and words[start + used + 1 : start + used + 2] and words[start + used + 1].text == "clock":
-        return True
+    if before == "your" and after == "o":
+        return True  # "your nine o'clock" is a direction
     if used_words[0].text == "half" and before in _BEFORE_SHARE and after in _AFTER_SHARE:
         return True  # "the net's half out of frame", "half the crowd is cut off"
     return before in {*_NAMED, "the", "these", "those"} or any(

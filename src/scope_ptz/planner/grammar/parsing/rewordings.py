@@ -7,24 +7,32 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
 
-_WISHES = ("want_to", "like_to", "love_to", "need_to", "wish_to")
+_WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
 _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
 
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
+    lexemes = _without_each_first(lexemes)
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
-        if _is_wish(out, lexemes[i:]):
+        if _wants_to_see(out, lexemes[i:]):
             out.append(_as(lexemes[i], "let_me_see", "SHOW", "SHOW-ED"))
             i += 2
         else:
             out += _other_words(out, lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None)
             i += 1
     return tuple(out)
+
+
+def _without_each_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "at gate and yard, ..." for "at each of gate and yard, ...", which mean the same."""
+    match = match_start("(FILLER|COMMA)* (at|in|from) (?P<each>EVERY of?) (?=DET? PRESET (COMMA|AND))", lexemes)
+    return [x for x in lexemes if not any(x is each for each in match["each"])] if match else lexemes
 
 
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
@@ -35,6 +43,10 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
         return [*way, _as(lexeme, "on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
     if lexeme.word == "right_now" and last is not None and last.word == "the":
         return [_as(lexeme, "right", "RIGHT", "ADVERB"), _as(lexeme, "now", "NOW", "FILLER")]  # "over to the right now"
+    if lexeme.word == "at_each" and after is not None and after.has("COLON"):
+        return [_as(lexeme, "at", "PREP", "GLUE"), _as(lexeme, "each_of", "EVERY")]  # "take a picture at each: gate, yard"
+    if lexeme.has("COLON") and last is not None and last.word == "each_of":
+        return []
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
         return [_as(lexeme, "go", "CARRY"), _as(lexeme, "back", "BACK")]
     return [lexeme]
@@ -45,9 +57,9 @@ def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
     return replace(lexeme, word=word, classes=frozenset(classes))
 
 
-def _is_wish(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes begin with a wish to see a thing or preset that is not the reason for a move."""
-    if len(lexemes) < 3 or not lexemes[0].has("WRAPPER") or not lexemes[0].word.endswith(_WISHES) or lexemes[1].word != "see":
+def _wants_to_see(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes begin with "I want to see" and a thing or preset, which is not the reason for a move."""
+    if len(lexemes) < 3 or not lexemes[0].has("WRAPPER") or not lexemes[0].word.endswith(_WANTS) or lexemes[1].word != "see":
         return False
     return _is_shown(lexemes[2]) and not _is_reason(before)
 
@@ -58,7 +70,7 @@ def _is_shown(lexeme: Lexeme) -> bool:
 
 
 def _is_reason(before: Sequence[Lexeme]) -> bool:
-    """Return whether a wish after these lexemes is the reason for a move: "tilt up a lot, I want to see the roof"."""
+    """Return whether "I want to see" after these lexemes is the reason for a move: "tilt up a lot, I want to see the roof"."""
     sentence: list[Lexeme] = []
     for x in reversed(before):
         if x.has("STOP", "QUESTION"):

@@ -37,7 +37,7 @@ _STATES = frozenset({
     "present", "missing", "stuck", "flat", "loaded", "unattended", "secure", "flooded", "frozen", "crowded", "up", "down",
     "connected", "attached", "loose",
 })  # fmt: skip
-"""Adjectives that end a question without a verb, such as "barrier up?" and "floor wet by the fountain?"."""
+"""Words for a state that are the predicate of a question without a verb, such as "barrier up?" and "floor wet by the fountain?"."""
 
 _IDENTITIES = (
     "(((number|licence|license|registration|reg) plate|numberplate|registration) (of|off|on|from)|"
@@ -51,7 +51,7 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     if (question := _identity_question(source, lexemes)) is not None:
         return question
     wanted = full_match("(give (me|us) the)? (?P<what>FREE (of|on) DET _+)", lexemes)
-    if wanted and wanted["what"][0].word in PROPERTIES and not search(f"{_NO_TOPIC}|COMMA", lexemes):
+    if wanted and wanted["what"][0].word in PROPERTIES and not search(f"{_NO_TOPIC}|COMMA|BE", lexemes):
         return f"What is the {continued(text_of(source, wanted['what']))}?"  # "give me the colour of the van"
     if (
         not asked

@@ -28,7 +28,7 @@ HasClass = Callable[..., bool]
 """Tells whether one of the words that add nothing belongs to a class."""
 
 _UNKNOWN_CARRIER = "FREE (it|her|him|DET CAMERA|DET VIEWNOUN|CAMERA)"
-"""An unknown verb with the camera as its object, which can only be one of moving: "lob it 15 degrees to the left"."""
+"""An unknown verb whose object is the camera, and which must therefore mean to move it: "lob it 15 degrees to the left"."""
 
 _OPPOSED_VERBS = frozenset({
     "avoid", "ban", "cancel", "deny", "dislike", "forbid", "forget", "hate", "ignore", "miss", "omit", "oppose", "postpone",

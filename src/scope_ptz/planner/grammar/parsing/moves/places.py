@@ -49,6 +49,8 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     if (parked := full_match("(FILLER)* park (CAMERA|it|DET|SELF)* (?P<place>(at|on|over|by|in) _+)", lexemes)) is not None:
         place = place_of(source, parked["place"])
         return Home() if full_match("_ HOME (FILLER)*", parked["place"]) else GoToPreset(place) if place else None
+    if lexemes[0].has("BE") and any(x.has("HOME") for x in lexemes):
+        return None  # "is the home view on?"
     if full_match(
         (
             r"(SWITCH|CARRY|SWITCH-ING|CARRY-ING|TURN|TAKE|back|BACK|to|it|CAMERA|DET|FILLER|FIRSTLY|SELF|RESET|GLUE|"

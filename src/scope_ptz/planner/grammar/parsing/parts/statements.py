@@ -22,7 +22,7 @@ _ONLY_PAST = frozenset({
 })  # fmt: skip
 """Past forms that are no participles, so they follow a subject: "the shouting came from behind", unlike "the car parked here"."""
 _ACTIVITIES = frozenset({
-    "got", "getting", "seeing", "hearing", "missing", "losing", "checking", "testing", "trying", "having", "expecting", "waiting",
+    "got", "getting", "hearing", "missing", "losing", "having", "expecting",
 })  # fmt: skip
 """Forms of verbs that command no camera: "..., getting glare off the water"."""
 _PARTS = frozenset({"side", "hand", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
@@ -53,7 +53,8 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
         return False
     if full_match("(MODAL|DOV) not (SEE|READ|FREE) _*|(do)? NEGATED (FREE) _*|no FREE|not FREE", words):
         return not words[1].has("FREE") or verb_form(words[-1].word if len(words) < 3 else words[2].word) in {"base", None}
-    if words[0].word in _ACTIVITIES and len(words) > 1 and not any(x.has("NUM", "HOME", "PRESET") for x in words):
+    asks = len(words) > 1 and words[1].word in {"any", "many", "much", "enough"}  # "got any vans"
+    if words[0].word in _ACTIVITIES and len(words) > 1 and not asks and not any(x.has("NUM", "HOME", "PRESET") for x in words):
         return not any(x.has(*VERBS) for x in words[1:])
     if any(x.has(*_COMMANDS) for x in words):
         return False

@@ -63,12 +63,17 @@ class OpenClause:
     def _is_free_of_nouns(self) -> bool:
         return not any(x.has("FREE") for x in self.now)
 
-    def _names_only_a_thing(self) -> bool:
-        """Return whether the clause so far has only nouns and their modifiers, and neither a verb nor an amount."""
+    def _is_reason_for(self, verb: Lexeme) -> bool:
+        """Return whether the clause so far only names a thing that explains a turn: "bit of glare (so tilt down)".
+
+        A thing before a zoom may be what to zoom in on, so it is not taken for a reason.
+        """
+        if self.marker or verb.has("ZOOM", "ENLARGE", "TRACK", "FIND"):
+            return False
         words = [x for x in self.now if not x.has("FILLER", "COMMA", "LEADFILLER")]
         known = ("FREE", "DET", "ANY", "PREP", "LITTLE", "LOT", "ADVERB", "NONE")
         is_command = any(x.has(*VERBS, *DIRECTIONS, "NUM", "PRESET", "HOME", "PICTURE") for x in words)
-        return not self.marker and any(x.has("FREE") for x in words) and not is_command and all(x.has(*known) for x in words)
+        return any(x.has("FREE") for x in words) and not is_command and all(x.has(*known) for x in words)
 
     def _is_motion(self) -> bool:
         return (
