@@ -166,6 +166,14 @@ PLANS = [
         "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
     ),
     (
+        "for each of highway and gate, take a picture",
+        "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
+    ),
+    (
+        "for the highway and the gate presets: go there and zoom out a bit",
+        "go_to_preset(name=highway); adjust_ptz(zoom_factor=0.8); go_to_preset(name=gate); adjust_ptz(zoom_factor=0.8)",
+    ),
+    (
         "take a picture at each: highway, gate",
         "go_to_preset(name=highway); take_image(); go_to_preset(name=gate); take_image()",
     ),

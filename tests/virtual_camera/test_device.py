@@ -105,9 +105,11 @@ def test_presets_keep_their_numbers(device: VirtualDevice) -> None:
 def test_wrong_and_too_many_presets_are_refused(device: VirtualDevice) -> None:
     with pytest.raises(InputError, match="preset name"):
         device.save_preset("")
+    with pytest.raises(CameraError, match="from 1 to 256, not 257"):
+        device.save_preset("out of range", number=MAX_PRESETS + 1)
     for number in range(1, MAX_PRESETS + 1):
         device.save_preset(f"spot {number}", number=number)
-    with pytest.raises(CameraError, match="256"):
+    with pytest.raises(CameraError, match="All 256 presets"):
         device.save_preset("one more")
 
 

@@ -13,10 +13,17 @@ _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
 _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
 
+_PLACES_FIRST = (
+    "(FILLER|COMMA)* (?P<at>at|in|from|for) (?P<each>EVERY of?)? (DET|PRESETNOUN)* PRESET PRESETNOUN?"
+    " ((COMMA|AND)+ (DET|PRESETNOUN)* PRESET PRESETNOUN?)+ (?P<end>COMMA|COLON)"
+    " (?P<go>(CARRY (there|to them|to each) (COMMA|AND)+))?"
+)
+"""Several places before what is done at each of them."""
+
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
-    lexemes = _without_each_first(lexemes)
+    lexemes = _at_places_first(lexemes)
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
@@ -29,10 +36,15 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     return tuple(out)
 
 
-def _without_each_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with "at gate and yard, ..." for "at each of gate and yard, ...", which mean the same."""
-    match = match_start("(FILLER|COMMA)* (at|in|from) (?P<each>EVERY of?) (?=DET? PRESET (COMMA|AND))", lexemes)
-    return [x for x in lexemes if not any(x is each for each in match["each"])] if match else lexemes
+def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "at gate and yard, ..." for "for each of gate and yard: go there, ...", which means the same."""
+    match = match_start(_PLACES_FIRST, lexemes)
+    if match is None:
+        return lexemes
+    dropped = [*match["each"], *match["go"]]
+    changed = {id(match["at"][0]): ("at", "PREP", "GLUE"), id(match["end"][0]): (",", "COMMA")}
+    kept = (x for x in lexemes if not any(x is other for other in dropped))
+    return [_as(x, *changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:

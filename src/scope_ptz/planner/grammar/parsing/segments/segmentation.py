@@ -28,9 +28,6 @@ _OPENER = (
 )
 """Words before a comma that only open an instruction: "control to camera two, ...", "step test, ...", "do the rounds, ..."."""
 
-_PLACES_FIRST = "(FILLER|COMMA)* (at|in|from) (DET|PRESETNOUN)* PRESET ((COMMA|AND)+ (DET|PRESETNOUN)* PRESET)+"
-"""Several places before what is done at each of them."""
-
 _COURTESY_FIRST = (
     "(FILLER|LEADFILLER|COMMA)* (WRAPPER|MODAL SELF) (FILLER|LEADFILLER|COMMA|WRAPPER)*"
     " (?=IF (?!SELF MODAL)|UNLESS|for NUM SECONDS|NUM X COLON|(TWICE|THRICE) COLON)"
@@ -201,9 +198,6 @@ class _Splitter(ClauseBoundaries):
         if is_colon and not self.out and full_match("(FILLER|DET)* FULL", self.now):
             self.now.append(replace(lexeme, word=",", classes=frozenset({"COMMA"})))
             return i + 1  # "entire area: are there more vans than bikes?"
-        if is_colon and full_match(_PLACES_FIRST, self.now):
-            self.now.append(replace(lexeme, word=",", classes=frozenset({"COMMA"})))
-            return i + 1  # "at the gate and the yard: take a picture at each"
         in_order = r"COMMA INTURN FILLER* (STOP|COMMA|\Z)"
         if lexeme.has("COMMA") and self.now and self._is_tour() and match_start(in_order, self.lexemes[i:]):
             return i + 1  # "gate, yard, in that order"
