@@ -83,7 +83,7 @@ class CameraError(ScopeError):
 
 
 class _ModelError(ScopeError):
-    """An error of a planner or a perception backend, which may use a model server.
+    """An error from a planner or a perception backend, which may use a model server.
 
     Attributes:
         kind: How the server failed (a value of ``endpoints.failures.FailureKind``); None if no server failed.
@@ -100,7 +100,7 @@ class PerceptionError(_ModelError):
 
 
 class NotUnderstoodError(PerceptionError):
-    """Perception does not understand a question or a description. The caller can ask in other words."""
+    """Perception does not understand a question or a description. The caller can rephrase it."""
 
 
 class PlannerError(_ModelError):

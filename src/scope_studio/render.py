@@ -178,7 +178,7 @@ def _render(scene: bpy.types.Scene, out: Path) -> None:
 def _read_exr(path: Path) -> dict[str, Any]:
     """Read an EXR file and return a float array (H, W) for each channel name.
 
-    The Blender program includes OpenImageIO. The environment of the ``bpy`` wheel has OpenEXR instead.
+    The Blender application ships with OpenImageIO. Environments that use the ``bpy`` wheel have OpenEXR instead.
     """
     try:
         import OpenEXR

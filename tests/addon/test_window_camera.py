@@ -159,7 +159,7 @@ def test_a_second_blender_is_refused(served: Served, blender: FakeBlender) -> No
     other = FakeBlender(served.root, client="blender-other")
     other.start()
     wait_for(lambda: other.link.ended)
-    assert "Another Blender is connected" in other.link.problem
+    assert "Another Blender instance is connected" in other.link.problem
     other.stop()
     assert blender.link.connected
 

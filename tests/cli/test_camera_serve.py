@@ -32,7 +32,7 @@ from tests.support.programs import start_program
         (["--scene", SCENE, "--scene", SCENE, "--viewpoint", "mast"], "one viewpoint per scene"),
         (["--scene", SCENE, "--time-scale", "0"], "time scale"),
         (["--scene", SCENE, "--fault", "stall"], "NAME=VALUE"),
-        (["--scene", SCENE, "--fault", "rain=1"], "There is no fault 'rain'"),
+        (["--scene", SCENE, "--fault", "rain=1"], "Unknown fault 'rain'"),
         (["--scene", SCENE, "--fault", "drop=2"], "drop: "),
         (["--scene", SCENE, "--user", "root", "--no-accounts"], "not both"),
         (["--scene", SCENE, "--user", "root:king"], "There is no role 'king'"),

@@ -90,7 +90,7 @@ def test_a_model_without_tools_fails(scope: Scope) -> None:
         code, verdicts = checks(scope, "--planner-url", server.url)
         assert scope("doctor", "--planner-url", server.url).out.count("!!") == 2
     assert code == 1
-    assert verdicts["an answer"] == "ok"
+    assert verdicts["reply"] == "ok"
     assert verdicts["a tool call"] == "failed"
 
 
@@ -98,7 +98,7 @@ def test_an_unreachable_server_is_reported_once_and_immediately(scope: Scope) ->
     with nobody_listens() as url:
         code, verdicts = checks(scope, "--planner-url", url, "--planner-model", "x")
     assert code == 1
-    assert verdicts == {"list of models": "failed", "an answer": "failed"}
+    assert verdicts == {"list of models": "failed", "reply": "failed"}
 
 
 @pytest.mark.full

@@ -42,6 +42,8 @@ NEVER_A_MOVE = [
     "visit every preset and return",
     "visit gate and highway in turn and zoom in 2x",
     "pause",
+    "go to the gate, no the highway, no forget it, I don't know where I want it yet",
+    "go to the gate, forget it",
     "no photos",
     "take no photos",
     "pan left 20 and at the same time pan right 20",
@@ -60,6 +62,22 @@ EVERY_PRESET = "; ".join(f"go_to_preset(name={name}){{act}}" for name in PRESETS
 COUNT_PEOPLE = "count_objects(description=people, view=current)"
 PLANS = [
     ("go to the gate. No photos.", "go_to_preset(name=gate)"),
+    ("is there a train at the gate?", "go_to_preset(name=gate); query_answer(question=is there a train?, view=current)"),
+    ("is there a swing at the gate?", "go_to_preset(name=gate); query_answer(question=is there a swing?, view=current)"),
+    ("are there any frames at the gate?", "go_to_preset(name=gate); query_answer(question=are there any frames?, view=current)"),
+    ("train the camera on the gate", "go_to_preset(name=gate)"),
+    ("is the highway still busy?", "go_to_preset(name=highway); query_answer(question=is the highway still busy?, view=current)"),
+    (
+        "if the highway is empty go to the gate",
+        "go_to_preset(name=highway); query_answer(question=is the highway empty?, view=current); go_to_preset(name=gate)",
+    ),
+    ("if the gate is open, go home", "query_answer(question=is the gate open?, view=current); go_home()"),
+    (
+        "if the gate has a queue of over 30 cars, go home",
+        "go_to_preset(name=gate); query_answer(question=does the gate have a queue of over 30 cars?, view=current); go_home()",
+    ),
+    ("zoom out a lot, I want the wide view", "adjust_ptz(zoom_factor=0.25)"),
+    ("zoom in 2x, I want the wide view", "adjust_ptz(zoom_factor=2); adjust_ptz(zoom_limit=out)"),
     ("take a picture and after go home", "take_image(); go_home()"),
     ("take a picture and after panning left 10, go home", "take_image(); adjust_ptz(pan_deg=-10); go_home()"),
     ("pan left 20, at the same time tilt up 5, then pan right 40", "adjust_ptz(pan_deg=-20, tilt_deg=5); adjust_ptz(pan_deg=40)"),

@@ -148,7 +148,7 @@ class SCOPE_PT_pictures(_Panel, bpy.types.Panel):
 
 
 def _draw_lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:
-    """Draw a text, wrapped to the width of the panel."""
+    """Draw text, wrapped to the width of the panel."""
     scale = context.preferences.system.ui_scale
     width = max(20, int((context.region.width - 60 * scale) / (PIXELS_PER_CHARACTER * scale)))
     column = layout.column(align=True)

@@ -98,7 +98,7 @@ class Agent:
             PackError: The scene's files are damaged.
             CameraError: The camera fails before the first step.
         """
-        # Undecodable bytes of a command line become "?", because neither files nor servers accept them.
+        # Undecodable bytes from the command line become "?", because neither files nor servers accept them.
         instruction = instruction.encode("utf-8", "replace").decode().strip()
         if not instruction:
             raise InputError("The instruction is empty. State what the camera should do.")

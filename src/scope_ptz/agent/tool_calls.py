@@ -54,7 +54,7 @@ class _FinishedCall:
     Attributes:
         time_s: Scene time at the start of the call.
         end: Why the run ends, if the call ends it.
-        raised: An error that the run raises to its caller: a damaged scene, or a file that cannot be written.
+        raised: An error that propagates to the run's caller: a damaged scene, or a file that cannot be written.
     """
 
     outcome: ToolOutcome
@@ -175,7 +175,7 @@ class CallRunner:
             outcome, raised = ToolOutcome(call=call, error=str(error)), error
         except CameraError as error:
             outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", RunEnd("camera_error", str(error))
-        except Exception as error:  # any other failure below the tools ends the run and is recorded
+        except Exception as error:  # any other exception inside a tool ends the run and is recorded
             message = f"{call.name} failed: {error_text(error)}"
             outcome, fault = ToolOutcome(call=call, error=message), "camera"
             end = RunEnd("camera_error", message, traceback.format_exc())

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class ToolCallImages(EncodedImages):
     """Stores pictures in memory, or in a folder that is created when the first picture is stored.
 
-    In memory, only the pictures taken by ``take_image`` are stored, because storing the frames for perception would use too much
+    In memory, only the pictures taken by ``take_image`` are stored, because the frames that perception receives would use too much
     memory in a long session.
     """
 

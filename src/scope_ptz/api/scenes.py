@@ -42,7 +42,7 @@ class SceneInfo:
 
     @property
     def viewpoints(self) -> tuple[str, ...]:
-        """Names of the viewpoints, the places at which a camera can stand."""
+        """Names of the viewpoints, the places where a camera can be mounted."""
         return tuple(viewpoint.name for viewpoint in self._scene.file.viewpoints)
 
     @property
@@ -118,7 +118,7 @@ def models(role: Role | None = None) -> dict[str, Model]:
         role: "planner" or "perception" to select the models of one role; all models by default.
 
     Returns:
-        The models. ``model.memory_for()`` returns the memory in GB for serving a model.
+        The models. ``model.memory_for()`` returns the memory, in GB, needed to serve a model.
 
     Raises:
         ConfigError: The user's models file is invalid.
@@ -136,7 +136,7 @@ def models(role: Role | None = None) -> dict[str, Model]:
 def tool_schemas() -> list[dict[str, Any]]:
     """Return the schemas of the nine tools in the OpenAI function format, as planners receive them.
 
-    For function calling, ``Scope.tool_schemas`` returns the schemas in the formats of several APIs.
+    To call the tools from your own model, use ``Scope.tool_schemas``, which supports the formats of several APIs.
 
     Returns:
         One schema per tool.

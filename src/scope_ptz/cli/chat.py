@@ -44,7 +44,7 @@ def chat(flags: SessionFlags, models: ModelOptions) -> int:
     During a run, Ctrl-C cancels the run. At the prompt, Ctrl-C ends the program.
     """
     if not has_input():
-        raise InputError("The standard input is closed, so a chat is not possible. Use `scope ask` for one instruction.")
+        raise InputError("Standard input is closed, so the chat cannot start. Use `scope ask` for one instruction.")
     with start_blocking_portal() as portal, _line_editing():
         session = portal.call(_open, flags, models)
         try:
@@ -69,7 +69,7 @@ def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
                 chat.console.print()
             return
         except OSError as error:
-            raise InputError(f"The standard input cannot be read: {error.strerror}.") from error
+            raise InputError(f"Standard input cannot be read: {error.strerror}.") from error
         if line == "/quit":
             return
         if not line:

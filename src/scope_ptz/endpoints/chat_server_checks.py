@@ -24,7 +24,7 @@ _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
 ]
-UNKNOWN_MODEL_CHECK = "an unknown model name"
+UNKNOWN_MODEL_CHECK = "unknown model name"
 """The name of the last check, which is skipped if the server is unreachable or rejects the key."""
 _NO_MODEL = "no-model-has-this-name"
 
@@ -65,12 +65,12 @@ async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
     client = ChatClient(single_retry)
     try:
         yield await run_check("list of models", lambda: _check_listing(single_retry))
-        answer = await run_check("an answer", lambda: _check_answer(client, stream=False))
+        answer = await run_check("reply", lambda: _check_answer(client, stream=False))
         yield answer
         if answer.kind in FATAL_FAILURES:
             return
-        yield await run_check("an answer, streamed", lambda: _check_answer(client, stream=True))
-        yield await run_check("two requests at once", lambda: _check_concurrency(client))
+        yield await run_check("streamed reply", lambda: _check_answer(client, stream=True))
+        yield await run_check("two concurrent requests", lambda: _check_concurrency(client))
         yield await run_check(UNKNOWN_MODEL_CHECK, lambda: _check_unknown_model(single_retry))
     finally:
         await client.close()
@@ -94,7 +94,7 @@ async def _check_answer(client: ChatClient, *, stream: bool) -> Finding:
     if not (reply.text or reply.reasoning):
         return "failed", "the reply is empty"
     if not reply.output_tokens:
-        return "partly", "the server does not report token counts, so budgets and speeds are unknown"
+        return "partly", "the server does not report token counts, so token budgets cannot be enforced and speed cannot be measured"
     if stream and reply.first_token_s is None:
         return "partly", f"{throughput}; the reply was not streamed, but arrived in one piece"
     first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""

@@ -12,7 +12,7 @@ def words_of(text: str) -> list[str]:
 
 
 def has_words(instruction: str, answer: str, words: str) -> int:
-    """Return 1 if two texts together contain all words, otherwise 0. This is registered as an SQL function.
+    """Return 1 if the two texts together contain all the given words, otherwise 0. This is registered as an SQL function.
 
     Args:
         instruction: The first text.

@@ -55,8 +55,6 @@ def validate_faults(content: Mapping[str, object]) -> Faults:
         name = ".".join(str(part) for part in first["loc"][:1])
         known = ", ".join(Faults.model_fields)
         message = (
-            f"There is no fault '{name}'. Known faults: {known}."
-            if first["type"] == "extra_forbidden"
-            else f"{name}: {first['msg']}."
+            f"Unknown fault '{name}'. Known faults: {known}." if first["type"] == "extra_forbidden" else f"{name}: {first['msg']}."
         )
         raise InputError(message) from error

@@ -129,7 +129,7 @@ def change_card(**values: Any) -> Callable[[Rows], None]:
         (change(0, canary="none"), "canary"),
         (change(0, format=3), "format"),
         (change(0, format=2), "it has no trace"),
-        (change(0, tasks_digest="0" * 64), "the digest of the tasks differs"),
+        (change(0, tasks_digest="0" * 64), "the task digest differs"),
         (change(0, tasks=1), "the header states 1 tasks"),
         (change(0, wanted=1), "the header states 1 trials"),
         (change_card(dataset="scope9"), "the header states the dataset scope9"),
@@ -197,8 +197,8 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (change_counting_run(bad_calls=2, perception_failures=1), "3 failed calls, but only 2 calls"),
         (remove_move, "passed, but no call moved the camera"),
         (remove_picture, "the check 'pictures' passed, but take_image was called 0 of"),
-        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
-        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
+        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, so"),
+        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, so"),
     ],
 )  # fmt: skip
 def test_values_that_contradict_the_file_or_the_tasks_are_refused(
@@ -231,7 +231,7 @@ def test_totals_are_recomputed(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
-    assert "state 28 for headline correct, but the trials have 27" in found and "state 0 for headline incorrect" in found
+    assert "state 28 trials with headline correct, but the file contains 27" in found and "state 0 trials with headline incorrect" in found
     assert "state 4 for error mode reasoning, but the trials have 0" in found and "state 0 for error mode scope" in found
 
 
@@ -354,7 +354,7 @@ def test_a_submission_requires_a_complete_split(tmp_path: Path) -> None:
     )
     trials = (other_instruction, other_instruction.model_copy(update={"epoch": 2}), *evaluation.trials[2:])
     other = make(evaluation.model_copy(update={"trials": trials}), *tasks_option)
-    assert other.exit_code == 2 and "the digest of the tasks differs" in other.stderr
+    assert other.exit_code == 2 and "the task digest differs" in other.stderr
 
 
 def test_validation_does_not_import_optional_dependencies() -> None:

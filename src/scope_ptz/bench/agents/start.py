@@ -29,7 +29,7 @@ class LocalAgent:
 
     Attributes:
         name: Its name in traces and on run cards.
-        isolation: How it is separated from the tasks and the ground truth. This is a label of its results.
+        isolation: How it is separated from the tasks and the ground truth. Its results are labelled with this.
         source: Digest of its source files; empty if they are unknown.
         settings: Other settings that affect its results, as JSON data. They are part of an evaluation's identity.
         options: The user's options.
@@ -44,7 +44,7 @@ class LocalAgent:
     open_channel: OpenChannel
 
     async def open(self) -> ChannelPlanner:
-        """Start the agent for one run. If it does not start, the first step of the run raises the failure."""
+        """Start the agent for one run. If the agent fails to start, the error is raised at the first step of the run."""
         planner = ChannelPlanner(await self.open_channel(), self.name, self.options.times)
         try:
             await planner.connect()
@@ -171,7 +171,7 @@ def _process_agent(
         sandbox_command(launch.command, contents)  # raises ConfigError here rather than in the first run
 
     async def open_channel() -> AgentChannel:
-        # Paths that must be hidden, such as the log folder, may not have existed before.
+        # Paths that must be hidden, such as the log folder, may not have existed when the agent was created.
         current = launch if contents is None else replace(launch, command=sandbox_command(launch.command, contents))
         return await PipeChannel.start(current)
 

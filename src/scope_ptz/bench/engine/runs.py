@@ -60,7 +60,7 @@ class StoredLog:
 
     @property
     def finished(self) -> bool:
-        """Whether every run is complete. Even a log with the status "success" may contain broken runs."""
+        """Whether every run is complete. Even a log with the status "success" may contain incomplete runs."""
         return self.header.status == "success" and all(self.runs.values())
 
 
@@ -143,7 +143,7 @@ def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Ev
 
 
 def log_with_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
-    """Return the newest log of the same tasks and agent with another agent source; None if there is none.
+    """Return the newest log of the same tasks and agent with a different agent source; None if there is none.
 
     Args:
         log_dir: Folder of the logs.

@@ -59,7 +59,7 @@ class _Case:
 
     @property
     def attempted_tools(self) -> set[str]:
-        """Names of the tools that the agent called, without skipped calls."""
+        """Names of the tools that the agent called, excluding skipped calls."""
         return {call.name for call in self.episode.calls if call.fault != "skipped"}
 
     @property
@@ -74,7 +74,7 @@ class _Case:
 
     @property
     def needed_tools(self) -> set[str]:
-        """Names of the required tools and the tools in the reference program, without ``get_presets`` if it is not required."""
+        """Names of the required tools and the tools in the reference program, excluding ``get_presets`` unless it is required."""
         return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.required_tools
 
     def replacements(self, name: str) -> frozenset[str]:
@@ -114,12 +114,12 @@ def error_mode(
         task: The task.
         episode: The run.
         truth: Function that returns the true count for an observation. If None, the task's evidence shows whether a count is wrong.
-        exact_perception: Whether perception was the exact ground truth. If so, a wrong or missing answer is always the agent's
+        exact_perception: Whether perception returned the exact ground truth. If so, a wrong or missing answer is always the agent's
             error.
         verdict: The verdict on the run; None to execute the checks.
 
     Returns:
-        The error mode, or None if the run is correct, could not be scored, or was broken by infrastructure.
+        The error mode, or None if the run is correct, could not be scored, or failed because of the infrastructure.
     """
     verdict = verdict or score_episode(task, episode)
     if verdict.headline != "incorrect":

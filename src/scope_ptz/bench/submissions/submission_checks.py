@@ -27,7 +27,7 @@ from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
 """Maximum size of a submission in bytes."""
-NO_TRACES = "not verifiable: the file has format 1, which contains no traces, so its verdicts and calls are claims of its author"
+NO_TRACES = "not verifiable: the file uses format 1, which has no traces, so its verdicts and calls are only its author's claims"
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 
 
@@ -37,7 +37,7 @@ class SubmissionFindings:
 
     Attributes:
         file: Name of the file.
-        faults: One message per fault, with the line number.
+        faults: One message per fault, with the line number if it concerns a line.
         counts: The total number of trials, and the number of trials with each headline.
         notes: Remarks that are not faults.
         evaluated: Who ran the evaluation; "hosted" only if a signature proves it.
@@ -55,7 +55,7 @@ class SubmissionFindings:
     def summary(self) -> str:
         """The result as text."""
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
-        verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
+        verdict = f"NOT VALID: {len(self.faults)} fault{'s' * (len(self.faults) > 1)}" if self.faults else "valid"
         return "\n".join([f"{self.file}: {verdict}, {self.evaluated}" + (f" ({counts})" if counts else ""), *self.notes])
 
     def as_dict(self) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def check_submission(
     unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
     notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
     if broken := totals.headlines.get("infrastructure", 0):
-        notes.append(f"{broken} of {totals.trials} trials were broken by infrastructure and are excluded from accuracy")
+        notes.append(f"{broken} of {totals.trials} trials failed because of infrastructure errors and are excluded from accuracy")
     notes += _provenance_notes(header, trials, provenance)
     counts = {"trials": totals.trials, **{str(name): number for name, number in totals.headlines.items()}}
     verifiable = tuple(run for run in runs.values() if isinstance(run, RunToVerify))
@@ -123,7 +123,7 @@ def _trace_faults(
     for number, line in lines:
         if header.format == 1:
             if line.run is not None:
-                yield f"line {number} ({line.task}): it has a trace, which only format 2 has"
+                yield f"line {number} ({line.task}): it has a trace, but only format 2 allows traces"
         elif line.task in tasks:
             for fault in trace_line_faults(header, line, runs.get((line.task, line.epoch))):
                 yield f"line {number} ({line.task}): {fault}"
@@ -139,7 +139,7 @@ def _provenance_notes(header: Header, lines: Sequence[TrialLine], provenance: Pr
     if header.card.isolation is not None:
         notes.append(f"the agent was {header.card.isolation}")
     if judged := sum(line.scored_by == "judge" for line in lines):
-        notes.append(f"{judged} verdicts are stored verdicts of a judge, which cannot be recomputed")
+        notes.append(f"{judged} verdicts come from a judge and cannot be recomputed")
     return notes
 
 
@@ -162,7 +162,7 @@ def coverage_faults(header: Header, lines: Sequence[TrialLine], tasks: Sequence[
 def _read_rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB, so it is not a submission.")
+            raise InputError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB, the maximum size of a submission.")
         check_regular_file(path)
         content = path.read_text("utf-8")
     except OSError as error:
@@ -188,7 +188,7 @@ def _read_rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[s
 
 def _reject_constant(name: str) -> float:
     """Raise ``ValueError`` for NaN and Infinity, which are not valid JSON."""
-    raise ValueError(f"{name} is not a number")
+    raise ValueError(f"{name} is not allowed in JSON")
 
 
 def _published_tasks(header: Header) -> Sequence[Task]:
@@ -210,7 +210,8 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[st
     ):
         for name in sorted({*stated, *counted}):
             if stated.get(name, 0) != counted.get(name, 0):
-                yield f"the totals state {stated.get(name, 0)} for {kind} {name}, but the trials have {counted.get(name, 0)}"
+                stated_number, number = stated.get(name, 0), counted.get(name, 0)
+                yield f"the totals state {stated_number} trials with {kind} {name}, but the file contains {number}"
     datasets = {task.dataset for task in tasks.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
         yield f"the header states the dataset {header.card.dataset}, but the tasks belong to {', '.join(sorted(datasets))}"
@@ -219,10 +220,10 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], tasks: Mapping[st
         yield f"the header states {header.tasks} tasks, but the split has {len(tasks)}"
     expected = len(tasks) * header.card.epochs
     if header.wanted != expected:
-        yield f"the header states {header.wanted} trials, but {len(tasks)} tasks with {header.card.epochs} repeats have {expected}"
+        yield f"the header states {header.wanted} trials, but {len(tasks)} tasks with {header.card.epochs} repeats make {expected}"
     for model in (header.card.planner, header.card.perception):
         if _is_built_in(model.name) and not model.deterministic:
-            yield f"{model.name} is built in, but in the header 'deterministic' is false, as for a model"
+            yield f"{model.name} is built in, so 'deterministic' must be true in the header"
     if (version := _parse_version(header.card.package_version)) is None:
         yield f"the package version {header.card.package_version} is not a version number"
     elif version > (_parse_version(__version__) or ()):
@@ -238,7 +239,7 @@ def _is_built_in(name: str) -> bool:
 
 def _digest_faults(header: Header, tasks: Mapping[str, Task]) -> Iterator[str]:
     if header.tasks_digest != tasks_digest(tasks.values()):
-        yield "the digest of the tasks differs, so wordings, categories or the selection of tasks are not those of the split"
+        yield "the task digest differs, so the wording, categories or selection of tasks does not match the split"
 
 
 def _parse_version(text: str) -> tuple[int, ...] | None:

@@ -73,12 +73,12 @@ def answer_key(expected: AnyExpected) -> str:
 def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[str], str] = str) -> frozenset[str]:
     """Return the ids of a sample that is balanced across answers.
 
-    The two tasks of a contrast pair are selected together, so that presences and absences of paired things are equally frequent.
+    The two tasks of a contrast pair are selected together, so that the paired things are present as often as they are absent.
     A pair may be split if only one more task is needed and no unpaired task remains. The fraction of paired tasks in the sample is
     the same as in all tasks.
 
-    Each step selects from the group that is least represented in the sample so far, relative to the number of tasks with each of
-    its fields and to the number of paired or unpaired tasks in its category. Within a group, it selects the task whose answer
+    Each step selects from the group that is least represented in the sample so far, relative to how many tasks share each of its
+    field values, and to how many tasks in its category are paired or unpaired. Within a group, it selects the task whose answer
     occurs least often in the sample.
 
     Args:
@@ -99,7 +99,7 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
         free = number - len(chosen)
         remaining = [group for group, units in groups.items() if units]
         fitting = [group for group in remaining if quotas[group.paired] > 0 and (not group.paired or free > 1)]
-        # Ties go to the group with the most remaining tasks, so that they do not exhaust small groups.
+        # Ties go to the group with the most remaining tasks, so that small groups are not exhausted early.
         least = min(
             fitting or remaining,
             key=lambda g: (sum(Fraction(taken[m], totals[m]) for m in _margins(g)), -len(groups[g]), g),
@@ -139,7 +139,7 @@ def _margins(group: _Group) -> list[_Margin]:
 
 
 def _repetition_count(unit: _Unit, answers: Counter[str]) -> int:
-    """Return how often the sample already contains the answers of a unit. The absence in a pair is not counted."""
+    """Return how often the sample already contains the answers of a unit. In a pair, the answer ABSENT is ignored."""
     keys = [task.answer for task in unit if task.answer and not (len(unit) > 1 and task.answer == ABSENT)]
     return max((answers[key] for key in keys), default=0)
 

@@ -29,8 +29,8 @@ class DeviceControlHeldError(ControlHeldError):
         # VAPIX reports a position in the queue, but not the names of the clients.
         CameraError.__init__(
             self,
-            f"{camera} is controlled by another client in its control queue (this client would be number {place.place}, "
-            f"after {wait}). Wait, or ask them to release it.",
+            f"{camera} is controlled by another client in its control queue (this client would be number {place.place} in the "
+            f"queue, with a wait of {wait}). Wait, or ask the other client to release control.",
         )
         self.holder = None
 
@@ -46,7 +46,7 @@ class VapixClient:
     def __init__(self, http: DeviceHttp, channel: int = 1) -> None:
         self.http, self.channel = http, channel
         self.control_queue_on = False
-        """Whether the device's control queue is on, so that commands require control."""
+        """Whether the device's control queue is on. If it is, commands require control."""
         self._control_until_s = 0.0
 
     @property

@@ -27,7 +27,7 @@ class Registration:
         shots: The frames.
         placed: Each frame with its adjusted orientation and focal length.
         gains: The gain for each frame and colour channel, ``(n, 3)``.
-        registered: Whether each frame has enough matches to determine its pose; if not, its pose relies on the reported one.
+        registered: Whether each frame has enough matches to determine its pose; if not, the pose is based on the reported one.
         corrections_deg: Angle between the reported and the adjusted orientation of each frame.
         residual_px: Root mean square error of the matches in pixels; None if there are no matches.
         matches: Number of matches.

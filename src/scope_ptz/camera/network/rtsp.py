@@ -88,7 +88,8 @@ class RtspStream(LiveStream):
         if (size := picture.image.shape[1::-1]) != self._size:
             expected = "{}x{}".format(*self._size)
             raise PictureError(
-                f"The stream's picture size is {size[0]}x{size[1]} instead of {expected}. Change the size in the camera.", "size"
+                f"The stream's picture size is {size[0]}x{size[1]} instead of {expected}. Change it in the camera's settings.",
+                "size",
             )
         return picture
 

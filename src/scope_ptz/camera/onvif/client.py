@@ -90,7 +90,7 @@ class OnvifClient:
         return await (call_once() if operation in NOT_RETRIED else _retry(call_once))
 
     async def prepare_stop(self, profile: str) -> None:
-        """Prepare for ``stop_blocking``."""
+        """Create the service that ``stop_blocking`` uses."""
         self._stop_profile = profile
         self._stop_service = await self.make_service("ptz")
 

@@ -165,7 +165,7 @@ def _register(tokens: TokenFile, names: list[str], *, as_json: bool) -> None:
         if as_json:
             put_json({"participant": name, "token": secret})
         else:
-            put(f"Token of {name} (it cannot be shown again): {secret}")
+            put(f"Token for {name} (it cannot be shown again): {secret}")
 
 
 def _print_result(line: str, *, as_json: bool) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.scoring.trials import Evaluation
 
 MIN_SAMPLES_SHOWN = 40
-"""Number of samples from which a progress bar is shown."""
+"""Minimum number of samples for which a progress bar is shown."""
 
 
 @contextmanager
@@ -46,7 +46,7 @@ def read_log(path: Path) -> Evaluation:
 
 
 def print_findings(evaluation: Evaluation) -> None:
-    """Print the contradictions between a log and its traces on stderr."""
+    """Print the contradictions between a log and its traces to stderr."""
     from scope_ptz.bench.reports.log_findings import finding_lines
 
     for line in finding_lines(evaluation):

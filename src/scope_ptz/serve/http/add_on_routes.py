@@ -62,7 +62,7 @@ async def connect_add_on(station: StationDep, client: StoppingOperator, body: Sc
         )
     current = station.add_on.current
     if current is not None and current.owner != client.key:
-        raise RefusedByCameraError(f"Another Blender is connected to {station.name}. Disconnect it first.")
+        raise RefusedByCameraError(f"Another Blender instance is connected to {station.name}. Disconnect it first.")
     connection = station.add_on.connect(body, client.key)
     station.preset_changes += 1
     return AddOnModel(connection=connection.id)

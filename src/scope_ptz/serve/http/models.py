@@ -207,7 +207,7 @@ class ControlAnswer(Body):
 
 
 class LimitsModel(BaseModel):
-    """The limits on a camera's pose. With ``pan_endless``, the camera can turn through full circles."""
+    """The limits on a camera's pose. If ``pan_endless`` is true, the camera can pan continuously through 360 degrees."""
 
     min_pan_deg: float
     max_pan_deg: float
@@ -219,7 +219,7 @@ class LimitsModel(BaseModel):
 
 
 class SpeedModel(BaseModel):
-    """A camera's top speed, in the same units as ``Drive``. An axis with the top speed 0 cannot be driven."""
+    """A camera's top speed, in the same units as ``Drive``. An axis with a top speed of 0 cannot be driven."""
 
     pan_dps: float
     tilt_dps: float

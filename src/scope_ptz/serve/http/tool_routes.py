@@ -58,7 +58,7 @@ def _add_route(tool: Tool) -> None:
         methods=["POST"],
         name=tool.name,
         operation_id=f"call_{tool.name}",
-        description=f"{summary}\n\nA failure is stated in `error`, `fault` and `code`. Each call is stored as a run of one step.",
+        description=f"{summary}\n\nFailures are reported in `error`, `fault` and `code`. Each call is stored as a one-step run.",
         responses=responses(404, 409, 503),
         openapi_extra={"requestBody": body},
     )

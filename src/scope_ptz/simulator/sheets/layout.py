@@ -9,13 +9,13 @@ from typing import NamedTuple
 from scope_ptz.errors import PackError
 
 MAX_SIDE_PX = 32766
-"""Maximum side of a sheet, because OpenCV's remap addresses its source with 16-bit integers."""
+"""Maximum side of a sheet in pixels. OpenCV's remap addresses its source with 16-bit integers."""
 
 BORDER_PX = 2
 """Border around every slot in pixels: one pixel for the bilinear neighbour and one for rounding."""
 
 HEIGHT_CLASS_PX = 8
-"""If tiles are sorted by direction, their heights are first rounded up to a multiple of this.
+"""Height step in pixels. Before tiles are sorted by direction, their heights are rounded up to a multiple of this.
 
 Tiles with the same rounded height and scale can then lie next to their neighbours in the scene.
 """

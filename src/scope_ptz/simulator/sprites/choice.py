@@ -23,7 +23,7 @@ FADE_FRACTION = 0.12
 """Half the width of the fade between two sprites, as a fraction of the difference between their viewing angles."""
 
 FADE_DEG = 12.0
-"""Sprites that differ by more than this many degrees fade proportionally faster, because a blend of both looks doubled."""
+"""Sprites that differ by more degrees than this fade proportionally faster, because blending them would show a double image."""
 
 MAX_STRETCH = 1.25
 """Maximum factor by which a sprite is stretched or compressed to match the actor's current aspect."""
@@ -130,7 +130,7 @@ class SpriteChoice:
 def _reach_m(sprite: Sprite, offset_m: Floats) -> float:
     """Return the largest distance between a sprite's pixels and its ground point, perpendicular to the line of sight.
 
-    The distance is infinite if the sprite reaches 90 degrees away from its ground point.
+    The distance is infinite if the sprite extends about 90 degrees or more from its ground point.
     """
     view = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     margin = np.array([2.0 / sprite.width, 2.0 / sprite.height])

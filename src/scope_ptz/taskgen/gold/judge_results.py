@@ -90,7 +90,7 @@ async def judge_gold(
         cases: The runs.
         concurrency: Number of concurrent judgements.
         repeat: Index of this round of judgements, from 0.
-        note: Called with each verdict as soon as it is available. Its exceptions are raised to the caller.
+        note: Called with each verdict as soon as it is available. Exceptions that it raises propagate to the caller.
     """
     limit = anyio.Semaphore(concurrency)
 
@@ -226,7 +226,7 @@ def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
     """Read the verdicts in a file. An incomplete last line is ignored.
 
     Raises:
-        InputError: Another line is damaged.
+        InputError: Any other line is invalid.
     """
     rows = list[GoldVerdict]()
     for number, line in complete_lines(path):

@@ -40,7 +40,7 @@ def _parse_json(text: str) -> Any:
 
 
 def _parse_literal(text: str) -> Any:
-    """Parse a Python literal that only contains types that JSON supports."""
+    """Parse a Python literal that contains only types that JSON supports."""
     return _to_json_value(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
 
 
@@ -61,4 +61,4 @@ def _to_json_value(value: Any) -> Any:
 
 
 def _reject_constant(name: str) -> Any:
-    raise ValueError(f"{name} is not a number")
+    raise ValueError(f"{name} is not allowed in JSON")

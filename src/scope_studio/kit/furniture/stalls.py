@@ -94,7 +94,7 @@ def _canopy(s: Solid, cloth: bpy.types.Material, w: float, d: float) -> None:
 
 
 def flower_bucket(bloom: str, *, seed: int = 0) -> Built:
-    """Build a zinc bucket of cut flowers, 0.6 m high. ``bloom`` is a colour of the palette."""
+    """Build a zinc bucket of cut flowers, 0.6 m high. ``bloom`` is the name of a colour in ``PALETTE``."""
     s = Solid(f"bucket of {bloom} flowers")
     rng = random.Random(f"bucket {bloom} {seed}")
     s.lathe([(0.105, 0.0), (0.135, 0.28), (0.145, 0.285), (0.130, 0.275), (0.12, 0.24)], steel(), steps=20)

@@ -10,7 +10,7 @@ from scope_studio.kit.core.shading import Shader, Value
 
 @dataclass(frozen=True)
 class Line:
-    """A painted line along the road, at ``offset_m`` from the middle of the road on both sides.
+    """A painted line on each side of the road's centre, ``offset_m`` away from it.
 
     ``mark_m`` is the length of a dash (0 for a solid line), and ``gap_m`` is the distance between dashes.
     """

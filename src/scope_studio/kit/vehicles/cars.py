@@ -59,7 +59,7 @@ def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: f
 
 
 def _interior(parts: Parts, cabin: Cabin) -> None:
-    """Add floor, door linings, dashboard, a steering wheel on the right, and seats with head rests."""
+    """Add a floor, door linings, a dashboard, a steering wheel on the right, and seats with headrests."""
     lining = shading.plain("vehicle lining", (0.035, 0.035, 0.036), 0.9)
     cloth = shading.plain("vehicle seat cloth", (0.12, 0.12, 0.125), 0.9)
     length, middle = cabin.front_y - cabin.rear_y, (cabin.front_y + cabin.rear_y) / 2
@@ -141,7 +141,7 @@ def _car(
     letters: list[bw.Lettering] | None = None,
     fittings: Parts | None = None,
 ) -> Built:
-    """Build a car of a model in a paint colour, with number plates."""
+    """Build a car of the given model and paint colour, with number plates."""
     mesh = bw.body_mesh(model.name, lambda: _body(model))
     surface = bw.Surface(mesh)
     front = max(surface.end(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008

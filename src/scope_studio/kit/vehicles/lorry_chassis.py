@@ -121,7 +121,7 @@ def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.4
 
 
 def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, material: bpy.types.Material) -> None:
-    """Add a mudguard over a wheel at ``y``, from ``x0`` to ``x1``."""
+    """Add mudguards over the wheels at ``y`` on both sides, from ``x0`` to ``x1``."""
     outer = [
         (y + (radius + 0.09) * math.cos(a), radius + (radius + 0.09) * math.sin(a))
         for a in (math.pi * (0.02 + 0.96 * k / 10) for k in range(11))

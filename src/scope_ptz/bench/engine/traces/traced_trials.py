@@ -1,4 +1,4 @@
-"""Compute the trials of a log from its traces. Of the scores in the log, only the verdicts of judges are used.
+"""Compute the trials of a log from its traces. The only scores taken from the log are judge verdicts.
 
 Each trial is compared with the score in the log, and differences are reported as findings. A missing, damaged or contradictory
 trace results in an unscored trial, which does not count as correct.
@@ -35,7 +35,7 @@ from scope_ptz.errors import TraceError
 TRIAL = "trial"
 """Key for the trial in a score's metadata."""
 MAX_CACHED = 4096
-"""Maximum number of trials that are kept in memory, so that reading a log again does not execute its checks again."""
+"""Maximum number of trials that are kept in memory, so that rereading a log does not rerun its checks."""
 _COMPARED_FIELDS = (
     "headline", "error_mode", "checks", "collateral", "outcome", "answer", "steps", "planned_by", "tool_calls", "bad_calls",
     "perception_failures", "server_events", "input_tokens", "output_tokens", "timings", "looks",
@@ -55,7 +55,7 @@ class TracedTrial:
         findings: The contradictions that were found.
         entry: The entry that was run. A published task replaces its copy in the log.
         trace_digest: Digest of the trace; empty without a trace.
-        models: The names of planner and perception in the trace; empty without a trace.
+        models: The names of the planner and the perception model in the trace; empty without a trace.
     """
 
     trial: Trial
@@ -116,7 +116,7 @@ def _entry_of(sample: Mapping[str, Any], *, published_split: bool) -> tuple[Entr
 def cached_trial(
     entry: Entry, stored_run: StoredRun, epoch: int, path: Path, judgements: tuple[Judgement, ...] = (), *, failed: bool = False
 ) -> tuple[Trial, LogFinding | None]:
-    """Return the result of ``scored_trial``. Faultless results are cached by a digest of everything that affects them."""
+    """Return the result of ``scored_trial``. Results without a fault are cached by a digest of everything that affects them."""
     content = (
         entry.metadata(), stored_run.trace, sorted(stored_run.presets.items()), stored_run.home, stored_run.sees,
         bool(stored_run.pictures), sorted(stored_run.truths.items()), epoch, failed,
@@ -134,7 +134,7 @@ def cached_trial(
 
 
 def _score_findings(trial: Trial, scores: Mapping[str, Any]) -> Iterator[LogFinding]:
-    """Yield a finding if the latest score by the checks in the log differs from the recomputed trial."""
+    """Yield a finding if the log's latest score that was computed by checks differs from the recomputed trial."""
     score = next((s for s in reversed(list(scores.values())) if TRIAL in (s.get("metadata") or {})), None)
     if score is None or trial.scored_by == "judge":
         return

@@ -1,6 +1,6 @@
-"""Find commands that a description or question has swallowed.
+"""Find commands that were mistakenly parsed as part of a description or question.
 
-A description is a noun phrase and a question is a question. Units of angle, conditions and commands are parts of neither.
+A description must be a noun phrase. Neither a description nor a question may contain angles, conditions or commands.
 """
 
 from __future__ import annotations

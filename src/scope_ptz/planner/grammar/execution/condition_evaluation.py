@@ -19,7 +19,7 @@ class ConditionEvaluation(CloserLook):
     def _test(self, condition: ast.Condition) -> CallGenerator:
         """Return whether a condition is met or assumed to be met, and a sentence that states what was observed.
 
-        The first value is None if the observation does not tell. Then neither branch of a condition may run.
+        The first value is None if the observation is inconclusive. In that case, neither branch of the condition may run.
         """
         met, reason = yield from self._evaluate(condition)
         return (True if self.assume_met else met), reason
@@ -59,7 +59,7 @@ class ConditionEvaluation(CloserLook):
         question = condition.question or f"is {subject} {condition.predicate}?"
         result = yield from self._answer_to(question, "current", condition.subject.text)
         if result is None:
-            raise HaltedError("I stopped there, because what comes next depends on it")
+            raise HaltedError("I stopped there, because the next step depends on the answer")
         answer = result["answer"].strip().lower()
         if not result.get("known", True) or not answer.startswith(("yes", "no")):
             return None, f"I cannot tell whether {subject} is {condition.predicate}: {phrases.continued(result['answer'])}"

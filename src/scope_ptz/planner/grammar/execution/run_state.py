@@ -128,5 +128,5 @@ class RunState:
         """Make a perception call that later steps depend on, and return its result. A failure ends the run."""
         result = yield from self._perception_call(tool, **arguments)
         if result is None:
-            raise HaltedError("I stopped there, because what comes next depends on it")
+            raise HaltedError("I stopped there, because the next step depends on the answer")
         return result

@@ -49,11 +49,13 @@ _WITHDRAWAL = re.compile(
 )
 """Words of statements that may take back or forbid what was asked."""
 
+_DROPPED = "(forget|scrap|scratch|cancel|disregard|belay|drop) (it|that|this|PRON)"
 _TAKEN_BACK = (
     "(no|nah|nope|wait|oh|ah|hang on|hold on|hang_on|hold_on|actually|BUT|FILLER|COMMA|DASH|QUOTE)* ("
     "(DOV|do|MODAL)? (not|never|NOT|(?!no_more) NEGATED|do_not|do_not_bother|no_need) "
     "(mind|bother|worry|need|DOACT|yet|now|REPEAT|SELF dare|WRAPPER|(do|go|with) (it|that|there))?|"
-    "(no|nah|nope) (wait|hang on|hold on|hang_on|hold_on|stop)+|(hang on|hold on|hang_on|hold_on|wait)) "
+    "(no|nah|nope) (wait|hang on|hold on|hang_on|hold_on|stop)+|(hang on|hold on|hang_on|hold_on|wait)|"
+    f"{_DROPPED}) "
     "(FILLER|yet|now|then|COMMA|after all)*"
 )
 """Words after a command that take it back, as in "no, don't", "no need" and "hang on"."""
@@ -91,6 +93,14 @@ def withdraws(clause: Clause) -> bool:
 def takes_back(clause: Clause) -> bool:
     """Return whether a clause after a command takes it back: "... no, don't", "... no need", "... hang on"."""
     return not clause.is_question and full_match(_TAKEN_BACK, clause.lexemes) is not None
+
+
+def is_dropped(clause: Clause) -> bool:
+    """Return whether a clause drops everything said before it: "no, forget it"."""
+    return (
+        not clause.is_question
+        and full_match(f"(no|nah|nope|oh|ah|actually|BUT|FILLER|COMMA)* {_DROPPED} (FILLER)*", clause.lexemes) is not None
+    )
 
 
 def is_news(clause: Clause) -> bool:

@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Linked,
     Step,
 )
-from scope_ptz.planner.grammar.instruction_tree.conditions import Condition, Negated, PresetOutnumbers, Quantity, Seen
+from scope_ptz.planner.grammar.instruction_tree.conditions import Condition, Negated, PresetOutnumbers, Quantity, Seen, Statement
 from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.conditions import condition_of, named_thing, without_happening
@@ -21,7 +21,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstood
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
@@ -66,6 +66,11 @@ class Branches(ClauseReading):
             inner = Seen(thing)  # "a van is at the gate"
         if owner and inner is None and found and (thing := thing_of(self.reader.source, owner["rest"])) is not None:
             inner = Seen(thing)  # "the gate has people"
+        if owner and inner is None and found and isinstance(condition, Statement):
+            places = found  # "the gate has a queue of over 10 cars"
+        is_if = clause.marker in {"IF", "WHEN", "UNLESS"}
+        if is_if and isinstance(condition, Statement) and (place := occupied_place(self.reader.source, clause.lexemes)) is not None:
+            places = (place,)
         if inner is not None and found is not None:
             condition, places = inner, found
         if condition is None or (isinstance(condition, Seen) and condition.thing.text in {"something", "anything"}):

@@ -75,7 +75,9 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     elif isinstance(step, Loop | Repeat):
         out.append(stepped_loop(step))
     elif isinstance(step, GoToPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
-        out.append(Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?"))
+        out.append(
+            Unclear("I can look at one place and then the other, but I cannot answer that for both at once. What shall I look for?")
+        )
     else:
         out.append(stepped(step))
 

@@ -1,7 +1,7 @@
 """Drop negated alternatives: "go to the cove, not the pool", "pan right, not left, 20", "not the gate, the yard".
 
-A negated alternative must be of the same kind as the other one: a direction, a preset, or pan, tilt or zoom. Other negations are
-left as they are.
+A negated alternative must be of the same kind as the one that is kept: a direction, a preset, or pan, tilt or zoom. Other negations
+are left as they are.
 """
 
 from __future__ import annotations

@@ -40,6 +40,7 @@ from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_st
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
@@ -197,6 +198,8 @@ class Reader:
             return (AtPlaces(places, self.read(rest, asked=asked), is_fronted=True),)
         if search("THAN|than|COMPARE", lexemes):
             return None
+        if lexemes[0].has("BE") and (place := occupied_place(self.source, lexemes)) is not None:
+            return (AtPlaces((place,), (Ask(f"{text_of(self.source, lexemes)}?"),)),)
         rest, places = place_after(self.source, without_sum(lexemes))
         if places is None or not rest:
             return None

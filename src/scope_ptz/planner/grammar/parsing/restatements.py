@@ -27,6 +27,17 @@ def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
     return bool(_ways(before) & _ways(steps[0]))
 
 
+def is_wish_for_zoom(before: Step | None, steps: Sequence[Step], clause: Clause) -> bool:
+    """Return whether a clause only says why the previous move zooms: "zoom out a lot, I want the wide view"."""
+    if not (clause.lexemes and clause.lexemes[0].has("WRAPPER") and clause.lexemes[0].word.endswith(("want", "need"))):
+        return False
+    if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
+        return False
+    limits = [part.kind for part in steps[0].parts if isinstance(part, Zoom)]
+    ways = {"in" if inwards else "out" for axis, inwards in _ways(before) if axis == "zoom"}
+    return len(limits) == len(steps[0].parts) == 1 and limits[0] in ways
+
+
 def says_size_again(move: Move, clause: Clause) -> bool:
     """Return whether a clause only repeats how far the previous move goes: "a hair to the right, just slightly"."""
     half_turn = full_match("(FILLER|AMOUNTISH|DET|LIMIT)* (?P<number>NUM) DEG? (FILLER)*", clause.lexemes)

@@ -7,11 +7,15 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
 _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
+
+_VERBS_AND_NOUNS = ("AIM", "CARRY", "FIND", "SHOW", "SWITCH", "TRACK", "TURN")
+"""Classes of verbs that can also be nouns, such as "train", "head", "frame" and "swing"."""
 
 _PLACES_FIRST = (
     "(FILLER|COMMA)* (?P<at>at|in|from|for) (?P<each>EVERY of?)? (DET|PRESETNOUN)* PRESET PRESETNOUN?"
@@ -50,6 +54,8 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
     """Return the lexemes that replace one of them, or that lexeme itself."""
     last = before[-1] if before else None
+    if _is_noun_here(before, lexeme):
+        return [_as(lexeme, lexeme.word, "FREE")]  # "is there a train at the crossing?"
     if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
         way = [] if last.has("IN", "ENLARGE") else [_as(lexeme, "in", "IN", "GLUE")]
         return [*way, _as(lexeme, "on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
@@ -62,6 +68,14 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
         return [_as(lexeme, "go", "CARRY"), _as(lexeme, "back", "BACK")]
     return [lexeme]
+
+
+def _is_noun_here(before: Sequence[Lexeme], lexeme: Lexeme) -> bool:
+    """Return whether a verb is used as a noun: "follow the train", "is there a swing at the gate?"."""
+    if not before or not before[-1].has("DET", "ANY", "NONE"):
+        return False
+    exists = match_start("(BE there|there BE)", before[-3:-1]) is not None
+    return (exists and lexeme.has(*_VERBS_AND_NOUNS)) or (lexeme.has("AIM") and is_noun(lexeme.word))
 
 
 def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:

@@ -27,6 +27,7 @@ from scope_ptz.planner.grammar.parsing.asides import (
     elliptical_condition,
     is_ability,
     is_courtesy,
+    is_dropped,
     is_need,
     takes_back,
     withdraws,
@@ -44,7 +45,7 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
 from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
-from scope_ptz.planner.grammar.parsing.restatements import says_again
+from scope_ptz.planner.grammar.parsing.restatements import is_wish_for_zoom, says_again
 from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
 from scope_ptz.planner.grammar.parsing.tours import Tours
 
@@ -112,7 +113,7 @@ class Sentences(Tours):
     def _takes_back(self, clause: Clause) -> bool:
         """Return whether a clause takes back or forbids another one: "I changed my mind", or "no, don't" at the end."""
         after = self._peek()
-        is_last = self.next > 1 and (after is None or after.link == ".")
+        is_last = self.next > 1 and (after is None or after.link == "." or is_dropped(clause))
         return (len(self.clauses) > 1 and withdraws(clause)) or (is_last and takes_back(clause))
 
     def _follows_search(self) -> bool:
@@ -142,6 +143,8 @@ class Sentences(Tours):
             return [Linked(clause.link, self.last)]
         before = self.last
         steps = self._read(clause)
+        if clause.link == "," and is_wish_for_zoom(before, steps, clause):
+            return []
         if self._lists_pictures(steps):
             return []
         if (

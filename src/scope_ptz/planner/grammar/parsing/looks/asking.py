@@ -1,4 +1,4 @@
-"""Read questions, direct or after "tell me"."""
+"""Parse direct questions and questions introduced by "tell me"."""
 
 from __future__ import annotations
 
@@ -196,7 +196,9 @@ def _untold_question(
     if asked and match_start("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM _", lexemes) and not search(_NO_TOPIC, lexemes):
         return Ask(f"Are there {continued(text_of(source, lexemes))}?", scope)  # "over five trucks in view?"
     if search("between (DET)? PRESET (PRESETNOUN)? and (DET)? PRESET", lexemes) and is_question(lexemes):
-        return Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?")
+        return Unclear(
+            "I can look at one place and then the other, but I cannot answer that for both at once. What shall I look for?"
+        )
     if not asked and match_start("(FILLER|COMMA)* (NOONE|nothing)", lexemes):
         raise NotUnderstoodError(lexemes)  # "nothing moving over there" is a remark or a condition, not a question
     if is_question(lexemes) and not _is_personal(lexemes):

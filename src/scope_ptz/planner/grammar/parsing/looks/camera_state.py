@@ -1,4 +1,4 @@
-"""Read clauses about the camera itself: where it points, where it was, and what it can do."""
+"""Parse clauses about the camera itself: where it points, where it was, and what it can do."""
 
 from __future__ import annotations
 

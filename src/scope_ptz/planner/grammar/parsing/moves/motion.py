@@ -1,6 +1,6 @@
-"""Read a clause that turns the camera.
+"""Parse a clause that turns the camera.
 
-The words for amounts, steps and directions are found wherever they stand. Every other word must be one that adds nothing, such as
+The words for amounts, steps and directions are found wherever they occur. Every other word must be one that adds nothing, such as
 an article or "the camera"; otherwise the clause is not a turn.
 """
 
@@ -25,7 +25,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DANGLING, DIRECTIONS,
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 HasClass = Callable[..., bool]
-"""Tells whether one of the words that add nothing belongs to a class."""
+"""Returns whether any of the words that add nothing, such as articles, belongs to one of the given classes."""
 
 _UNKNOWN_CARRIER = "FREE (it|her|him|DET CAMERA|DET VIEWNOUN|CAMERA)"
 """An unknown verb whose object is the camera, and which must therefore mean to move it: "lob it 15 degrees to the left"."""
@@ -59,7 +59,7 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
     named = search("CAMERA (?P<number>NUM)(?! (DEG|X))", lexemes)
     if named is not None and not search("DET CAMERA NUM", lexemes):
         unread += named["number"]  # "camera 2 left" is about another camera, unlike "turn the camera 20 left"
-    unread += [x for x in lexemes if x.word == "any"]  # "any left?" is no turn
+    unread += [x for x in lexemes if x.word == "any"]  # "any left?" is not a turn
     if lexemes[-1].word in DANGLING and not found.directions:
         unread.append(lexemes[-1])
     if unread == [lexemes[0]] and found.directions and found.amounts and _moves_camera(lexemes):
@@ -71,7 +71,7 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def _moves_camera(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether a clause begins with an English verb that is not in the vocabulary, and the camera as its object."""
+    """Return whether a clause begins with an English verb that is not in the vocabulary and has the camera as its object."""
     verb = lexemes[0].word
     return bool(match_start(_UNKNOWN_CARRIER, lexemes)) and verb_form(verb) == "base" and verb not in _OPPOSED_VERBS
 
@@ -151,7 +151,7 @@ def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme])
     if found.aims:
         return Move(tuple(found.aims)) if not found.parts and found.target is None else _UNCLEAR_WAY
     if match_start("(FILLER|COMMA)* UP to NUM", lexemes):
-        return Unclear("Is that the angle to tilt to, or the most that I shall turn?")
+        return Unclear("Is that the angle to tilt to, or the most I should turn by?")
     if found.target is not None:
         return _target(found, ways, has, lexemes)
     if not ways:
@@ -169,7 +169,7 @@ def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme])
 
 
 def _several(found: TurnParts, ways: list[str]) -> tuple[Part, ...]:
-    """Return the turns about two axes. One amount is shared; otherwise each direction has the amount next to it."""
+    """Return the turns about two axes. A single amount applies to both; otherwise each direction takes the amount next to it."""
     amounts = found.amounts
     if len(amounts) < 2:
         return tuple(_turn(way, amounts[0] if amounts else None, found) for way in ways)
@@ -202,7 +202,7 @@ def _target(found: TurnParts, ways: list[str], has: HasClass, lexemes: Sequence[
 
 
 def _undirected(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step of a turn without a direction: a signed angle ("pan 25"), or more of the turn before ("another 10")."""
+    """Return the step of a turn without a direction: a signed angle ("pan 25"), or more of the previous turn ("another 10")."""
     amount = next(iter(found.amounts), None)
     axis: Literal["pan", "tilt"] = "tilt" if has("TILT", "TILTNOUN") or search("TILT", lexemes) else "pan"
     is_axis = has("PAN", "TILT", "PANNOUN", "TILTNOUN") or bool(search("PAN|TILT", lexemes))

@@ -87,7 +87,7 @@ _SMALL_STEP_DEG = 5.0
 
 @dataclass
 class TurnParts:
-    """The parts of a turn, in the order of the words. ``parts`` has directions and amounts."""
+    """The parts of a turn. ``parts`` lists the directions and amounts in the order in which they occur."""
 
     parts: list[str | Amount] = field(default_factory=list)
     target: float | None = None
@@ -139,7 +139,7 @@ def _add(found: TurnParts, name: str, match: Match) -> None:
     """Add the part of a turn that a pattern found."""
     value = match["number"][0].value if "number" in match.names and match["number"] else None
     if name == "shared":
-        return  # one amount always holds for all directions
+        return  # a single amount always applies to all directions
     if name == "steps":
         size = _SMALL_STEP_DEG if "small" in match.names else abs(match["size"][0].value)
         found.step = Amount("degrees", size)

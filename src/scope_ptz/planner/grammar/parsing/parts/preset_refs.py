@@ -28,6 +28,12 @@ EVERY_PLACE = (
 )
 
 
+_OCCUPANCY = frozenset(
+    {"empty", "full", "clear", "busy", "quiet", "crowded", "packed", "deserted", "occupied", "vacant", "blocked"}
+)
+_IS = "(BE|LOOKSLIKE|looks|seems|gets)"
+
+
 def place_of(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
     """Return the preset that lexemes refer to; None for anything else."""
     match = full_match(rf"(at|in|from|on|to|of|FILLER)* {PLACE} (FILLER)*", lexemes)
@@ -40,6 +46,16 @@ def place_of(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
     if not any(x.has("PRESETNOUN") for x in lexemes) and not _PRESETS_NAMED.search(source.text):
         return None  # "and the second one?" after a question about cars
     return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
+
+
+def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
+    """Return the preset of which a clause says or asks how full it is: "the yard is empty", "is the yard busy?"."""
+    match = full_match(
+        f"((?P<place>_{{1,3}}?) {_IS}|{_IS} (?P<asked>_{{1,3}}?)) (ADVERB|FILLER|not|NOW|still)* (?P<state>FREE|_)", lexemes
+    )
+    if match is None or match["state"][0].word not in _OCCUPANCY:
+        return None
+    return place_of(source, match["place"] or match["asked"])
 
 
 def places_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[PresetRef, ...] | None:

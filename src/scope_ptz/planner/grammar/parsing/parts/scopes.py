@@ -1,4 +1,4 @@
-"""Take adjuncts off a clause: the part of the scene, the place, repetitions and durations."""
+"""Strip adjuncts from a clause: the part of the scene, the place, repetitions and durations."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ SECONDS = (
 
 
 def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | None]:
-    """Return a clause without the words for the part of the scene, and that part: "current", "full" or None."""
+    """Strip the words for the part of the scene from a clause. Return the rest and that part: "current", "full" or None."""
     view: View | None = None
     lexemes = trimmed(lexemes, *_TRIVIAL)
     if seen := full_match(
@@ -70,12 +70,12 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
 
 
 def has_full_scope(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether words for the whole scene stand anywhere in a clause."""
+    """Return whether words for the whole scene occur anywhere in a clause."""
     return any(x.has("FULL") for x in lexemes)
 
 
 def place_before(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
-    """Return a clause without the preset that begins it ("at the gate, count ..."), and this preset; None for none."""
+    """Return a clause without the preset that begins it ("at the gate, count ..."), and that preset, or None if there is none."""
     for size in range(min(len(lexemes) - 1, 12), 0, -1):
         head, rest = lexemes[:size], lexemes[size:]
         if head[0].has("FILLER", "LEADFILLER", "COMMA", "FIRSTLY"):
@@ -134,14 +134,14 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
         )
         nouns = (
             "" if len(places) > 1 else "sign|word|text|"
-        )  # "the sign at the gate" may be a description; at two presets it is not
+        )  # "the sign at the gate" may be a description, but with two presets it cannot be
         if is_certain and not search(rf"(near|by|behind|{nouns}written|of) \Z", lexemes[: len(lexemes) - size]):
             return trimmed(lexemes[: len(lexemes) - size], "COMMA", "AND"), places
     return lexemes, None
 
 
 def _without_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes without the words for the present at their end: "... on the bridge at the minute", "... this morning"."""
+    """Return lexemes without trailing words that refer to the present: "... on the bridge at the minute", "... this morning"."""
     lexemes = tuple(lexemes)
     if len(lexemes) > 3 and lexemes[-1].word in {"yet", "still", "already"}:
         lexemes = lexemes[:-1]
@@ -154,7 +154,7 @@ def _without_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def _can_be_on(before: Sequence[Lexeme]) -> bool:
-    """Return whether "on" after words states a place: "people on the bridge", unlike "zoom in on" and "signs on the bridge"."""
+    """Return whether "on" after these words introduces a place: "people on the bridge", unlike "signs on the bridge"."""
     if any(x.word in _FIXED_TO_THINGS for x in before):
         return False
     if before[-1].word in _PARTICLES and len(before) > 1:
@@ -163,12 +163,12 @@ def _can_be_on(before: Sequence[Lexeme]) -> bool:
 
 
 def _is_thing(places: Sequence[PresetRef]) -> bool:
-    """Return whether the name of a preset is also that of a thing in the picture: "the signs on the gantry"."""
+    """Return whether the name of a preset is also the name of a thing that can be in the picture: "the signs on the gantry"."""
     return any(lexicon().concept(place.name.replace("-", " ")) is not None for place in places)
 
 
 def without_times(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:
-    """Return a clause without its number of repetitions, this number, and whether a comma precedes it."""
+    """Strip the number of repetitions from a clause. Return the rest, the number, and whether a comma precedes it."""
     match = full_match(rf"(?P<body>_*?) {_TIMES}", lexemes)
     if not match or not match.has("times"):
         return tuple(lexemes), 1, False
@@ -181,7 +181,7 @@ def without_times(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, b
 
 
 def duration_of(match) -> float:  # type: ignore[no-untyped-def]
-    """Return the seconds of a match of ``SECONDS``."""
+    """Return the duration, in seconds, that a match of ``SECONDS`` expresses."""
     unit = match["unit"][0]
     size = 1.0 if unit.has("SECONDS") else 60.0 if unit.has("MINUTES") else 3600.0
     value = match["seconds"][0].value if match["seconds"] else 1.0
