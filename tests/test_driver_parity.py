@@ -73,6 +73,7 @@ async def test_a_wrong_field_of_view_in_a_driver_is_a_deviation(parity: ModuleTy
     assert "onvif" not in dict(found)
 
 
+@pytest.mark.full
 @pytest.mark.anyio
 async def test_hundreds_of_core_tasks_stay_in_one_viewpoint_and_most_use_the_camera(parity: ModuleType) -> None:
     local = parity.tasks_in_one_viewpoint(load_split("core"))

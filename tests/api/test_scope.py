@@ -181,6 +181,7 @@ def test_a_session_works_where_an_event_loop_is_running(analytic_scene: Scene) -
     assert asyncio.run(notebook_cell()) == "There are 3."
 
 
+@pytest.mark.full
 def test_a_program_that_never_closes_its_session_ends(analytic_folder: Path) -> None:
     program = (
         "import scope_ptz, sys\n"

@@ -43,6 +43,7 @@ def test_constant_answers_rarely_pass(split: str) -> None:
     assert all(0 <= share < 0.5 for share in level.by_category.values())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("split", ["lite1", "paraphrase"])
 def test_samples_that_separate_pairs_have_a_higher_chance_level(split: str) -> None:
     """The paraphrase split never contains both tasks of a pair, and the first lite split divided every pair."""

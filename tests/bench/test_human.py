@@ -82,6 +82,7 @@ def test_a_human_run_is_scored_by_the_checks_and_can_be_resumed(
     assert len(pictures) == 4 and np.asarray(cv2.imread(str(pictures[0]))).shape == (720, 1280, 3)
 
 
+@pytest.mark.full
 def test_a_report_shows_the_pictures_of_a_failed_task(
     scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

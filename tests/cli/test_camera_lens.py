@@ -15,6 +15,7 @@ from tests.cli.served_camera import ServedCamera
 SIMULATED = f"sim:{SCENE}?width=160&height=90"
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("scheme", ["axis", "onvif"])
 def test_focus_and_iris_are_set_and_read_back(scope: Scope, served_camera: ServedCamera, scheme: str) -> None:
     camera, lens = served_camera.spec(scheme), served_camera.device.lens

@@ -72,6 +72,7 @@ def test_plan_loads_no_models_no_images_and_no_grammar_compiler(tmp_path: Path) 
     assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.display"}
 
 
+@pytest.mark.full
 def test_a_run_without_perception_calls_loads_no_ground_truth_answers(
     scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -97,6 +97,7 @@ def test_plugins_are_listed(scope: Scope, plugin_site: Path) -> None:
     assert "bright (scope-bright-perception 1.0)" in models
 
 
+@pytest.mark.full
 def test_doctor_checks_plugins(scope: Scope, plugin_site: Path) -> None:
     run_result = scope(plugin_site, "doctor", "--json")
     findings = {finding["what"]: finding for finding in json.loads(run_result.out)}
@@ -194,6 +195,7 @@ def test_a_broken_plugin_gives_one_line_and_breaks_nothing_else(scope: Scope, ca
     assert scope(site, "models", "plugins").code == 0
 
 
+@pytest.mark.full
 def test_doctor_reports_broken_plugins(scope: Scope, tmp_path: Path) -> None:
     site = tmp_path / "site"
     site.mkdir()

@@ -59,6 +59,7 @@ def sample() -> list[Task]:
     return list({task.category: task for task in reversed(tasks)}.values())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("task", sample(), ids=lambda task: task.id)
 def test_a_reference_program_earns_the_verdict_and_every_check(task: Task, make: Make) -> None:
     env = make(TASK, task=task, frame_size=SMALL)
@@ -183,6 +184,7 @@ results = st.lists(
 )
 
 
+@pytest.mark.full
 @given(results)
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_partial_credit_cannot_be_collected_twice(steps: list[tuple[CheckResult, ...]]) -> None:

@@ -42,6 +42,7 @@ class TestOcr(PerceptionConformance):
         return BOARD
 
 
+@pytest.mark.full
 @pytest.mark.anyio
 async def test_text_is_read_row_by_row(perception_backend: Perception) -> None:
     answer = await perception_backend.query(BOARD, "read the text")

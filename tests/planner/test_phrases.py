@@ -65,6 +65,21 @@ PLANS = [
     ("is there a train at the gate?", "go_to_preset(name=gate); query_answer(question=is there a train?, view=current)"),
     ("is there a swing at the gate?", "go_to_preset(name=gate); query_answer(question=is there a swing?, view=current)"),
     ("are there any frames at the gate?", "go_to_preset(name=gate); query_answer(question=are there any frames?, view=current)"),
+    ("which vans are at the gate?", "go_to_preset(name=gate); query_answer(question=which vans are there?, view=current)"),
+    ("remind me which presets we've got", "get_presets()"),
+    ("pan left 20 then tell me where you're pointing", "adjust_ptz(pan_deg=-20)"),
+    ("what's your current pan and tilt?", ""),
+    ("the boss wants a photo of the gate. Go there and take one.", "go_to_preset(name=gate); take_image()"),
+    (
+        "Jo wants pics of the van at the gate. Go there, zoom in on the van, take one.",
+        "go_to_preset(name=gate); zoom_to_object(description=van); take_image()",
+    ),
+    (
+        "zoom in on the hopper - scratch that, the boxcar with the open door",
+        "zoom_to_object(description=boxcar with the open door)",
+    ),
+    ("follow the van, sorry, I meant the red car", "track_object(description=red car, duration_s=10)"),
+    ("zoom in on the van, scratch that, pan left 10", "adjust_ptz(pan_deg=-10)"),
     ("train the camera on the gate", "go_to_preset(name=gate)"),
     ("is the highway still busy?", "go_to_preset(name=highway); query_answer(question=is the highway still busy?, view=current)"),
     (

@@ -234,6 +234,7 @@ def test_an_interrupt_records_the_end_of_a_run(scenes: None, tmp_path: Path) -> 
         assert store.run(run).run.outcome == "cancelled", "it is in the index already"
 
 
+@pytest.mark.full
 def test_a_server_on_the_network_does_not_start_without_tokens(scenes: None, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "scope_ptz.cli", "serve", "--host", "0.0.0.0", "--port", "0"]  # noqa: S104 - the server must refuse to start
     command += ["--tokens", str(tmp_path / "tokens.json"), "--runs-dir", str(tmp_path / "runs")]

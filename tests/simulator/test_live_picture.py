@@ -80,6 +80,7 @@ def test_a_prefetch_that_starts_after_the_end_of_its_owner_is_cancelled(analytic
     assert all(prefetch.done for prefetch in early)
 
 
+@pytest.mark.full
 def test_a_bounded_cache_shows_the_same_pictures(analytic_scene: Scene) -> None:
     bounded, free = Scene(analytic_scene.folder, tile_bytes=1), Scene(analytic_scene.folder)
     views = [_view(pan, -3.0, zoom) for zoom in (2.0, 5.0, 3.0) for pan in (18.5, -4.0, 10.0, -16.0)]
@@ -164,6 +165,7 @@ def test_tiles_hidden_by_sharper_ones_change_nothing(analytic_scene: Scene, pan:
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.full
 def test_a_camera_that_stands_still_shows_the_same_pictures(analytic_scene: Scene) -> None:
     views = [_view(18.5, -3.0, 2.0), _view(18.5, -3.0, 2.0, 96, 54)]
     still, fresh = Scene(analytic_scene.folder), Scene(analytic_scene.folder)

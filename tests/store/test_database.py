@@ -142,6 +142,7 @@ def test_several_processes_index_the_same_folder(root: Path, copies: Callable[[i
         assert store.index().added == 0
 
 
+@pytest.mark.full
 def test_a_plain_ask_imports_no_database() -> None:
     code = """
 import sys, tempfile

@@ -43,6 +43,7 @@ async def test_an_agent_works_as_it_does_outside(tmp_path: Path) -> None:
 WRITE_ATTEMPTS = ("/usr/x", "/x", "new.txt", "/etc/passwd", "/proc/sys/kernel/core_pattern", "/proc/sys/vm/drop_caches")
 
 
+@pytest.mark.full
 @needs_sandbox
 async def test_inaccessible_resources(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()

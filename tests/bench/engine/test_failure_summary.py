@@ -57,6 +57,7 @@ def test_server_failures_are_reported_with_address_and_advice() -> None:
     assert "Server failures" in output.get() and planner in output.get() and perception in output.get()
 
 
+@pytest.mark.full
 def test_unavailable_perception_is_reported_by_the_command(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(TASKS, tmp_path / "tasks.jsonl")
     run = (

@@ -47,6 +47,7 @@ def test_invalid_replies_are_counted_but_are_not_server_failures(scope: Scope, l
     assert "4 judgements by j: 0 with a verdict, 4 unparseable, 0 failed" in result.out
 
 
+@pytest.mark.full
 def test_a_run_whose_judge_is_unavailable_is_not_complete(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
     code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", UNREACHABLE_URL, "--judge-model", "j")
     assert code == 1

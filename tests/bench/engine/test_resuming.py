@@ -126,6 +126,7 @@ def run(scope: Scope, server: Misbehaving, tasks: Path, logs: Path, *extra: str)
     ).code  # fmt: skip
 
 
+@pytest.mark.full
 def test_a_misbehaving_server_loses_no_run(scope: Scope, tmp_path: Path) -> None:
     tasks = turning_tasks(11)  # one of them breaks, which is too few to fail the whole log
     dump_tasks(tasks, tmp_path / "tasks.jsonl")

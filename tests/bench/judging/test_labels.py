@@ -155,6 +155,7 @@ def test_labellers_do_not_see_each_others_progress(unlabelled_log: Path) -> None
     assert "0 of 1 runs labelled by bob" in label(unlabelled_log, "q\n", "--by", "bob", "--sample", "1").output
 
 
+@pytest.mark.full
 def test_labels_are_compared_with_the_checks(unlabelled_log: Path) -> None:
     empty = label(unlabelled_log, "", "--compare")
     assert empty.exit_code == 2

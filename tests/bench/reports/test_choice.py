@@ -117,6 +117,7 @@ def test_leaders_agree_with_the_table_of_comparisons(report: EvaluationReport) -
     assert find_leaders([], found) is None
 
 
+@pytest.mark.full
 def test_the_first_screen_names_the_fast_and_the_small_pair(report: EvaluationReport) -> None:
     small_report = build(
         evaluation_with("qwen3-4b", range(0, 96, 2), seconds=3.0),

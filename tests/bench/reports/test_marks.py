@@ -57,6 +57,7 @@ FEWER = "qwen3-4b-fp8 + moondream3 [10 of the 32 tasks]"
 OTHERS = "grammar + ground-truth [20 tasks, 3 of the 32 shared]"
 
 
+@pytest.mark.full
 def test_runs_on_other_tasks_are_listed_first_and_marked_everywhere(mixed: EvaluationReport) -> None:
     before = " ".join(mixed.warnings)
     assert f"These pairs were run on different tasks from most pairs: {FEWER}." in before

@@ -98,6 +98,7 @@ def test_the_micro_variance_is_that_of_a_clustered_regression(seed: int) -> None
         assert two_sided_p(estimate) == pytest.approx(float(fitted.pvalues[0]))
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", range(5))
 def test_the_macro_variance_is_that_of_a_clustered_regression_on_strata(seed: int) -> None:
     from statsmodels.regression.linear_model import OLS

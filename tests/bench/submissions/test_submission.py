@@ -231,8 +231,12 @@ def test_totals_are_recomputed(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
-    assert "state 28 trials with headline correct, but the file contains 27" in found and "state 0 trials with headline incorrect" in found
-    assert "state 4 for error mode reasoning, but the trials have 0" in found and "state 0 for error mode scope" in found
+    assert (
+        "state 28 trials with headline correct, but the file contains 27" in found
+        and "state 0 trials with headline incorrect" in found
+    )
+    assert "state 4 trials with error mode reasoning, but the file contains 0" in found
+    assert "state 0 trials with error mode scope" in found
 
 
 def test_invalid_json_lines_are_reported_and_unreadable_files_refused(tmp_path: Path) -> None:

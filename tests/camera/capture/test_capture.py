@@ -267,6 +267,7 @@ async def test_wrong_options_are_refused(options: Callable[[BlobCamera], Capture
         capture_settings(camera, options(camera))
 
 
+@pytest.mark.full
 async def test_a_twin_is_a_camera_without_ground_truth(tmp_path: Path) -> None:
     _, twin = await twin_of(BlobCamera(), tmp_path, ranges=Ranges((0.0, 20.0), (0.0, 0.0)), close_ups=0)
     limits = replace(LIMITS, min_pan_deg=0.0, max_pan_deg=20.0, min_tilt_deg=0.0, max_tilt_deg=0.0)

@@ -26,6 +26,7 @@ pytestmark = pytest.mark.anyio
 THERE = Pose(40.0, -12.0, 2.0)
 
 
+@pytest.mark.full
 async def test_unreachable_during_a_move(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> None:
     device = make_device(analytic_scene, time_scale=2.0)  # a move of 90 degrees takes about half a second
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
@@ -38,6 +39,7 @@ async def test_unreachable_during_a_move(driver: Driver, analytic_scene: Scene, 
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
 
 
+@pytest.mark.full
 async def test_unreachable_during_a_sweep(driver: Driver, device: VirtualDevice, tmp_path: Path) -> None:
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         # The second move of the sweep.
@@ -51,6 +53,7 @@ async def test_unreachable_during_a_sweep(driver: Driver, device: VirtualDevice,
         set_faults(device)
 
 
+@pytest.mark.full
 async def test_slow(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> None:
     device = make_device(analytic_scene, time_scale=2.0)
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:

@@ -71,6 +71,7 @@ async def test_partition_during_a_move(driver: Driver, analytic_scene: Scene, fa
         await expect_answer(await ask(camera, "pan left 10 degrees", tmp_path))
 
 
+@pytest.mark.full
 async def test_connections_are_reset_and_refused(driver: Driver, analytic_scene: Scene, tmp_path: Path) -> None:
     device = make_device(analytic_scene, time_scale=2.0)
     async with connected(driver, device) as (camera, network):

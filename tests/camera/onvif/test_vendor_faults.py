@@ -47,6 +47,7 @@ async def driver(device: VirtualDevice, vendor: Vendor | None = None, **options:
         yield camera
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("status", ["missing", "lying"])
 async def test_move_status_is_not_needed(device: VirtualDevice, status: str) -> None:
     device.faults = device.faults.model_copy(update={"move_status": status})

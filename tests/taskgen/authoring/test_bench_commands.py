@@ -11,6 +11,8 @@ from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from tests.cli.conftest import Scope, scenes, scope
 
+pytestmark = pytest.mark.full
+
 __all__ = ["scenes", "scope"]
 
 

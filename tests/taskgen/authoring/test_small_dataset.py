@@ -29,6 +29,8 @@ from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 from tests.taskgen.authoring.conftest import QUOTAS
 
+pytestmark = pytest.mark.full
+
 
 def core(built_tasks: BuiltTasks) -> list[Task]:
     return [task for task in built_tasks.tasks if task.stratum == "core"]

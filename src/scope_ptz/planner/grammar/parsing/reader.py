@@ -212,6 +212,8 @@ class Reader:
             full_match("BE (DET|ANY|SELF)* FREE{1,3}", rest) and is_only_noun(rest[-1])
         ):
             return (AtPlaces(places, (Ask(f"{text_of(self.source, rest)} there?"),)),)  # "is the van at the gate?"
+        if full_match("WHQ FREE{1,3} BE", rest):
+            return (AtPlaces(places, (Ask(f"{text_of(self.source, rest)} there?"),)),)  # "which vans are at the gate?"
         try:
             body = self.read(rest, asked=asked)
         except NotUnderstoodError:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import FRAGMENT
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
@@ -108,6 +109,8 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     if not old or not new:
         return None
     changed = _with_preset(old, new) or _with_direction_reversed(old, new) or _with_amount(old, new)
+    if changed is None and editing.has("retraction"):
+        changed = _with_thing(old, new)
     if changed is not None:
         rest = after[len(new) :]
         if rest and rest[0].has("DASH") and not editing.has("retraction"):
@@ -147,6 +150,15 @@ def _with_preset(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme
     if match is None or not places:
         return None
     return (*old[: places[-1]], *match["preset"], *old[places[-1] + 1 :])
+
+
+def _with_thing(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:
+    """Return a clause with the thing at its end replaced: "zoom in on the van, I mean the lorry by the gate"."""
+    thing = new[next((i for i, x in enumerate(new) if not x.has("FILLER")), len(new)) :]
+    start = next((i for i, x in enumerate(old) if i and x.has("DET")), len(old))
+    if not (thing and thing[0].has("DET") and old[start:] and is_noun_phrase(thing) and is_noun_phrase(old[start:])):
+        return None
+    return (*old[:start], *thing)
 
 
 def _with_direction_reversed(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:

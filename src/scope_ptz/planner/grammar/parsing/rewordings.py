@@ -14,6 +14,7 @@ _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
 _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
 
+_AIMED = frozenset({"aimed", "pointed", "turned", "looking", "facing", "pointing"})
 _VERBS_AND_NOUNS = ("AIM", "CARRY", "FIND", "SHOW", "SWITCH", "TRACK", "TURN")
 """Classes of verbs that can also be nouns, such as "train", "head", "frame" and "swing"."""
 
@@ -24,10 +25,16 @@ _PLACES_FIRST = (
 )
 """Several places before what is done at each of them."""
 
+_WANTED_PICTURE = (
+    "(FILLER)* ((DET)? FREE{1,2} (wants|needs|WRAPPER)|WRAPPER|SELF (want|need)) (DET|ANY|NUM|SEVERAL)? PICTURE of _+?"
+    " PREP? (DET)? (?P<place>PRESET) PRESETNOUN? STOP (FILLER)* (?P<go>CARRY|SWITCH) (over|ADVERB|FILLER)* there (COMMA|AND|THEN)*"
+)
+"""A wish for a picture, before the commands that take it at that place."""
+
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
-    lexemes = _at_places_first(lexemes)
+    lexemes = _picture_wanted_first(_at_places_first(lexemes))
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
@@ -51,6 +58,17 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [_as(x, *changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
+def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "go to the gate, take one" for "he wants a picture of a van at the gate. Go there, take one"."""
+    match = match_start(_WANTED_PICTURE, lexemes)
+    if match is None or not any(x.has("PICTURE", "SNAP", "ANOTHER") or x.word == "one" for x in lexemes[match.size :]):
+        return lexemes
+    if any(x.word in {"it", "him", "her", "them"} for x in lexemes[match.size :]):
+        return lexemes  # "zoom in on it" needs the thing in the wish
+    go, place = match["go"][0], match["place"][0]
+    return [go, _as(go, "to", "PREP", "GLUE"), place, _as(go, ",", "COMMA"), *lexemes[match.size :]]
+
+
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
     """Return the lexemes that replace one of them, or that lexeme itself."""
     last = before[-1] if before else None
@@ -59,6 +77,12 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
     if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
         way = [] if last.has("IN", "ENLARGE") else [_as(lexeme, "in", "IN", "GLUE")]
         return [*way, _as(lexeme, "on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
+    if lexeme.word == "where_you_are" and after is not None and (after.has("AIM-ING") or after.word in _AIMED):
+        return [_as(lexeme, "where", "WHQ", "REL"), _as(lexeme, "you", "SELF"), _as(lexeme, "are", "BE", "GLUE")]
+    if lexeme.word == "remind" and after is not None and after.has("SELF"):
+        return [_as(lexeme, "tell", "TELL", "LISTING")]  # "remind me which presets there are"
+    if lexeme.has("TILT") and match_start("(DET|SELF|current) PAN AND", before[-3:]):
+        return [_as(lexeme, "tilt", "TILTNOUN")]  # "what is the pan and tilt?"
     if lexeme.word == "right_now" and last is not None and last.word == "the":
         return [_as(lexeme, "right", "RIGHT", "ADVERB"), _as(lexeme, "now", "NOW", "FILLER")]  # "over to the right now"
     if lexeme.word == "at_each" and after is not None and after.has("COLON"):
