@@ -87,6 +87,8 @@ def unresolved_editing(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     found = search(
         rf"{_PAUSE} (FILLER)* (?P<editing>(no|wait|oops|hang on|hold on|(scratch|scrap|strike) that)+) (FILLER)* {_PAUSE}", lexemes
     )
+    if found is None:
+        found = search("(COMMA|DASH) (FILLER)* (?P<editing>(i_mean|i_meant) DET (FREE|LEFT|RIGHT)* (one|ones))", lexemes)
     return found["editing"] if found else ()
 
 
@@ -156,6 +158,8 @@ def _with_thing(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme,
     """Return a clause with the thing at its end replaced: "zoom in on the van, I mean the lorry by the gate"."""
     thing = new[next((i for i, x in enumerate(new) if not x.has("FILLER")), len(new)) :]
     start = next((i for i, x in enumerate(old) if i and x.has("DET")), len(old))
+    if any(x.word in {"one", "ones"} for x in thing):
+        return None  # "the red one" needs the noun of the first thing
     if not (thing and thing[0].has("DET") and old[start:] and is_noun_phrase(thing) and is_noun_phrase(old[start:])):
         return None
     return (*old[:start], *thing)
