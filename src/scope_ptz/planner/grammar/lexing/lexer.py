@@ -10,7 +10,7 @@ from functools import lru_cache
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
 from scope_ptz.english.grammar.tokens import Token, tokenise
 from scope_ptz.planner.grammar.lexing.lexicon import longest_phrase, phrases
-from scope_ptz.planner.grammar.lexing.preset_names import preset_at
+from scope_ptz.planner.grammar.lexing.preset_names import preset_at, short_names
 from scope_ptz.planner.grammar.lexing.spelling import corrected_word, is_english, within_one_edit
 
 _MARKS = {
@@ -58,6 +58,10 @@ _ADDRESSED = frozenset(
 """Words for people, which only address someone unless a determiner precedes them."""
 
 
+_AT_PLACE = frozenset({"at", "to", "go", "goto"})
+"""Words after which the last word of a preset's name stands for the preset."""
+
+
 @dataclass(frozen=True, slots=True)
 class Lexeme:
     """A word, fixed expression, number, preset name or punctuation mark.
@@ -96,7 +100,7 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
         lexeme, used = _lexeme_at(tokens, words, i, presets)
         out.append(lexeme)
         i += used
-    return tuple(_with_units(out, text))
+    return tuple(_with_short_names(_with_units(out, text), presets))
 
 
 def _preset_word(word: str, known: set[str]) -> str:
@@ -171,6 +175,21 @@ def _fits(words: Sequence[str], i: int, length: int, classes: frozenset[str], pr
         return True
     after = words[i + length] if i + length < len(words) else "."
     return after in _AFTER_ENDING or not phrases().get((after,), frozenset()).isdisjoint(_COMMANDS)
+
+
+def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[Lexeme]:
+    """Read "at the gate" as the preset "main-gate", if no other preset's name contains that word."""
+    short = short_names(presets)
+    out = list(lexemes)
+    for i, x in enumerate(lexemes):
+        if not x.has("FREE") or x.word not in short:
+            continue
+        before = [y for y in lexemes[max(0, i - 2) : i] if y.word != "the"]
+        is_place = bool(before) and (before[-1].word in _AT_PLACE and (i < 2 or lexemes[i - 1].word in {"the", before[-1].word}))
+        after = lexemes[i + 1] if i + 1 < len(lexemes) else None
+        if is_place and (after is None or not (after.has("FREE", "PRESET", "NUM") or after.word in {"of", "'s"})):
+            out[i] = Lexeme(x.word, x.start, x.end, frozenset({"PRESET"}), 0.0, short[x.word])
+    return out
 
 
 def _without_list_marks(tokens: list[Token]) -> list[Token]:

@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
+
+_VAGUE = frozenset(
+    {"end", "side", "corner", "edge", "top", "bottom", "middle", "centre", "center", "front", "view", "area", "zone"}
+)
+"""Last words of names that often mean something else: "turn to the end"."""
 
 
 def preset_key(name: str) -> tuple[str, ...]:
@@ -27,6 +33,14 @@ def preset_table(presets: tuple[str, ...]) -> Mapping[tuple[str, ...], str]:
             table[key] = preset
             table.setdefault(("".join(key),), preset)
     return table
+
+
+@lru_cache(maxsize=64)
+def short_names(presets: tuple[str, ...]) -> Mapping[str, str]:
+    """Return the presets by the last word of their names, such as "gate" for "main-gate", if no other name contains that word."""
+    keys = {preset: preset_key(preset) for preset in presets}
+    words = Counter(word for key in keys.values() for word in set(key))
+    return {key[-1]: preset for preset, key in keys.items() if len(key) > 1 and words[key[-1]] == 1 and key[-1] not in _VAGUE}
 
 
 def preset_at(words: Sequence[str], presets: tuple[str, ...]) -> tuple[str, int]:

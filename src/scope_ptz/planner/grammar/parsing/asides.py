@@ -183,6 +183,8 @@ def elliptical_condition(source: Source, clause: Clause, after: Clause | None) -
             return None  # "see a van anywhere? Check all around"
         thing = thing_of(source, match["thing"]) if match["thing"] else Thing("people")
         return Seen(thing) if thing is not None and thing.text else None
+    if lexemes[0].has("SOMEONE") and len(lexemes) > 2 and lexemes[1].has("TELL-ED", "TELL-S"):
+        return None  # "somebody said they saw a fox"
     if lexemes[0].has("SOMEONE", "NOONE") or (lexemes[0].word == "no" and clause.link != ","):
         return condition_of(source, lexemes)
     return None

@@ -22,7 +22,7 @@ _AFTER = (
     rf"(that is)? (COMMA|DASH|OPEN)? {_DENIED} "
     r"(CLOSE|DASH|COMMA (?=(by)? (NUM|LEFT|RIGHT|UP|DOWN))|(?=COMMA|STOP|AND|THEN)|(FILLER)* \Z)"
 )
-_AHEAD = rf"(FILLER|COMMA|no|correction|COLON)* {_DENIED} (NUM DEG?)? (COMMA|COLON|DASH|STOP|BUT)+"
+_AHEAD = rf"(FILLER|COMMA|no|correction|COLON)* {_DENIED} (NUM DEG?|this TRIES)? (FILLER)* (COMMA|COLON|DASH|STOP|BUT)+"
 
 
 def without_denials(repaired: Repaired) -> Repaired:

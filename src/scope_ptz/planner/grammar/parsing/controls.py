@@ -101,9 +101,9 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
         return (Forbid(any_move=True),)
     if full_match(
         (
-            "(TELL|report|SAY|let me know|REPORT) (me|us|SELF|back|FILLER|DET|result|results|so|that|it|answer|"
+            "(TELL|report|SAY|let me know|REPORT|CARRY (?=me|us)) (me|us|SELF|back|FILLER|DET|result|results|so|that|it|answer|"
             "number|what SELF FIND|what SELF SEE|to|findings|count|how SELF get on|about|PRON|TELL|DET COUNTNOUN|how "
-            "it went|total|both)*"
+            "it went|total|both (numbers|totals|counts|figures|results)?)*"
         ),
         lexemes,
     ) and not search("what SELF SEE|another \\Z", lexemes):

@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar.parsing.contractions import with_contractions
 from scope_ptz.planner.grammar.parsing.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
 from scope_ptz.planner.grammar.parsing.reader import Reader
+from scope_ptz.planner.grammar.parsing.relayed import relayed
 from scope_ptz.planner.grammar.parsing.repairs import repaired, unresolved_editing
 from scope_ptz.planner.grammar.parsing.rewordings import reworded
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
@@ -44,6 +45,14 @@ class Parsed:
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Return the steps of an instruction. No text raises an exception."""
+    said = relayed(text, presets) if len(text) <= MAX_CHARS else None
+    if said is not None and (parsed := _parsed(said, presets)).steps is not None:
+        return parsed
+    return _parsed(text, presets)
+
+
+def _parsed(text: str, presets: tuple[str, ...]) -> Parsed:
+    """Return the steps of a text without words that relay it."""
     lexemes = lexemes_of(text, presets) if len(text) <= MAX_CHARS else ()
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)

@@ -89,6 +89,8 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
         return [_as(lexeme, "at", "PREP", "GLUE"), _as(lexeme, "each_of", "EVERY")]  # "take a picture at each: gate, yard"
     if lexeme.has("COLON") and last is not None and last.word == "each_of":
         return []
+    if lexeme.word == "at_each" and last is not None and last.has("BE") and _counts_on_tour(before):
+        return [_as(lexeme, "there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
         return [_as(lexeme, "go", "CARRY"), _as(lexeme, "back", "BACK")]
     return [lexeme]
@@ -100,6 +102,12 @@ def _is_noun_here(before: Sequence[Lexeme], lexeme: Lexeme) -> bool:
         return False
     exists = match_start("(BE there|there BE)", before[-3:-1]) is not None
     return (exists and lexeme.has(*_VERBS_AND_NOUNS)) or (lexeme.has("AIM") and is_noun(lexeme.word))
+
+
+def _counts_on_tour(before: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes name every preset, and then begin a count."""
+    count = next((i for i, x in enumerate(before) if x.has("HOWMANY")), 0)
+    return any(x.has("PRESETNOUN") and x.word.endswith("s") for x in before[:count])
 
 
 def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:

@@ -26,6 +26,7 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
     if full_match(
         (
             rf"(CARRY|TURN|PAN|SWITCH|RESET|put|take)* (it|CAMERA|SELF|right|straight|DET)* (BACK|BACK again) {where}|"
+            rf"(FILLER|THEN)* back_out (again)? to (how|where) (it|SELF|PRON) {where}|"
             rf"(CARRY|TURN|PAN|TILT|FILLER)* BACK (UP|DOWN|LEFT|RIGHT|IN|OUT) to where SELF {where}|UNDO {where}|"
             rf"(SWITCH|CARRY|RESET) (it|CAMERA|SELF)* "
             rf"(to where SELF|to (DET)* (previous|earlier|former|original|last|old|start)) {where}|"

@@ -44,7 +44,7 @@ _WAY = (
 )
 _WHICH = (
     r"(in|at|from|on|of)? (WHQ|which|what|where|find WHQ|find) (one|of these|of those|of the|of)? (PRESETNOUN|"
-    r"presets|views)? (of them)?"
+    r"presets|views|NUM)? (of them)?"
 )
 
 ReadMoves = Callable[[Sequence[Lexeme]], "tuple[Step, ...] | None"]
@@ -92,7 +92,7 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read comparisons of presets."""
     listing = r"(COMMA|COLON|DASH|between|out of|of|at|OPEN)* (?P<places>_+?) (CLOSE)?"
     patterns = (
-        rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) ((COMMA|COLON|DASH|OPEN|of)+ {listing})?",
+        rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) ((on|at|in) it)? ((COMMA|COLON|DASH|OPEN|of)+ {listing})?",
         rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) (?P<places>(DET)? PRESET "
         rf"_*? (or|and) _+)",
         rf"(SWITCH|CARRY|SHOW|AIM|TAKE|me|us|to|at|FILLER|COMMA)* whichever (PRESETNOUN|one)? (of)? (?P<places>_+?)? "

@@ -58,6 +58,8 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
         return not any(x.has(*VERBS) for x in words[1:])
     if any(x.has(*_COMMANDS) for x in words):
         return False
+    if words[0].word == "hope" and len(words) > 2 and words[1].has("SELF", "DET"):
+        return True  # "hope you slept better than me"
     if words[0].has("FREE") and verb_form(words[0].word) in {"participle", "past"}:
         # "lost my bearings", unlike "charging points"
         return not (len(words) > 1 and not words[1].has("SELF", "DET") and is_only_noun(words[1]))

@@ -1,0 +1,233 @@
+"""Rewrite instructions that pass on what someone else says or wants, or that say where something is before saying what to do.
+
+"The boss wants to know how many cars there are" becomes "tell me how many cars there are", and "there is a gap in the fence by the
+crossing, so go there and zoom in on it" becomes "go to the crossing. there is a gap in the fence. zoom in on it". The new text is
+then parsed like any other. If it cannot be parsed, the original text is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.english import is_plural
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS, trimmed
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+from scope_ptz.planner.grammar.parsing.parts.questions import is_question
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
+
+_ENDS = ("STOP", "QUESTION", "COLON")
+_OTHERS = "((DET)? (FREE|CAMERA|FILLER){1,3}?|SOMEONE|they|he|she)"
+_AUXILIARIES = "(BE|HAVEV|MODAL|been|just|now|also|keeps|keep|still|FILLER)*"
+_ASKS = (
+    f"{_OTHERS} {_AUXILIARIES} (asking|asks|ask|asked|wondering|wonders|wants_to_know|needs_to_know|would_like_to_know)|"
+    "(the_boss_wants|they_want|he_wants|she_wants) to know"
+)
+_QUESTION = f"(FILLER|COMMA)* ({_ASKS}) (me|us|SELF|FILLER)* (?=IF|WHQ|HOWMANY|whether|how|BE there)"
+"""Someone asks a question: "dispatch is asking how many trucks are at the gate"."""
+
+_REQUEST = f"(FILLER|COMMA)* {_OTHERS} {_AUXILIARIES} (asked|told|instructed|wants|needs|like|want|need) (me|us|you) to"
+"""Someone asks for something to be done: "Jim asked me to check the crossing"."""
+
+_HEARD = (
+    "(reckon|reckons|think|thinks|thought|say|says|said|heard|hear|hears|believe|believes|bet|guess|suspect|suspects|fear|swear|swears|"
+    "reports|reported|mentioned|noticed|claims|(told|telling|tells) (me|us)?)"
+)
+_HEARSAY = (
+    f"(FILLER|COMMA)* ((({_OTHERS}|i|we) {_AUXILIARIES} {_HEARD}|(i|we) HAVEV been told|(i|we) (was|were) told) (that)? ((they|he|she) (SEE-ED|spotted|noticed))?|i_think|"
+    "(it (looks|seems|sounds) (like|as_if|as_though|that)?|apparently|looks like|seems like|sounds like))"
+)
+"""Words before a statement that say where it comes from: "my deputy reckons", "it looks like"."""
+
+_PLACE = "(over|FILLER)* (at|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) (DET)? (?P<name>PRESET) PRESETNOUN?"
+_THERE = "(so|then|and|AND|please|FILLER|COMMA|(can|could|would) you|MODAL SELF)* (CARRY|SWITCH|TURN) (over|down|up|out|FILLER|straight)* there"
+_CHECK = (
+    "(so|then|and|AND|please|FILLER|COMMA|MODAL SELF|go_and|WRAPPER)* (CARRY (AND|and|over)?)* "
+    "(check|verify|confirm|investigate|see|have_a_look|take_a_look|have_a_quick_look|look|double_check|SCAN) "
+    "(it|that|this|there|out|up|into|over|around|FILLER|for me|for us|PRON|please)* (STOP|QUESTION|FILLER)*"
+)
+_STATE = "(FILLER)* (DET)? (?P<name>PRESET) (BE|LOOKSLIKE|looks|seems|sounds|gets) (?P<state>_+)"
+"""A statement about a preset: "the main gate looks busy"."""
+
+_PRONOUNS = frozenset({"it", "him", "her", "them", "they", "he", "she"})
+_EXCLUDED = ("NUM", "DEG", "HOME", "QUESTION", "IF", "EVERY", "PRESETNOUN", "WRAPPER", *DIRECTIONS, *MARKERS)
+
+
+def relayed(text: str, presets: tuple[str, ...]) -> str | None:
+    """Return an instruction without the words that relay it, or with its place first; None if it has no such words."""
+    asked = _without_relay(text, presets)
+    placed = _with_place_first(asked or text, presets)
+    return placed or asked
+
+
+def _without_relay(text: str, presets: tuple[str, ...]) -> str | None:
+    """Return the text with "tell me" for "dispatch is asking", and without "Jim asked me to"; None if there is nothing to replace."""
+    lexemes = lexemes_of(text, presets)
+    for i, x in enumerate(lexemes):
+        if i and not lexemes[i - 1].has("STOP", "COMMA", "AND", "BUT") and x.word != "so":
+            continue
+        rest = lexemes[i:]
+        for pattern, words in ((_QUESTION, "tell me "), (_REQUEST, "please ")):
+            match = match_start(pattern, rest)
+            if match is None or match.size >= len(rest) or (words == "please " and not rest[match.size].has(*VERBS)):
+                continue
+            if any(y.has("NOT", "NEGATED", "NONE", "NOONE") for y in rest[: match.size]):
+                continue
+            return f"{text[: x.start]}{words}{text[rest[match.size].start :]}"
+    return None
+
+
+def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
+    """Return the text with the preset of its first statement in front: "go to the crossing. ..."; None for other texts."""
+    lexemes = lexemes_of(text, presets)
+    end = _statement_end(lexemes)
+    said, rest = lexemes[:end], trimmed(lexemes[end:], "STOP", "COMMA", "DASH", "AND", "COLON")
+    if not end or not rest:
+        return None
+    if (state := full_match(_STATE, said)) is not None:
+        name = state["name"][0].preset.replace("-", " ")
+        if full_match(_CHECK, rest) is not None:
+            return f"is the {name} {_joined(text, state['state'])}?"
+        return f"go to the {name}. {text[rest[0].start :]}" if _asks_there(rest) else None
+    if not (match_start(_HEARSAY, said) or is_statement(said) or match_start("(DET)? FREE{1,3} ought to", said)):
+        return None
+    if (placed := _place_in(said)) is None:
+        return _checked(text, said, rest)
+    before, name, after = placed
+    stated = _without_source(before)
+    thing = _thing_in(stated)
+    go = f"go to the {name}. "
+    if (match := match_start(_THERE, rest)) is not None:
+        following = trimmed(rest[match.size :], "AND", "COMMA", "THEN", "STOP", "FILLER")
+        return f"{go}{_with_thing(text, following, thing)}" if following else go
+    if full_match(_CHECK, rest) is not None:
+        question = _question_about(text, (*stated, *after), thing)
+        return f"{go}{question}" if question else None
+    if not any(x.word in {"at", "in", "over_at", "down_at"} for x in said[len(before) :]):
+        return None  # "there is a lad by the breakwater, follow him" may be about the current view
+    if thing and _refers(rest):
+        return f"{go}{_with_thing(text, rest, thing)}"
+    return f"{go}{text[rest[0].start :]}" if _asks_there(rest) else None
+
+
+def _checked(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
+    """Return the question for a statement without a preset that is to be checked: "the gate should be shut. Is it?"."""
+    if _is_excluded(said) or any(
+        x.has("PRESET", "NOT", "NEGATED", "CAMERA", "PICTURE", "VIEWNOUN") or x.word == "lens" for x in said
+    ):
+        return None
+    if full_match(_CHECK, rest) is None and full_match("(FILLER)* BE (it|they|he|she|there|that) (FILLER)* QUESTION", rest) is None:
+        return None
+    stated = _without_source(said)
+    is_seen = bool(stated) and (match_start("there", stated) is not None or (len(stated) < len(said) and is_noun_phrase(stated)))
+    question = _question_about(text, stated, _thing_in(stated) if is_seen else ())
+    everywhere = " anywhere" if any(x.has("SCAN", "AROUND") for x in rest) else ""
+    return question.replace("?", f"{everywhere}?") if question else None
+
+
+def _without_source(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return a statement without the words that say where it comes from."""
+    source = match_start(_HEARSAY, lexemes)
+    return lexemes[source.size :] if source else lexemes
+
+
+def _question_about(text: str, stated: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
+    """Return the question whether a statement is true: "are the lights out?", "is there a dog?"; None if it has no such question."""
+    if match_start("(there BE)? (SOMEONE|NOONE) (BE|HAVEV|'s|\\Z)", stated):
+        return "is there anyone?"
+    is_or_should_be = "((MODAL|should|ought to) (FILLER)* be|BE)"
+    match = full_match(f"(FILLER)* (?P<subject>(DET)? FREE{{1,3}}?) {is_or_should_be} (?P<state>(?!being) _+?) (by? NOW)?", stated)
+    if match is not None and is_noun_phrase(match["subject"]):
+        subject = _without_capital(_joined(text, match["subject"]))
+        return f"{'are' if is_plural(match['subject'][-1].word) else 'is'} {subject} {_joined(text, match['state'])}?"
+    return f"is there {_without_capital(_joined(text, thing))}?" if thing else None
+
+
+def _statement_end(lexemes: Sequence[Lexeme]) -> int:
+    """Return the number of lexemes of the statement at the beginning, which ends at a full stop, or after a preset; 0 for none."""
+    for i, x in enumerate(lexemes):
+        if x.has("QUESTION"):
+            return 0
+        is_break = x.has("COMMA", "DASH") or x.word == "so"
+        has_preset = any(y.has("PRESET") for y in lexemes[:i])
+        if x.has("STOP") or (is_break and (has_preset or full_match(_CHECK, lexemes[i:]) is not None)):
+            return i
+    return 0
+
+
+def _asks_there(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are one question that names no preset: "how many people are there?"."""
+    ends = [i for i, x in enumerate(lexemes) if x.has(*_ENDS)]
+    is_one = not ends or ends[0] == len(lexemes) - 1
+    return is_one and any(x.word == "there" for x in lexemes) and is_question(lexemes) and not any(x.has("PRESET") for x in lexemes)
+
+
+def _place_in(lexemes: Sequence[Lexeme]) -> tuple[Sequence[Lexeme], str, Sequence[Lexeme]] | None:
+    """Return the words before the only preset of a statement, its name, and the words after it; None for other statements."""
+    if sum(x.has("PRESET") for x in lexemes) != 1 or _is_excluded(lexemes):
+        return None
+    for start in range(len(lexemes)):
+        match = match_start(_PLACE, lexemes[start:])
+        if match is not None and start:
+            return lexemes[:start], match["name"][0].preset.replace("-", " "), lexemes[start + match.size :]
+    return None
+
+
+def _is_excluded(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a statement contains a number, a direction, a condition or the like, none of which may be lost."""
+    for i, x in enumerate(lexemes):
+        before = lexemes[i - 1] if i else None
+        after = lexemes[i + 1] if i + 1 < len(lexemes) else None
+        if not x.has(*_EXCLUDED) or x.has("PRESET") or before is None:
+            continue
+        is_verb = x.word == "left" and before.has("SELF", "PRON", "SOMEONE", "FREE") and after is not None and after.has("DET")
+        is_state = x.has("UP", "DOWN") and before.has("BE") and after is None
+        is_modal = x.word == "should" and after is not None and after.has("BE")
+        if not (is_verb or is_state or is_modal):
+            return True
+    return bool(lexemes) and lexemes[0].has(*_EXCLUDED) and not lexemes[0].has("PRESET")
+
+
+def _joined(text: str, *parts: Sequence[Lexeme]) -> str:
+    return " ".join(text[part[0].start : part[-1].end] for part in parts if part)
+
+
+def _with_thing(text: str, lexemes: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str:
+    """Return the words from the first of some lexemes on, with the thing in place of the first pronoun."""
+    pronoun = next((x for x in lexemes if x.word in _PRONOUNS), None)
+    if pronoun is None or not thing or not _refers(lexemes):
+        return text[lexemes[0].start :]
+    named = thing[1:] if thing[0].has("DET") and len(thing) > 1 else thing
+    words = "the person" if thing[0].has("SOMEONE") else f"the {_without_capital(_joined(text, named))}"
+    return f"{text[lexemes[0].start : pronoun.start]}{words}{text[pronoun.end :]}"
+
+
+def _without_capital(text: str) -> str:
+    return text[:1].lower() + text[1:] if text[1:2].islower() or text[1:2] == " " else text
+
+
+def _refers(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the first clause names the thing of the statement by a pronoun, and names no preset."""
+    clause: list[Lexeme] = []
+    for x in lexemes:
+        if x.has(*_ENDS):
+            break
+        clause.append(x)
+    return any(x.word in _PRONOUNS for x in clause) and not any(x.has("PRESET") for x in lexemes)
+
+
+def _thing_in(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return the thing that a statement is about: "a dog" in "we had a call about a dog"; none if it cannot be told."""
+    for pattern in ("there (MODAL)? (BE|be|HAVEV been)+ (?P<thing>_+)", "(?P<thing>_+?) (MODAL)? (BE|be|been|HAVEV)+ _*"):
+        if (match := full_match(pattern, lexemes)) is not None and is_noun_phrase(match["thing"]):
+            return match["thing"]
+    if lexemes and lexemes[0].has("DET") and is_noun_phrase(lexemes) and not is_statement(lexemes):
+        return lexemes
+    for start in range(1, len(lexemes)):
+        last = lexemes[start - 1]
+        begins = last.word in {"of", "about"} or (lexemes[start].has("DET") and not last.has("PREP"))
+        tail = lexemes[start:]
+        if begins and is_noun_phrase(tail) and not any(x.word in {"of", "about"} for x in tail):
+            return tail
+    return ()
