@@ -133,7 +133,7 @@ class Resolver:
             raise UnresolvedError(f"What shall I look for {thing.text}?")
         if thing.not_an_object and not (_ONES.search(thing.text) and self.antecedent):
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
-        if thing.text.endswith((" one", " ones")) and not self.antecedent:
+        if (thing.text.endswith((" one", " ones")) or thing.text.startswith("ones ")) and not self.antecedent:
             raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
         if thing.text:
             text = self._with_noun(thing.text)

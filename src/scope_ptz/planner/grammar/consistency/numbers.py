@@ -45,7 +45,8 @@ def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
             360 * first.value * second.value,  # "three quarters of the way round"
             60 * first.value + second.value,  # "1 minute 30 seconds"
         )
-        if first in unmatched and second in unmatched and any(_found(value, left) for value in together):
+        is_time = _found(together[-1], evidence.numbers)
+        if second in unmatched and (is_time or (first in unmatched and any(_found(value, left) for value in together))):
             unmatched = [claim for claim in unmatched if claim not in (first, second)]
     return [word for claim in unmatched for word in claim.words]
 

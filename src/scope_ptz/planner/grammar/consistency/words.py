@@ -31,6 +31,9 @@ _NEGATING = frozenset(
 
 _BREAKS = frozenset(",;:.!?()\n&→–—") | {"->", "and", "then", "but", "or", "so", "just"}
 
+_ASKING = frozenset({"could", "can", "would", "will"})
+"""Words that begin a request if "you" follows: "if it is not too much bother could you ..."."""
+
 
 @dataclass(slots=True)
 class Word:
@@ -76,7 +79,7 @@ def _mark_negated(words: list[Word]) -> None:
     is_negated = False
     for i, word in enumerate(words):
         contracted = word.text == "t" and i > 0 and words[i - 1].end + 1 == word.start
-        if word.is_break:
+        if word.is_break or (word.text in _ASKING and [w.text for w in words[i + 1 : i + 2]] == ["you"]):
             is_negated = False
         elif (
             contracted

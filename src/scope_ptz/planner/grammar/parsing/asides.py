@@ -197,6 +197,8 @@ def _is_command(lexemes: Sequence[Lexeme]) -> bool:
 
 def is_courtesy(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "if" are only polite: "it's not too much trouble", "you don't mind"."""
+    if any(x.has("PRESET", "HOME", "NUM", "DEG", *DIRECTIONS) for x in lexemes):
+        return False
     return bool(full_match(_FINE, lexemes))
 
 

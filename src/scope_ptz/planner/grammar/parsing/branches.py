@@ -21,7 +21,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstood
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
@@ -71,6 +71,10 @@ class Branches(ClauseReading):
         is_if = clause.marker in {"IF", "WHEN", "UNLESS"}
         if is_if and isinstance(condition, Statement) and (place := occupied_place(self.reader.source, clause.lexemes)) is not None:
             places = (place,)
+        if is_if and isinstance(condition, Statement) and (inside := without_inner_place(self.reader.source, clause.lexemes)):
+            source, words, place = inside
+            if isinstance(stated := condition_of(source, words), Statement):
+                condition, places = stated, (place,)  # "if the barrier at the crossing is up"
         if inner is not None and found is not None:
             condition, places = inner, found
         if condition is None or (isinstance(condition, Seen) and condition.thing.text in {"something", "anything"}):

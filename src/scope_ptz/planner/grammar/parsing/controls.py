@@ -26,6 +26,8 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
         lexemes,
     ):
         return (Forbid(),)  # "otherwise do nothing", "take no photos"
+    if full_match("(FILLER)* (never mind|(cancel|forget|scrap|scratch|drop|leave) (that|it)) (FILLER)*", lexemes):
+        return (Forbid(),)
     if match_start(_NEGATION, lexemes) and not match_start("NEGATED (more)? (FREE|PRESETNOUN) BE", lexemes):
         return _forbidden(lexemes)
     if full_match("(FILLER)* (STAY|STAY-ING) (FILLER|there|here|where|SELF|BE|CAMERA|still|DET|VIEWNOUN|this|put|as)*", lexemes):

@@ -11,12 +11,14 @@ from scope_ptz.planner.grammar.instruction_tree import (
     AtIntervals,
     AtPlaces,
     Between,
+    Count,
     EachTime,
     Forbid,
     GoToPreset,
     Home,
     Move,
     PresetRef,
+    Read,
     Repeat,
     Report,
     Rescope,
@@ -40,7 +42,7 @@ from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_st
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
@@ -198,9 +200,11 @@ class Reader:
             return (AtPlaces(places, self.read(rest, asked=asked), is_fronted=True),)
         if search("THAN|than|COMPARE", lexemes):
             return None
-        if lexemes[0].has("BE") and (place := occupied_place(self.source, lexemes)) is not None:
+        if lexemes[0].has("BE", "WHQ") and (place := occupied_place(self.source, lexemes)) is not None:
             return (AtPlaces((place,), (Ask(f"{text_of(self.source, lexemes)}?"),)),)
         rest, places = place_after(self.source, without_sum(lexemes))
+        if places is None and (inner := self._place_of_subject(lexemes, asked)) is not None:
+            return inner
         if places is None or not rest:
             return None
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
@@ -221,6 +225,19 @@ class Reader:
         if not body or any(isinstance(step, Forbid | Report) for step in body):
             return None
         return (AtPlaces(places, body),)
+
+    def _place_of_subject(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+        """Read "is the barrier at the crossing up?" as a question at the preset."""
+        if not (asked or is_question(lexemes) or lexemes[0].has("TELL")):
+            return None
+        if (found := without_inner_place(self.source, lexemes)) is None:
+            return None
+        source, rest, place = found
+        try:
+            steps = Reader(source).read(rest, asked=asked)
+        except NotUnderstoodError:
+            return None
+        return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask | Count | Read) for step in steps) else None
 
     def _plain(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
         """Read a clause without adjuncts."""

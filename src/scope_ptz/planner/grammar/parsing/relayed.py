@@ -35,13 +35,17 @@ _HEARD = (
     "reports|reported|mentioned|noticed|claims|(told|telling|tells) (me|us)?)"
 )
 _HEARSAY = (
-    f"(FILLER|COMMA)* ((({_OTHERS}|i|we) {_AUXILIARIES} {_HEARD}|(i|we) HAVEV been told|(i|we) (was|were) told) (that)? ((they|he|she) (SEE-ED|spotted|noticed))?|i_think|"
+    f"(FILLER|COMMA)* ((({_OTHERS}|i|we) {_AUXILIARIES} {_HEARD}|(i|we) HAVEV been told|(i|we) (was|were) told) (that)? "
+    "((they|he|she) (SEE-ED|spotted|noticed))?|i_think|"
     "(it (looks|seems|sounds) (like|as_if|as_though|that)?|apparently|looks like|seems like|sounds like))"
 )
 """Words before a statement that say where it comes from: "my deputy reckons", "it looks like"."""
 
 _PLACE = "(over|FILLER)* (at|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) (DET)? (?P<name>PRESET) PRESETNOUN?"
-_THERE = "(so|then|and|AND|please|FILLER|COMMA|(can|could|would) you|MODAL SELF)* (CARRY|SWITCH|TURN) (over|down|up|out|FILLER|straight)* there"
+_THERE = (
+    "(so|then|and|AND|please|FILLER|COMMA|(can|could|would) you|MODAL SELF)* "
+    "(CARRY|SWITCH|TURN) (over|down|up|out|FILLER|straight)* there"
+)
 _CHECK = (
     "(so|then|and|AND|please|FILLER|COMMA|MODAL SELF|go_and|WRAPPER)* (CARRY (AND|and|over)?)* "
     "(check|verify|confirm|investigate|see|have_a_look|take_a_look|have_a_quick_look|look|double_check|SCAN) "
@@ -62,7 +66,7 @@ def relayed(text: str, presets: tuple[str, ...]) -> str | None:
 
 
 def _without_relay(text: str, presets: tuple[str, ...]) -> str | None:
-    """Return the text with "tell me" for "dispatch is asking", and without "Jim asked me to"; None if there is nothing to replace."""
+    """Return the text with "tell me" for "dispatch is asking", and without "Jim asked me to"; None for other texts."""
     lexemes = lexemes_of(text, presets)
     for i, x in enumerate(lexemes):
         if i and not lexemes[i - 1].has("STOP", "COMMA", "AND", "BUT") and x.word != "so":
@@ -133,8 +137,8 @@ def _without_source(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _question_about(text: str, stated: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
-    """Return the question whether a statement is true: "are the lights out?", "is there a dog?"; None if it has no such question."""
-    if match_start("(there BE)? (SOMEONE|NOONE) (BE|HAVEV|'s|\\Z)", stated):
+    """Return the question whether a statement is true: "are the lights out?", "is there a dog?"; None for other statements."""
+    if not thing and match_start("(there BE)? (SOMEONE|NOONE) (BE|HAVEV|'s|\\Z)", stated):
         return "is there anyone?"
     is_or_should_be = "((MODAL|should|ought to) (FILLER)* be|BE)"
     match = full_match(f"(FILLER)* (?P<subject>(DET)? FREE{{1,3}}?) {is_or_should_be} (?P<state>(?!being) _+?) (by? NOW)?", stated)
@@ -181,7 +185,12 @@ def _is_excluded(lexemes: Sequence[Lexeme]) -> bool:
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
         if not x.has(*_EXCLUDED) or x.has("PRESET") or before is None:
             continue
-        is_verb = x.word == "left" and before.has("SELF", "PRON", "SOMEONE", "FREE") and after is not None and after.has("DET")
+        is_verb = (
+            x.word == "left"
+            and before.has("SELF", "PRON", "SOMEONE", "FREE", "HAVEV", "BE")
+            and after is not None
+            and after.has("DET")
+        )
         is_state = x.has("UP", "DOWN") and before.has("BE") and after is None
         is_modal = x.word == "should" and after is not None and after.has("BE")
         if not (is_verb or is_state or is_modal):
@@ -220,7 +229,8 @@ def _refers(lexemes: Sequence[Lexeme]) -> bool:
 def _thing_in(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return the thing that a statement is about: "a dog" in "we had a call about a dog"; none if it cannot be told."""
     for pattern in ("there (MODAL)? (BE|be|HAVEV been)+ (?P<thing>_+)", "(?P<thing>_+?) (MODAL)? (BE|be|been|HAVEV)+ _*"):
-        if (match := full_match(pattern, lexemes)) is not None and is_noun_phrase(match["thing"]):
+        is_someone = bool(lexemes) and lexemes[0].has("SOMEONE") and len(lexemes) > 2
+        if not is_someone and (match := full_match(pattern, lexemes)) is not None and is_noun_phrase(match["thing"]):
             return match["thing"]
     if lexemes and lexemes[0].has("DET") and is_noun_phrase(lexemes) and not is_statement(lexemes):
         return lexemes

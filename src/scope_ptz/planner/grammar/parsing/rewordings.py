@@ -9,13 +9,16 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
+from scope_ptz.planner.grammar.parsing.preset_rewordings import with_presets_reworded
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
 _ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
 
 _AIMED = frozenset({"aimed", "pointed", "turned", "looking", "facing", "pointing"})
-_VERBS_AND_NOUNS = ("AIM", "CARRY", "FIND", "SHOW", "SWITCH", "TRACK", "TURN")
+_VERBS_AND_NOUNS = tuple(
+    form for verb in ("AIM", "CARRY", "FIND", "SHOW", "SWITCH", "TRACK", "TURN") for form in (verb, f"{verb}-S")
+)
 """Classes of verbs that can also be nouns, such as "train", "head", "frame" and "swing"."""
 
 _PLACES_FIRST = (
@@ -24,6 +27,12 @@ _PLACES_FIRST = (
     " (?P<go>(CARRY (there|to them|to each) (COMMA|AND)+))?"
 )
 """Several places before what is done at each of them."""
+
+_COUNT_AT_LIST = (
+    "(FILLER|WRAPPER|SELF|need|want)* (DET)? (COUNTNOUN|COUNT|HOWMANY) (DET|FREE){1,4} (FILLER|COMMA)* (?P<end>COLON|COMMA|DASH) "
+    "(EVERY PRESETNOUN|(DET)? PRESET ((COMMA|AND)+ (DET)? PRESET)+) (FILLER|STOP|QUESTION)* \\Z"
+)
+"""A count, and the list of places for it: "numbers of people: main lift, ticket office, bus bay"."""
 
 _WANTED_PICTURE = (
     "(FILLER)* ((DET)? FREE{1,2} (wants|needs|WRAPPER)|WRAPPER|SELF (want|need)) (DET|ANY|NUM|SEVERAL)? PICTURE of _+?"
@@ -34,7 +43,8 @@ _WANTED_PICTURE = (
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
-    lexemes = _picture_wanted_first(_at_places_first(lexemes))
+    lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
+    lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
@@ -58,6 +68,22 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [_as(x, *changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
+def _without_yes_or_no(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with a question mark for "yes or no" at the end: "kids on the crossing, yes or no"."""
+    ending = [x.word for x in lexemes[-4:] if not x.has("STOP", "QUESTION")][-3:]
+    if ending != ["yes", "or", "no"] or len(lexemes) < 6:
+        return lexemes
+    first = next(i for i in range(len(lexemes) - 1, -1, -1) if lexemes[i].word == "yes")
+    kept = lexemes[: first - 1] if lexemes[first - 1].has("COMMA", "DASH", "COLON", "STOP") else lexemes[:first]
+    return [*kept, _as(lexemes[first], "?", "QUESTION")]
+
+
+def _count_at_list(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "count people at the gate and the yard" for "count people: the gate, the yard"."""
+    match = match_start(_COUNT_AT_LIST, lexemes)
+    return lexemes if match is None else [_as(x, "at", "PREP", "GLUE") if x is match["end"][0] else x for x in lexemes]
+
+
 def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with "go to the gate, take one" for "he wants a picture of a van at the gate. Go there, take one"."""
     match = match_start(_WANTED_PICTURE, lexemes)
@@ -72,7 +98,7 @@ def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
     """Return the lexemes that replace one of them, or that lexeme itself."""
     last = before[-1] if before else None
-    if _is_noun_here(before, lexeme):
+    if _is_noun_here(before, lexeme) and not (before[-1].has("NONE") and after is not None and after.has("DET", "PRON")):
         return [_as(lexeme, lexeme.word, "FREE")]  # "is there a train at the crossing?"
     if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
         way = [] if last.has("IN", "ENLARGE") else [_as(lexeme, "in", "IN", "GLUE")]
@@ -89,6 +115,8 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
         return [_as(lexeme, "at", "PREP", "GLUE"), _as(lexeme, "each_of", "EVERY")]  # "take a picture at each: gate, yard"
     if lexeme.has("COLON") and last is not None and last.word == "each_of":
         return []
+    if lexeme.word in {"last", "lastly"} and last is not None and last.has("COMMA", "AND") and _is_place_next(after):
+        return [_as(lexeme, "finally", "FIRSTLY")]  # "first the gate, then the yard, last the dock"
     if lexeme.word == "at_each" and last is not None and last.has("BE") and _counts_on_tour(before):
         return [_as(lexeme, "there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
@@ -102,6 +130,10 @@ def _is_noun_here(before: Sequence[Lexeme], lexeme: Lexeme) -> bool:
         return False
     exists = match_start("(BE there|there BE)", before[-3:-1]) is not None
     return (exists and lexeme.has(*_VERBS_AND_NOUNS)) or (lexeme.has("AIM") and is_noun(lexeme.word))
+
+
+def _is_place_next(after: Lexeme | None) -> bool:
+    return after is not None and (after.has("PRESET", "HOME") or after.word in {"the", "to", "at"})
 
 
 def _counts_on_tour(before: Sequence[Lexeme]) -> bool:

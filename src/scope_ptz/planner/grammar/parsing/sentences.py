@@ -90,6 +90,8 @@ class Sentences(Tours):
                 return []
             case "":
                 return self._main(clause)
+            case "WHILE" if _is_meanwhile(clause):
+                return []
             case "WHILE" | "UNTIL":
                 return [Linked(clause.link, self._loop_ahead(clause))]
             case "IF" if is_courtesy(clause.lexemes):
@@ -175,13 +177,16 @@ class Sentences(Tours):
         done = there.body if there is not None and there.body else steps
         if after.marker in {"UNTIL", "WHILE"} and self._is_place(clause):
             return self._ended(clause, steps)  # "at the gate, until you see a van, pan right 10"
-        if after.marker == "UNTIL" or (after.marker == "WHILE" and after.link in {"", ","}):
+        if after.marker == "UNTIL" or (after.marker == "WHILE" and after.link in {"", ","} and not _is_meanwhile(after)):
             return [Linked(clause.link, _with_body(there, self._loop(clause, done)))]
         if (bound := bound_of(after)) is not None and (until := self._peek(1)) is not None and until.marker == "UNTIL":
             self._take()
             loop = self._loop(clause, steps)
             return [Linked(clause.link, replace(loop, bound=bound) if isinstance(loop, Loop) else loop)]
         is_too_hard = all(isinstance(step, Ask | Read) for step in steps) and bool(steps) and is_ability(after.lexemes)
+        if after.marker == "WHILE" and _is_meanwhile(after):
+            self._take()
+            return self._ended(clause, steps)
         if after.marker == "IF" and (is_courtesy(after.lexemes) or is_too_hard):
             self._take()
             return self._ended(clause, steps)
@@ -251,6 +256,12 @@ class Sentences(Tours):
         if clause.marker == "BEFORE":
             return [Linked("then", s) for s in (*block, *other)]
         return [Linked("then", s) for s in (*other, *block)]
+
+
+def _is_meanwhile(clause: Clause) -> bool:
+    """Return whether "while" says what the speaker does meanwhile: "while I make a brew"."""
+    seen = ("SEE", "SEE-ING", "VISIBLE", "VIEWNOUN", "PICTURE", "NUM", "PRESET", "HOME", "DEG", "NOT")
+    return bool(clause.lexemes) and clause.lexemes[0].word in {"i", "we"} and not any(x.has(*seen) for x in clause.lexemes)
 
 
 def _begins_at_place(clause: Clause) -> bool:

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, NotUnderstoodError, Source, text_of, trimmed
 from scope_ptz.planner.grammar.parsing.parts.courtesy import completes_question
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import PROPERTIES, is_noun_phrase, thing_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import PROPERTIES, is_noun, is_noun_phrase, thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
@@ -72,6 +72,8 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
             return f"{text}?"
     if full_match("FREE{1,3}", lexemes) and is_plural(lexemes[-1].word) and is_noun_phrase(lexemes):
         return f"Are there any {continued(text)}?"  # "people (at the gate)?"
+    if full_match("FREE{1,2}", lexemes) and is_noun(lexemes[-1].word) and is_noun_phrase(lexemes):
+        return f"Is there any {continued(text)}?"  # "queue (at the gate)?"
     return None
 
 
@@ -153,6 +155,9 @@ def question_step(
     )
     if told:
         rest = told["rest"]
+        nobody = full_match("(that)? NOONE BE (?P<where>_*)", rest)
+        if nobody is not None and not search(_NO_TOPIC, rest):
+            return Ask(f"Is anyone {text_of(source, nobody['where']) or 'there'}?", scope)  # "make sure nobody is on the track"
         if (
             rest[0].has("IF", "IFSO", "WHEN", "WHQ", "REL")
             or rest[0].word in {"whether", "if", "that", "about"}
@@ -168,6 +173,8 @@ def question_step(
             and not search(_NO_TOPIC, rest)
         ):
             return Ask("whether " + text_of(source, rest) + end, scope, embedded=True)  # "make sure the gate is shut"
+        if match_start("there BE (not)? (NONE|no|ANY|DET) _", rest) and not search(_NO_TOPIC, rest[3:]):
+            return Ask("whether " + text_of(source, rest) + end, scope, embedded=True)  # "confirm there are no vehicles"
         if rest[0].word in PROPERTIES and match_start("_ (of|on|for)", rest) and not search(_NO_TOPIC, rest):
             return Ask(f"the {text_of(source, rest)}{end}", scope, embedded=True)  # "confirm colour of the beacon"
         if not search(_NO_TOPIC, rest) and rest[0].word in {"the", "its", "their", "his", "her", "this", "that"}:

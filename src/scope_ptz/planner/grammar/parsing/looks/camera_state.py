@@ -52,7 +52,12 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         "(NOW|FILLER)*",
         lexemes,
     )
-    if is_at_preset or is_zoomed:
+    is_facing = full_match(
+        "(FILLER)* (which|what|WHQ) (way|direction) BE (SELF|CAMERA|it|DET CAMERA) "
+        "(looking|facing|pointing|AIM-ING|aimed|NOW|FILLER)+",
+        lexemes,
+    )
+    if is_at_preset or is_zoomed or is_facing:
         return CameraState()  # "which preset are we on?", "how far are you zoomed in?"
     if full_match(r"(FILLER)* HELP (FILLER)*", lexemes):
         return Help()

@@ -92,7 +92,8 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read comparisons of presets."""
     listing = r"(COMMA|COLON|DASH|between|out of|of|at|OPEN)* (?P<places>_+?) (CLOSE)?"
     patterns = (
-        rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) ((on|at|in) it)? ((COMMA|COLON|DASH|OPEN|of)+ {listing})?",
+        rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) ((on|at|in) it)? "
+        rf"((COMMA|COLON|DASH|OPEN|of)+ {listing})?",
         rf"{_SKIP} {_WHICH} {_SHOWS}? (can|do|does)? (SELF)? (SEE)? {_WAY} (?P<thing>_+?) (?P<places>(DET)? PRESET "
         rf"_*? (or|and) _+)",
         rf"(SWITCH|CARRY|SHOW|AIM|TAKE|me|us|to|at|FILLER|COMMA)* whichever (PRESETNOUN|one)? (of)? (?P<places>_+?)? "
@@ -127,7 +128,8 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         rf"{_SKIP} how DOV (?P<one>_+?) COMPARE (to|with|THAN)+ (?P<other>_+?) (for|in|on) (number of|COUNTNOUN)* (?P<thing>_+)",
         (
-            rf"{_SKIP} (PRESETNOUN|PRESETNOUN with|CARRY to|SWITCH|to|the|go to|show me)* (PRESETNOUN|one|WHQ|"
+            rf"{_SKIP} (PRESETNOUN|PRESETNOUN with|(CARRY|TAKE) (me|us)? (over|back)? to|SWITCH|to|the|go to|show me)* "
+            rf"(PRESETNOUN|one|WHQ|"
             rf"whichever|place|view) (PRESETNOUN|one|view)? (with|that has|that shows|has|shows|that SHOW-S|{_SHOWS}) "
             rf"{_WAY} (?P<thing>_+?) ((COMMA|COLON|DASH|OPEN|of)+ {listing})?"
         ),

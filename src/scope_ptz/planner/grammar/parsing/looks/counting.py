@@ -19,8 +19,8 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, thing_of, things_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, is_noun, is_noun_phrase, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
 
@@ -143,6 +143,8 @@ def _counted(
         things = things_of(source, match["thing"])
         if things:
             return Count(things, view)
+    if how is not None and match_start("(in|on|at) DET FREE", rest):
+        return Count((Thing(f"people {text_of(source, rest)}"),), view)  # "how many in the queue?"
     if how is not None and (those := _count_those(source, rest, view)):
         return those
     if things := things_of(source, rest):
@@ -178,10 +180,17 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
         return None
     if words and words[0].word in {"we", "i", "you"}:
         return None
+    if not thing.text and not negated and words and is_plural(words[-1].word) and is_noun_phrase(words):
+        return Count((Thing(text),), view)  # "how many of them are reefers"
     if not thing.text:
-        return Count((Thing(f"{'not ' if negated else ''}{text} ones"),), view)
+        is_acting = bool(words) and words[0].word.endswith("ing")
+        return Count(
+            (Thing(f"ones {'not ' if negated else ''}{text}" if is_acting else f"{'not ' if negated else ''}{text} ones"),), view
+        )
     if any(x.has("HAVEV", "DOV") for x in verb) and not any(x.has("BE", "SELF") for x in verb):
         return Count((Thing(f"{thing.text} {'without' if negated else 'with'} {text}"),), view)
+    if len(words) == 1 and words[0].has("FREE") and is_plural(text) and is_noun(words[0].word) and not negated:
+        return Count((Thing(text),), view)  # "how many of the people are children?"
     adjective = (
         len(words) == 1 and (words[0].has("FREE") or words[0].word in {"open", "shut"}) and not text.endswith("ing") and not negated
     )

@@ -32,6 +32,7 @@ _TAIL = (
     r"(FILLER|on (DET)? VIEWNOUN|on|screen|up|now|please|VIEWNOUN|PRESETNOUN|again|first|next|instead|INSTEAD|AGAINWORD|SELF|"
     r"FIRSTLY|VISIBLE|QUOTE|INTURN|over|COMMA (?=over)|CAMERA|ORDINAL|for|me|is|what|i|need|want|NOW)*"
 )
+_SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
 _HOW = {"SHOW": "show", "AIM": "look", "USE": "use"}
 
 
@@ -188,6 +189,8 @@ def unknown_place(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         return None
     words = {x.word for x in lexemes}
     name = text_of(source, match["name"])
+    if name.lower() in _SUPERLATIVES:
+        return Unclear("What shall I count to tell which is busier: vehicles or people?")  # "go to the busiest preset"
     marked = match.has("marked") or any(x.has("PRESETNOUN") for x in lexemes)
     if match["name"][0].has("PREP", "AND") and not marked:
         return None

@@ -82,6 +82,7 @@ _FOR_WHOM = (
 _MEANT_IN_QUESTIONS = frozenset({
     "today", "tonight", "morning", "evening", "afternoon", "good", "great", "nice", "lovely", "perfect", "excellent",
     "brilliant", "quick", "slow", "smooth", "quickly", "slowly", "careful", "control", "fine", "cool", "sure", "fair",
+    "ok", "okay", "all_right", "alright", "well",
 })  # fmt: skip
 
 

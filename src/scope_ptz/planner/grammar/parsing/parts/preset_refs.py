@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from scope_ptz.planner.grammar.instruction_tree import (
     PresetRef,
 )
-from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
+_APOSTROPHES = frozenset("'’")
 _PRESETS_NAMED = re.compile(r"\b(?:preset|position|view|bookmark|viewpoint|waypoint|location|spot|place|stop)s?\b", re.IGNORECASE)
 PLACE = (
     r"((DET)? (PRESETNOUN)? (CALLED|(for|of) (DET)?)? (QUOTE)? (?P<name>PRESET) (QUOTE)?"
@@ -53,9 +55,34 @@ def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | Non
     match = full_match(
         f"((?P<place>_{{1,3}}?) {_IS}|{_IS} (?P<asked>_{{1,3}}?)) (ADVERB|FILLER|not|NOW|still)* (?P<state>FREE|_)", lexemes
     )
+    described = full_match(
+        "(FILLER)* (how BE (?P<place>_{1,3}?) (looking|doing|AIM-ING|FILLER|NOW)*|"
+        "what BE (?P<place2>_{1,3}?) (looking)? like (FILLER|NOW)*|"
+        f"how ({'|'.join(sorted(_OCCUPANCY))}) (BE|'s) (?P<place3>_{{1,3}}?) (FILLER|NOW)*)",
+        lexemes,
+    )
+    if described is not None:
+        return place_of(source, described["place"] or described["place2"] or described["place3"])  # "how is the yard looking?"
     if match is None or match["state"][0].word not in _OCCUPANCY:
         return None
     return place_of(source, match["place"] or match["asked"])
+
+
+def without_inner_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Source, tuple[Lexeme, ...], PresetRef] | None:
+    """Return "is the barrier up?" and the preset for "is the barrier at the crossing up?"; None for other clauses.
+
+    The words are returned as a text of their own with its lexemes.
+    """
+    match = full_match("(?P<before>_+? FREE) (?P<at>at (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
+    if match is None or sum(x.has("PRESET") for x in lexemes) > 1 or not any(x.has("BE", "HAVEV", "DOV") for x in lexemes):
+        return None
+    before, after, place = match["before"], match["after"], place_of(source, match["at"])
+    is_noun_next = after[0].has("PREP") and len(after) > 1 and not after[0].word.endswith("ing")
+    if place is None or after[0].has("COMMA", "AND", "OR") or is_noun_next:
+        return None
+    rest = text_of(source, after)
+    text = f"{text_of(source, before)} {f'is{rest[2:]}' if after[0].has('BE') and rest[0] in _APOSTROPHES else rest}"
+    return replace(source, text=text), lexemes_of(text, source.presets), place
 
 
 def places_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[PresetRef, ...] | None:

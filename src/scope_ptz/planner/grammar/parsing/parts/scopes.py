@@ -26,7 +26,8 @@ _FIXED_TO_THINGS = frozenset({
 _PARTS_OF_DAY = frozenset({"morning", "afternoon", "evening", "arvo", "minute", "moment", "time", "week"})
 _PARTICLES = frozenset({"over", "up", "off", "out", "down", "away", "in"})
 _AT_PRESENT = frozenset({
-    "now", "right_now", "currently", "at_the_moment", "at_present", "just_now", "at_this_moment", "presently", "this_instant", "at_the_mo",
+    "now", "right_now", "currently", "at_the_moment", "at_present", "just_now", "at_this_moment", "presently", "this_instant",
+    "at_the_mo",
     "at_the_minute", "at_this_point", "this_moment",
 })  # fmt: skip
 
@@ -37,7 +38,7 @@ _TIMES = (
 MAX_TIMES = 50
 SECONDS = (
     r"((?P<a>DET|about|AMOUNTISH|next)* (?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
-    r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS)?)"
+    r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS?)?)"
 )
 
 

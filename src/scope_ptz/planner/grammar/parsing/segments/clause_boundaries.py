@@ -44,6 +44,12 @@ _COMMANDS = (
 )
 """Beginnings of commands that follow a condition without a comma: "if the gate is shut head over to the yard"."""
 
+_NO_TROUBLE = (
+    "(it|that|this) (BE|MODAL be) (not)? (too|such|any|a|DET|LITTLE|LOT|much|FILLER|of)* "
+    "(bother|trouble|problem|hassle|inconvenience|imposition|much|all_right|ok|okay|possible|convenient|FILLER)"
+)
+"""Polite words after "if", which a question may follow without a comma."""
+
 _BEFORE_THAT = frozenset({
     "so", "think", "believe", "reckon", "say", "says", "said", "sure", "guess", "hope", "know", "mean", "means", "suppose",
     "see", "like",
@@ -142,6 +148,8 @@ class ClauseBoundaries(SubordinateClauses):
         if not match_start("_ (DET|PRON)", self.lexemes[i:]):
             return False
         is_complete = any(x.has("BE", "HAVEV", "SEE") for x in self.now[:-1])
+        if full_match("there BE (not_any|NONE|none|no)", self.now):
+            return True  # "if there aren't any check the bus bay"
         return (
             is_complete
             and self.now[-1].has("FREE", "ADVERB", "VISIBLE", "NUM", "PRON", "PRESET")
@@ -164,6 +172,8 @@ class ClauseBoundaries(SubordinateClauses):
             return False  # "a people count at every preset"
         if self._ends_condition(i) or self._begins_remark(i):
             return True
+        if self.marker == "IF" and full_match(_NO_TROUBLE, self.now) and match_start("(MODAL|DOV) SELF", self.lexemes[i:]):
+            return True  # "if it is not too much bother could you ..."
         if self.marker in {"IF", "UNLESS"} and search("BE|HAVEV|SEE", self.now[:-1]):
             takes = "get (me|us) DET? (PICTURE|CLOSER|FREE)"
             allows = "SELF (can|may|should|must) (PAN|TILT|ZOOM|TURN|CARRY|SWITCH|TAKE|TRACK|COUNT)"

@@ -147,7 +147,7 @@ STATEMENT = (
 
 
 STARTS = (
-    r"(park (CAMERA|it|at|DET|SELF|\Z)|up to NUM|"
+    r"((wait|hold|remain) (there|here)|park (CAMERA|it|at|DET|SELF|\Z)|up to NUM|"
     r"(another|one|another_one) (of|at|from) DET? PRESET|(do|MODAL) not|HOME|SNAP|PICTURE|ANOTHER (PICTURE|"
     r"DET)?\Z|DET ANOTHER|EACHTIME|ATMOST|REASON|"
     r"NEGATED|RESET|REPEAT|BETWEENEACH|AGAINWORD|UNDO|WIDE|TIGHT|CLOSER|WIDER|FULL|RESETZOOM|BACK|SCAN|"

@@ -1,0 +1,43 @@
+"""Replace wordings about every preset by others that mean the same, so that the rules for those also read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+
+_CHECKED_FIRST = (
+    "(FILLER|AND|COMMA|SHOW|SWITCH|CARRY|AIM|SCAN|SELF|at|through|to|over|round|around|AROUND)* "
+    "EVERY (of|DET|SELF|single)* PRESETNOUN "
+    "(AND|COMMA|THEN)+ (?P<asked>TELL|SHOW|LISTING) (me|us)? (?P<which>which) (?P<ones>ones|one)"
+)
+"""Words that go to every preset before the question which of them show something."""
+
+
+def with_presets_reworded(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "at every preset, ... if there is a van" for "... at every preset where there is a van", and so on."""
+    if (match := match_start(_CHECKED_FIRST, lexemes)) is not None:
+        start = next(i for i, x in enumerate(lexemes) if x is match["asked"][0])
+        ones = match["ones"][0]
+        lexemes = [_as(x, "presets", "PRESETNOUN") if x is ones else x for x in lexemes[start:]]
+    for i, x in enumerate(lexemes):
+        if x.word == "where" and match_start("there BE|SELF (can)? SEE", lexemes[i + 1 :]):
+            return _with_condition(lexemes, i)
+    return lexemes
+
+
+def _with_condition(lexemes: Sequence[Lexeme], i: int) -> Sequence[Lexeme]:
+    """Return "at every preset, take a picture if there is a van" for "take a picture at every preset where there is a van"."""
+    begins = [j + 1 for j in range(i) if lexemes[j].has("STOP", "COMMA", "AND", "THEN", "COLON", "QUESTION")]
+    start = begins[-1] if begins else 0
+    match = full_match("(?P<done>_+) (?P<place>at EVERY (of|DET|SELF)* PRESETNOUN)", lexemes[start:i])
+    if match is None:
+        return lexemes
+    comma, condition = _as(lexemes[i], ",", "COMMA"), _as(lexemes[i], "if", "IF")
+    return [*lexemes[:start], *match["place"], comma, *match["done"], condition, *lexemes[i + 1 :]]
+
+
+def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
+    return replace(lexeme, word=word, classes=frozenset(classes))
