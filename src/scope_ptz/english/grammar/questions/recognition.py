@@ -27,6 +27,22 @@ _PARTICIPLE_PHRASE = re.compile(
 )
 """The pattern for a noun phrase with a participle: "man pushing the trolley", "bicycle tied to the fence"."""
 
+_CLIMBED = (
+    "ladder|road|street|hill|steps|stairs|ramp|tree|pole|mast|bank|slope|lane|path|drive|slipway|cliff|rope|escalator|scaffolding"
+)
+_PLACED = re.compile(
+    r"(?P<noun>.+?) (?:"
+    r"(?:outside|off|aboard|atop|opposite|amid|within|through|throughout|astride|away from|out of|in between) (?P<object>.+)"
+    rf"|(?:up|down|halfway up) (?:a|an|the|that) (?:\w+ )?(?:{_CLIMBED}))",
+    re.IGNORECASE,
+)
+"""The pattern for a noun phrase with a preposition that the grammar lacks: "dog off its lead", "men up a ladder"."""
+
+_ACTIVE = re.compile(
+    r"(?P<noun>.+?) (?:who|that|which) (?:look|seem|appear|need|want|keep|move|drive|walk|stand|sit)s?(?: \w+){0,3}", re.I
+)
+"""The pattern for a noun phrase with a relative clause that the grammar lacks: "person who looks lost"."""
+
 
 @cache
 def parser() -> ChartParser:
@@ -62,5 +78,10 @@ def looks_like_description(text: str) -> bool:
             nouns = [Token("W", token) if token in _NOUNS_TOO else token for token in tokens]
             if parser().matches(nouns, "description"):
                 return True
-    match = _PARTICIPLE_PHRASE.fullmatch(text)
-    return match is not None and is_description(match["noun"]) and (not match["object"] or looks_like_description(match["object"]))
+    if (active := _ACTIVE.fullmatch(text)) is not None and is_description(active["noun"]):
+        return True
+    for pattern in (_PARTICIPLE_PHRASE, _PLACED):
+        match = pattern.fullmatch(text)
+        if match is not None and is_description(match["noun"]):
+            return not match["object"] or looks_like_description(match["object"])
+    return False

@@ -33,6 +33,7 @@ _SWALLOWED = tuple(
         rf"{_JOINED}(?:stop|stay|remain) (?:at|on|when|once|where)\b.*",
         r"^(?:the )?(?:sum|total) of\b.*",
         r"^see (?:the|my|our)\b.*",
+        r"\b(?:left|right|up|down) (?:by )?\d+$",
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
         r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )

@@ -186,10 +186,19 @@ def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[L
             continue
         before = [y for y in lexemes[max(0, i - 2) : i] if y.word != "the"]
         is_place = bool(before) and (before[-1].word in _AT_PLACE and (i < 2 or lexemes[i - 1].word in {"the", before[-1].word}))
+        is_place = is_place or _is_listed(lexemes, i)
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
         if is_place and (after is None or not (after.has("FREE", "PRESET", "NUM") or after.word in {"of", "'s"})):
             out[i] = Lexeme(x.word, x.start, x.end, frozenset({"PRESET"}), 0.0, short[x.word])
     return out
+
+
+def _is_listed(lexemes: Sequence[Lexeme], i: int) -> bool:
+    """Return whether the word at a position stands beside a preset: "the yard or the dock"."""
+    before = [x for x in lexemes[max(0, i - 3) : i] if x.word != "the"]
+    after = [x for x in lexemes[i + 1 : i + 4] if x.word != "the"]
+    sides = (before[::-1][:2], after[:2])
+    return any(len(side) == 2 and side[0].has("OR", "AND") and side[1].has("PRESET") for side in sides)
 
 
 def _without_list_marks(tokens: list[Token]) -> list[Token]:

@@ -42,7 +42,8 @@ _SEES = (
 )
 _APPEARS = (
     r"(BE|DOV)? (?P<not>not)? (ADVERB|clearly)* (VISIBLE|BE VISIBLE|BE (in the)? CENTREWORD|SHOW-S|SHOW-ING|"
-    r"in view|(appear|appears)|(show|shows) up|(come|comes) into view|appear|appears|show_up|shows_up|turns "
+    r"in view|(appear|appears)|(show|shows) up|(come|comes) into view|"
+    r"(CARRY-S|CARRY|come|comes) into DET (PICTURE|VIEWNOUN)|appear|appears|show_up|shows_up|turns "
     r"up|turn up|come into view|comes into view|(enter|enters) the view|(get|gets) VISIBLE|come VISIBLE|comes "
     r"VISIBLE|shows VISIBLE|is VISIBLE|there|left|remain|remains|LEFT|can be SEE-ED|can be seen|exist|passes "
     r"by|(arrive|arrives)|arrive|CARRY-S up|CARRY-S VISIBLE|CARRY-S|enter DET VIEWNOUN|enters DET VIEWNOUN|"

@@ -33,6 +33,10 @@ def without_denials(repaired: Repaired) -> Repaired:
     ahead = match_start(_AHEAD, lexemes)
     if ahead is not None and _is_complete(lexemes[ahead.size :], ahead["denied"][0]):
         return without_text(repaired, lexemes[ahead.size :])
+    for i in range(2, len(lexemes)):
+        number = match_start("(COMMA)? NOT NUM DEG? (FILLER)* (STOP|\\Z)", lexemes[i:])
+        if number is not None and (lexemes[i - 1].has("NUM") or (lexemes[i - 1].has("DEG") and lexemes[i - 2].has("NUM"))):
+            return without_text(repaired, lexemes[:i])  # "pan left 10, not 20"
     for i in range(1, len(lexemes)):
         after = match_start(_AFTER, lexemes[i:])
         start = max((j + 1 for j in range(i) if lexemes[j].has(*ENDS)), default=0)

@@ -15,7 +15,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, 
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
-from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement, subject_of
 
 _ENDS = ("STOP", "QUESTION", "COLON")
 _OTHERS = "((DET)? (FREE|CAMERA|FILLER){1,3}?|SOMEONE|they|he|she)"
@@ -29,6 +29,9 @@ _QUESTION = f"(FILLER|COMMA)* ({_ASKS}) (me|us|SELF|FILLER)* (?=IF|WHQ|HOWMANY|w
 
 _REQUEST = f"(FILLER|COMMA)* {_OTHERS} {_AUXILIARIES} (asked|told|instructed|wants|needs|like|want|need) (me|us|you) to"
 """Someone asks for something to be done: "Jim asked me to check the crossing"."""
+
+_WANTS_PICTURE = f"(FILLER|COMMA)* {_OTHERS} {_AUXILIARIES} (asking|asks|asked|calling) for (?=(DET|ANY|NUM|ANOTHER)? PICTURE)"
+"""Someone asks for a picture: "the boss is asking for a snapshot"."""
 
 _HEARD = (
     "(reckon|reckons|think|thinks|thought|say|says|said|heard|hear|hears|believe|believes|bet|guess|suspect|suspects|fear|swear|swears|"
@@ -72,7 +75,7 @@ def _without_relay(text: str, presets: tuple[str, ...]) -> str | None:
         if i and not lexemes[i - 1].has("STOP", "COMMA", "AND", "BUT") and x.word != "so":
             continue
         rest = lexemes[i:]
-        for pattern, words in ((_QUESTION, "tell me "), (_REQUEST, "please ")):
+        for pattern, words in ((_QUESTION, "tell me "), (_REQUEST, "please "), (_WANTS_PICTURE, "take ")):
             match = match_start(pattern, rest)
             if match is None or match.size >= len(rest) or (words == "please " and not rest[match.size].has(*VERBS)):
                 continue
@@ -96,14 +99,15 @@ def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
         return f"go to the {name}. {text[rest[0].start :]}" if _asks_there(rest) else None
     if not (match_start(_HEARSAY, said) or is_statement(said) or match_start("(DET)? FREE{1,3} ought to", said)):
         return None
-    if (placed := _place_in(said)) is None:
-        return _checked(text, said, rest)
+    goes_there = match_start(_THERE, rest)
+    if (placed := _place_in(said, anywhere=goes_there is not None)) is None:
+        return _about_newcomer(text, said, rest) or _checked(text, said, rest)
     before, name, after = placed
     stated = _without_source(before)
     thing = _thing_in(stated)
     go = f"go to the {name}. "
-    if (match := match_start(_THERE, rest)) is not None:
-        following = trimmed(rest[match.size :], "AND", "COMMA", "THEN", "STOP", "FILLER")
+    if goes_there is not None:
+        following = trimmed(rest[goes_there.size :], "AND", "COMMA", "THEN", "STOP", "FILLER")
         return f"{go}{_with_thing(text, following, thing)}" if following else go
     if full_match(_CHECK, rest) is not None:
         question = _question_about(text, (*stated, *after), thing)
@@ -113,6 +117,14 @@ def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     if thing and _refers(rest):
         return f"{go}{_with_thing(text, rest, thing)}"
     return f"{go}{text[rest[0].start :]}" if _asks_there(rest) else None
+
+
+def _about_newcomer(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
+    """Return "zoom in on the kid" for "a kid just fell over, zoom in on him"; None for other texts."""
+    subject = subject_of(said)
+    if not subject or not subject[0].has("ANY") or not rest[0].has(*VERBS) or _is_excluded(said):
+        return None
+    return _with_thing(text, rest, subject) if _refers(rest) else None
 
 
 def _checked(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
@@ -154,7 +166,7 @@ def _statement_end(lexemes: Sequence[Lexeme]) -> int:
         if x.has("QUESTION"):
             return 0
         is_break = x.has("COMMA", "DASH") or x.word == "so"
-        has_preset = any(y.has("PRESET") for y in lexemes[:i])
+        has_preset = any(y.has("PRESET") for y in lexemes[:i]) or (lexemes[0].has("ANY") and is_statement(lexemes[:i]))
         if x.has("STOP") or (is_break and (has_preset or full_match(_CHECK, lexemes[i:]) is not None)):
             return i
     return 0
@@ -167,12 +179,14 @@ def _asks_there(lexemes: Sequence[Lexeme]) -> bool:
     return is_one and any(x.word == "there" for x in lexemes) and is_question(lexemes) and not any(x.has("PRESET") for x in lexemes)
 
 
-def _place_in(lexemes: Sequence[Lexeme]) -> tuple[Sequence[Lexeme], str, Sequence[Lexeme]] | None:
+def _place_in(lexemes: Sequence[Lexeme], *, anywhere: bool = False) -> tuple[Sequence[Lexeme], str, Sequence[Lexeme]] | None:
     """Return the words before the only preset of a statement, its name, and the words after it; None for other statements."""
     if sum(x.has("PRESET") for x in lexemes) != 1 or _is_excluded(lexemes):
         return None
     for start in range(len(lexemes)):
         match = match_start(_PLACE, lexemes[start:])
+        if match is None and anywhere:
+            match = match_start("(about|with|to|from|of|PREP)? (DET)? (?P<name>PRESET) PRESETNOUN?", lexemes[start:])
         if match is not None and start:
             return lexemes[:start], match["name"][0].preset.replace("-", " "), lexemes[start + match.size :]
     return None

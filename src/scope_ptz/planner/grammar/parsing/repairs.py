@@ -111,7 +111,7 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     if not old or not new:
         return None
     changed = _with_preset(old, new) or _with_direction_reversed(old, new) or _with_amount(old, new)
-    if changed is None and editing.has("retraction"):
+    if changed is None and (editing.has("retraction") or any(x.has("ZOOM", "COUNT", "TRACK", "FIND", "SHOW", "AIM") for x in old)):
         changed = _with_thing(old, new)
     if changed is not None:
         rest = after[len(new) :]

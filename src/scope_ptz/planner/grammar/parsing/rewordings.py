@@ -8,8 +8,9 @@ from dataclasses import replace
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
-from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 from scope_ptz.planner.grammar.parsing.preset_rewordings import with_presets_reworded
+from scope_ptz.planner.grammar.parsing.word_rewordings import reworded_in_context
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
@@ -98,6 +99,8 @@ def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
     """Return the lexemes that replace one of them, or that lexeme itself."""
     last = before[-1] if before else None
+    if (changed := reworded_in_context(before, lexeme, after)) is not None:
+        return changed
     if _is_noun_here(before, lexeme) and not (before[-1].has("NONE") and after is not None and after.has("DET", "PRON")):
         return [_as(lexeme, lexeme.word, "FREE")]  # "is there a train at the crossing?"
     if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
@@ -139,7 +142,9 @@ def _is_place_next(after: Lexeme | None) -> bool:
 def _counts_on_tour(before: Sequence[Lexeme]) -> bool:
     """Return whether lexemes name every preset, and then begin a count."""
     count = next((i for i, x in enumerate(before) if x.has("HOWMANY")), 0)
-    return any(x.has("PRESETNOUN") and x.word.endswith("s") for x in before[:count])
+    return search("EVERY (of|DET|SELF|single)* PRESETNOUN", before[:count]) is not None or any(
+        x.has("PRESETNOUN") and x.word.endswith("s") for x in before[:count]
+    )
 
 
 def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:

@@ -73,11 +73,13 @@ def without_inner_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Sour
 
     The words are returned as a text of their own with its lexemes.
     """
-    match = full_match("(?P<before>_+? FREE) (?P<at>at (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
+    match = full_match("(?P<before>_+? (FREE|SOMEONE)) (?P<at>at (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
     if match is None or sum(x.has("PRESET") for x in lexemes) > 1 or not any(x.has("BE", "HAVEV", "DOV") for x in lexemes):
         return None
     before, after, place = match["before"], match["after"], place_of(source, match["at"])
-    is_noun_next = after[0].has("PREP") and len(after) > 1 and not after[0].word.endswith("ing")
+    is_noun_next = (
+        after[0].has("PREP") and len(after) > 1 and not (after[0].word.endswith("ing") or after[0].word in {"with", "without"})
+    )
     if place is None or after[0].has("COMMA", "AND", "OR") or is_noun_next:
         return None
     rest = text_of(source, after)

@@ -37,7 +37,8 @@ _TIMES = (
 )
 MAX_TIMES = 50
 SECONDS = (
-    r"((?P<a>DET|about|AMOUNTISH|next)* (?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
+    r"((?P<a>DET|about|AMOUNTISH|next|full|whole|good|solid|LIMIT)* "
+    r"(?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
     r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS?)?)"
 )
 

@@ -40,6 +40,14 @@ def is_statement(lexemes: Sequence[Lexeme]) -> bool:
     return any(_is_predicate(lexemes[first:], end) for end in _subject_ends(lexemes[first:]))
 
 
+def subject_of(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Return the subject of a statement: "a kid" in "a kid just fell over"; none if lexemes are no statement."""
+    for end in _subject_ends(lexemes):
+        if _is_predicate(lexemes, end):
+            return tuple(lexemes[:end])
+    return ()
+
+
 def without_time_ahead(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes without the time until something happens at their end: "we start loading in five minutes"."""
     match = full_match("(?P<body>_+) in (AMOUNTISH|DET)* (NUM|FRACTION|DET)+ (MINUTES|HOURS) (FILLER)*", lexemes)
