@@ -424,7 +424,10 @@ class Resolver:
             return replace(condition, thing=self.thing(condition.thing), first=places[0], second=places[1])
         if isinstance(condition, ast.Negated):
             return ast.Negated(self.condition(condition.part))
-        return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
+        joined = replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
+        if all(isinstance(part, ast.Seen) for part in joined.parts):
+            self.antecedent = ""  # "if you find a person or a dog, zoom in on it" does not say on which
+        return joined
 
 
 def _answered_by(condition: ast.Condition, count: ast.Count) -> ast.Condition | None:

@@ -245,12 +245,26 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
             elif things := things_of(source, trimmed(words_of_thing, "NONE" if negated else "FILLER")):
                 if negated and len(things) > 1:
                     return Joined(tuple(Seen(thing, Quantity("==", 0), view) for thing in things), "all")
+                if len(things) > 1:
+                    is_either = any(x.has("OR") for x in words_of_thing)
+                    return Joined(tuple(Seen(thing, Quantity(), view) for thing in things), "any" if is_either else "all")
                 thing = things[0] if len(things) == 1 else thing_of(source, words_of_thing)
+            elif not negated and (either := _alternatives(source, words_of_thing)):
+                return Joined(tuple(Seen(thing, Quantity(), view) for thing in either), "any")
             else:
                 thing = None
             if thing is not None:
                 return Seen(thing, Quantity("==", 0) if negated else Quantity(), view)
     return _bare_thing(source, bare, view)
+
+
+def _alternatives(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Thing, ...]:
+    """Return the things of "the red van or a blue truck"; none for other lexemes."""
+    at = [i for i, x in enumerate(lexemes) if x.has("OR")]
+    if len(at) != 1 or at[0] + 1 >= len(lexemes) or not lexemes[at[0] + 1].has("DET"):
+        return ()
+    things = [thing_of(source, part) for part in (lexemes[: at[0]], lexemes[at[0] + 1 :])]
+    return tuple(thing for thing in things if thing is not None and thing.text) if all(things) else ()
 
 
 def _bare_thing(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Condition | None:

@@ -72,6 +72,9 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
         lexemes,
     ) and any(x.has("PAN", "TILT", "ZOOM", "ZOOMNOUN", "TILTNOUN", "PANNOUN") or x.word in {"lens", "focus"} for x in lexemes):
         return (Forbid(),)
+    numbers = "(numbers|totals|counts|figures|results|number|figure|total|tally|COUNTNOUN)"
+    if full_match(f"(FILLER)* (CARRY|TELL|SHOW) (me|us)? (both|DET|SELF|all)+ {numbers} (FILLER)*", lexemes):
+        return (Report(),)  # "... and give me both numbers"
     if full_match("(FILLER)* (check|TELL|AIM|look at|SHOW) (at)? both (of (them|PRON)|PRESETNOUN|presets)? (FILLER)*", lexemes):
         return (Report(),)  # "are there more cars at the gate or in the yard? Check both."
     if full_match("(look|TELL|AIM|have_a_look|take_a_look) (FILLER|there|here|now|please)*", lexemes) and any(
@@ -105,9 +108,9 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
         return (Forbid(any_move=True),)
     if full_match(
         (
-            "(TELL|report|SAY|let me know|REPORT|CARRY (?=me|us)) (me|us|SELF|back|FILLER|DET|result|results|so|that|it|answer|"
+            "(TELL|report|SAY|let me know|REPORT) (me|us|SELF|back|FILLER|DET|result|results|so|that|it|answer|"
             "number|what SELF FIND|what SELF SEE|to|findings|count|how SELF get on|about|PRON|TELL|DET COUNTNOUN|how "
-            "it went|total|(a|DET) (number|figure|total|tally)|both (numbers|totals|counts|figures|results)?)*"
+            "it went|total|both (numbers|totals|counts|figures|results)?)*"
         ),
         lexemes,
     ) and not search("what SELF SEE|another \\Z", lexemes):

@@ -16,12 +16,26 @@ _CHECKED_FIRST = (
 """Words that go to every preset before the question which of them show something."""
 
 
+_LISTED = "(?P<places>(DET)? PRESET PRESETNOUN? ((COMMA|AND|THEN)+ (DET)? PRESET PRESETNOUN?)+)"
+_GO_ROUND = "(FILLER|SHOW|TELL|SWITCH|CARRY|TAKE|AIM|SCAN|at|to|through)*"
+_CHECKED_IN_ORDER = f"{_GO_ROUND} {_LISTED} (?P<end>for) FREE"
+"""Presets in an order, at all of which something is looked for: "check the gate and then the yard for people"."""
+
+_STOP_AT_FIRST = (
+    f"{_GO_ROUND} {_LISTED} (?P<end>STOP|COMMA|COLON|THEN|AND) (AND|COMMA|THEN)* (HALT|STAY|KEEP|stop|end) (at|on|with)"
+)
+"""Presets in an order, at the first of which the camera stops: "try the gate, then the yard; stop at the first with a van"."""
+
+
 def with_presets_reworded(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with "at every preset, ... if there is a van" for "... at every preset where there is a van", and so on."""
     if (match := match_start(_CHECKED_FIRST, lexemes)) is not None:
         start = next(i for i, x in enumerate(lexemes) if x is match["asked"][0])
         ones = match["ones"][0]
         lexemes = [_as(x, "presets", "PRESETNOUN") if x is ones else x for x in lexemes[start:]]
+    for pattern in (_CHECKED_IN_ORDER, _STOP_AT_FIRST):
+        if (match := match_start(pattern, lexemes)) is not None:
+            lexemes = [_joined(x) if x in match["places"] or x in match["end"] else x for x in lexemes]
     for i, x in enumerate(lexemes):
         if x.word == "where" and match_start("there BE|SELF (can)? SEE", lexemes[i + 1 :]):
             return _with_condition(lexemes, i)
@@ -37,6 +51,11 @@ def _with_condition(lexemes: Sequence[Lexeme], i: int) -> Sequence[Lexeme]:
         return lexemes
     comma, condition = _as(lexemes[i], ",", "COMMA"), _as(lexemes[i], "if", "IF")
     return [*lexemes[:start], *match["place"], comma, *match["done"], condition, *lexemes[i + 1 :]]
+
+
+def _joined(lexeme: Lexeme) -> Lexeme:
+    """Return a comma for a separator, so that a list of presets is read as one; any other lexeme unchanged."""
+    return _as(lexeme, ",", "COMMA") if lexeme.has("THEN", "STOP", "COLON") else lexeme
 
 
 def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:

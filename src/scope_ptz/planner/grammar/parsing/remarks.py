@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_ptz.planner.grammar.instruction_tree import Move, Step
+from scope_ptz.planner.grammar.instruction_tree import Count, Move, Step
 from scope_ptz.planner.grammar.parsing.asides import is_news, is_reason, is_shared_knowledge, is_wish
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
@@ -19,6 +19,9 @@ _NO_MORE = (
     "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"
 )
 """A comment on the amount of the previous move: "left 20, not more"."""
+
+_BEHIND = "(FILLER)* (WRAPPER|SELF|want|need|to|SEE|SHOW|let_me_see)+ what (BE|'s) behind (SELF|it|that|there) (FILLER)*"
+"""A reason for turning round: "turn round, I want to see what's behind us"."""
 
 _PERIODS = "(shift|day|week|watch|month|season|term|play|round)"
 _TIME_OF_DAY = f"(FILLER)* (DET)? (end|start|beginning|middle|close) of (DET|my|our|SELF)* ({_PERIODS}|FREE {_PERIODS}) (FILLER)*"
@@ -50,6 +53,10 @@ def adds_nothing(clause: Clause, after: Clause | None, last: Step | None, *, is_
     if is_first and after is not None and full_match(_TIME_OF_DAY, clause.lexemes):
         return True
     if (after is not None or not is_first) and clause.link in {",", "."} and full_match(_TOO_MUCH, clause.lexemes):
+        return True
+    if isinstance(last, Count) and full_match("(FILLER|AND)* HOWMANY (FILLER)*", clause.lexemes):
+        return True  # "a head count of referees, how many?"
+    if clause.link in {",", "and", "."} and isinstance(last, Move) and full_match(_BEHIND, clause.lexemes):
         return True
     if clause.link in {",", "and", "."} and isinstance(last, Move) and full_match(_NO_MORE, clause.lexemes):
         return True

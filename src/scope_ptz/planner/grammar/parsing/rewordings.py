@@ -44,6 +44,7 @@ _WANTED_PICTURE = (
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
+    lexemes = _zoomed_in_steps(lexemes)
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []
@@ -67,6 +68,14 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     changed = {id(match["at"][0]): ("at", "PREP", "GLUE"), id(match["end"][0]): (",", "COMMA")}
     kept = (x for x in lexemes if not any(x is other for other in dropped))
     return [_as(x, *changed[id(x)]) if id(x) in changed else x for x in kept]
+
+
+def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "zoom out 1.5x until ..." for "zoom out in steps of 1.5x until ..."."""
+    match = search(
+        "(ZOOM|ENLARGE|WIDEN|ZOOM-ING) (IN|OUT)? (?P<dropped>in (STEPNOUN|steps|increments|stages) of) NUM X UNTIL", lexemes
+    )
+    return lexemes if match is None else [x for x in lexemes if not any(x is other for other in match["dropped"])]
 
 
 def _without_yes_or_no(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:

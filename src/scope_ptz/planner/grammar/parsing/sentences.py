@@ -23,6 +23,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     ZoomTo,
 )
 from scope_ptz.planner.grammar.instruction_tree.conditions import Answered, Condition, Negated, Quantity, Seen
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.asides import (
     elliptical_condition,
     is_ability,
@@ -90,7 +91,7 @@ class Sentences(Tours):
                 return []
             case "":
                 return self._main(clause)
-            case "WHILE" if _is_meanwhile(clause):
+            case _ if _is_meanwhile(clause):
                 return []
             case "WHILE" | "UNTIL":
                 return [Linked(clause.link, self._loop_ahead(clause))]
@@ -177,17 +178,16 @@ class Sentences(Tours):
         done = there.body if there is not None and there.body else steps
         if after.marker in {"UNTIL", "WHILE"} and self._is_place(clause):
             return self._ended(clause, steps)  # "at the gate, until you see a van, pan right 10"
-        if after.marker == "UNTIL" or (after.marker == "WHILE" and after.link in {"", ","} and not _is_meanwhile(after)):
+        is_while = after.marker == "WHILE" and after.link in {"", ","} and not _is_meanwhile(after)
+        if after.marker == "UNTIL" or is_while:
             return [Linked(clause.link, _with_body(there, self._loop(clause, done)))]
         if (bound := bound_of(after)) is not None and (until := self._peek(1)) is not None and until.marker == "UNTIL":
             self._take()
             loop = self._loop(clause, steps)
             return [Linked(clause.link, replace(loop, bound=bound) if isinstance(loop, Loop) else loop)]
         is_too_hard = all(isinstance(step, Ask | Read) for step in steps) and bool(steps) and is_ability(after.lexemes)
-        if after.marker == "WHILE" and _is_meanwhile(after):
-            self._take()
-            return self._ended(clause, steps)
-        if after.marker == "IF" and (is_courtesy(after.lexemes) or is_too_hard):
+        is_polite = after.marker == "IF" and (is_courtesy(after.lexemes) or is_too_hard)
+        if is_polite or _is_meanwhile(after):
             self._take()
             return self._ended(clause, steps)
         if after.marker == "IF" and is_need(after.lexemes):
@@ -249,7 +249,7 @@ class Sentences(Tours):
         """Return the steps of "before going home take a picture" and "after panning left, zoom in"."""
         if clause.marker == "BEFORE" and is_event(clause.lexemes):
             return []  # "before I forget, take a picture"
-        other = self.reader.read(clause.lexemes)
+        other = self.reader.read(_as_command(clause.lexemes))
         if self._peek() is None:
             raise NotUnderstoodError(clause.lexemes)
         block = self._block([])
@@ -258,8 +258,16 @@ class Sentences(Tours):
         return [Linked("then", s) for s in (*other, *block)]
 
 
+def _as_command(lexemes: tuple[Lexeme, ...]) -> tuple[Lexeme, ...]:
+    """Return the command for a participle at the beginning: "count the cars" for "(after you have) counted the cars"."""
+    verb = next((name for name in VERBS if lexemes[0].has(f"{name}-ED") and not lexemes[0].has(*VERBS)), None)
+    return lexemes if verb is None else (replace(lexemes[0], word=verb.lower(), classes=frozenset({verb})), *lexemes[1:])
+
+
 def _is_meanwhile(clause: Clause) -> bool:
     """Return whether "while" says what the speaker does meanwhile: "while I make a brew"."""
+    if clause.marker != "WHILE":
+        return False
     seen = ("SEE", "SEE-ING", "VISIBLE", "VIEWNOUN", "PICTURE", "NUM", "PRESET", "HOME", "DEG", "NOT")
     return bool(clause.lexemes) and clause.lexemes[0].word in {"i", "we"} and not any(x.has(*seen) for x in clause.lexemes)
 

@@ -46,6 +46,12 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
         return []  # "mind turning 15 left?"
     if lexeme.word == "its" and after is not None and (after.has("AIM-ING", "LOT") or after.word in {"too", "so", "getting"}):
         return [_as(lexeme, "it", "PRON", "ANOTHER"), _as(lexeme, "is", "BE", "GLUE")]  # "its pointing at the sky"
+    if lexeme.word == "once" and begins and after is not None and after.word == "at":
+        return []  # "once at the gate, zoom in"
+    if lexeme.word in {"reaching", "arriving"} and last is not None and last.word == "on_reaching":
+        return [] if after is not None and after.word == "at" else [_as(lexeme, "at", "PREP", "GLUE")]
+    if lexeme.word in {"on", "upon"} and last is None and after is not None and after.word in {"reaching", "arriving"}:
+        return [_as(lexeme, "on_reaching", "FILLER")]  # "on reaching the gate, take a picture"
     if (base := _base_of_past(before, lexeme)) is not None:
         return [base]
     return None
