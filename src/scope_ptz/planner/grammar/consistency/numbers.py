@@ -14,7 +14,10 @@ from scope_ptz.planner.grammar.consistency.words import Word
 _TOLERANCE = 0.02
 _VAGUE = frozenset({"one", "couple", "zero"})  # "the one on the left", "a couple of degrees", "zero in on"
 _UNITS_OF = (1.0, 60.0, 3600.0, 90.0, 360.0, 0.01)  # minutes and hours in seconds, right angles and full turns in degrees, per cent
-_NAMED = frozenset({"preset", "position", "view", "bookmark", "camera", "cam", "unit", "station", "number", "step", "task"})
+_NAMED = frozenset({
+    "preset", "position", "view", "bookmark", "camera", "cam", "unit", "station", "number", "step", "task", "bay", "door", "gate",
+    "lane", "platform", "gallery", "room", "track", "pump", "dock", "berth", "tower", "row", "aisle", "floor",
+})  # fmt: skip
 """Words before a number that is part of a name."""
 
 

@@ -246,7 +246,7 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
         classes = lexeme.classes
         if (
             lexeme.word in {"s", "m", "x", "xs", "min", "h"}
-            and not (before and before.has("NUM"))
+            and not (before and (before.has("NUM") or (lexeme.word == "min" and before.word in {"a", "half a", "half_a"})))
             and not (lexeme.word == "x" and after and after.has("NUM"))
         ):
             classes = frozenset({"FREE"})

@@ -141,7 +141,7 @@ def explains(clause: Clause, clauses: int) -> bool:
         return False
     if search(_MOVE_AT_THE_END, clause.lexemes):
         return False
-    if _NOT_A_REASON & {x.word for x in clause.lexemes} and not match_start("(FILLER)* (i|we) never FREE", clause.lexemes):
+    if _NOT_A_REASON & {x.word for x in clause.lexemes} and not match_start("(FILLER)* (i|we) (MODAL)? never FREE", clause.lexemes):
         return False
     return not any(x.has("NUM", "DEG", "PAN", "TILT", "ZOOM", "PRESET", "HOME") for x in clause.lexemes)
 

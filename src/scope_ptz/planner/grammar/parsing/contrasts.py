@@ -15,7 +15,8 @@ from scope_ptz.planner.grammar.parsing.repairs import ENDS, Repaired, without_te
 
 _KINDS = (DIRECTIONS, ("PRESET",), ("PAN", "TILT", "ZOOM"), ("IN", "OUT"))
 _DENIED = (
-    "(NOT|negative on|instead_of|rather_than) (to|at|on|DET|PRESETNOUN)* "
+    "(NOT|negative on|instead_of|rather_than|do_not_bother with|do not bother with|skip|scratch|scrap|ditch) "
+    "(to|at|on|DET|PRESETNOUN)* "
     "(?P<denied>LEFT|RIGHT|UP|DOWN|IN|OUT|PRESET|PAN|TILT|ZOOM) (PRESETNOUN|VIEWNOUN)?"
 )
 _AFTER = (

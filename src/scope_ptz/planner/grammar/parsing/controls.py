@@ -73,7 +73,8 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
     ) and any(x.has("PAN", "TILT", "ZOOM", "ZOOMNOUN", "TILTNOUN", "PANNOUN") or x.word in {"lens", "focus"} for x in lexemes):
         return (Forbid(),)
     numbers = "(numbers|totals|counts|figures|results|number|figure|total|tally|COUNTNOUN)"
-    if full_match(f"(FILLER)* (CARRY|TELL|SHOW) (me|us)? (both|DET|SELF|all)+ {numbers} (FILLER)*", lexemes):
+    is_told = full_match(f"(FILLER)* (CARRY|TELL|SHOW) (me|us)* (both|DET|SELF|all)+ {numbers} (FILLER)*", lexemes)
+    if is_told or full_match(f"(FILLER|WRAPPER|SELF|want|need)* (both|all) (the)? {numbers} (FILLER)*", lexemes):
         return (Report(),)  # "... and give me both numbers"
     if full_match("(FILLER)* (check|TELL|AIM|look at|SHOW) (at)? both (of (them|PRON)|PRESETNOUN|presets)? (FILLER)*", lexemes):
         return (Report(),)  # "are there more cars at the gate or in the yard? Check both."

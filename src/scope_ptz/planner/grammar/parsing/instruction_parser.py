@@ -11,6 +11,7 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.contractions import with_contractions
 from scope_ptz.planner.grammar.parsing.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
+from scope_ptz.planner.grammar.parsing.plain_text import plainer
 from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.relayed import relayed
 from scope_ptz.planner.grammar.parsing.repairs import repaired, unresolved_editing
@@ -45,15 +46,18 @@ class Parsed:
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Return the steps of an instruction. No text raises an exception."""
-    said = relayed(text, presets) if len(text) <= MAX_CHARS else None
-    if said is not None and (parsed := _parsed(said, presets)).steps is not None:
-        return parsed
+    if len(text) > MAX_CHARS:
+        return Parsed(text, None)
+    plain = plainer(text)
+    for said in (relayed(plain, presets), plain if plain != text else None):
+        if said is not None and (parsed := _parsed(said, presets)).steps is not None:
+            return parsed
     return _parsed(text, presets)
 
 
 def _parsed(text: str, presets: tuple[str, ...]) -> Parsed:
     """Return the steps of a text without words that relay it."""
-    lexemes = lexemes_of(text, presets) if len(text) <= MAX_CHARS else ()
+    lexemes = lexemes_of(text, presets)
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
     meant = without_denials(repaired(with_contractions(reworded(lexemes)), text))
@@ -105,6 +109,7 @@ def _quoted(text: str, lexemes: Sequence[Lexeme]) -> tuple[str, ...]:
     if not groups or len(groups) > _MAX_QUOTATIONS:
         groups = [(0, len(lexemes) - 1)]
     phrases = [text[lexemes[first].start : lexemes[last].end].split() for first, last in groups]
+    phrases = [words for words in phrases if words] or [text.split()]
     return tuple(
         dict.fromkeys(" ".join(words[:_MAX_QUOTED_WORDS]) + (" ..." if len(words) > _MAX_QUOTED_WORDS else "") for words in phrases)
     )

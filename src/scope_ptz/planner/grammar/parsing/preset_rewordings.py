@@ -18,7 +18,7 @@ _CHECKED_FIRST = (
 
 _LISTED = "(?P<places>(DET)? PRESET PRESETNOUN? ((COMMA|AND|THEN)+ (DET)? PRESET PRESETNOUN?)+)"
 _GO_ROUND = "(FILLER|SHOW|TELL|SWITCH|CARRY|TAKE|AIM|SCAN|at|to|through)*"
-_CHECKED_IN_ORDER = f"{_GO_ROUND} {_LISTED} (?P<end>for) FREE"
+_CHECKED_IN_ORDER = f"{_GO_ROUND} {_LISTED} (COMMA)? (?P<end>for) (FREE|SOMEONE|ANY|DET)"
 """Presets in an order, at all of which something is looked for: "check the gate and then the yard for people"."""
 
 _STOP_AT_FIRST = (

@@ -44,7 +44,7 @@ _HEARSAY = (
 )
 """Words before a statement that say where it comes from: "my deputy reckons", "it looks like"."""
 
-_PLACE = "(over|FILLER)* (at|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) (DET)? (?P<name>PRESET) PRESETNOUN?"
+_PLACE = "(over|FILLER)* (at|into|onto|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) (DET)? (?P<name>PRESET) PRESETNOUN?"
 _THERE = (
     "(so|then|and|AND|please|FILLER|COMMA|(can|could|would) you|MODAL SELF)* "
     "(CARRY|SWITCH|TURN) (over|down|up|out|FILLER|straight)* there"
@@ -100,7 +100,8 @@ def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     if not (match_start(_HEARSAY, said) or is_statement(said) or match_start("(DET)? FREE{1,3} ought to", said)):
         return None
     goes_there = match_start(_THERE, rest)
-    if (placed := _place_in(said, anywhere=goes_there is not None)) is None:
+    counts = match_start("(FILLER)* HOWMANY", rest) is not None
+    if (placed := _place_in(said, anywhere=goes_there is not None, counted=counts)) is None:
         return _about_newcomer(text, said, rest) or _checked(text, said, rest)
     before, name, after = placed
     stated = _without_source(before)
@@ -112,11 +113,22 @@ def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     if full_match(_CHECK, rest) is not None:
         question = _question_about(text, (*stated, *after), thing)
         return f"{go}{question}" if question else None
-    if not any(x.word in {"at", "in", "over_at", "down_at"} for x in said[len(before) :]):
+    if not any(x.word in {"at", "in", "into", "onto"} for x in said[len(before) :]):
         return None  # "there is a lad by the breakwater, follow him" may be about the current view
     if thing and _refers(rest):
         return f"{go}{_with_thing(text, rest, thing)}"
+    if (counted := _count_of(text, rest, thing)) is not None:
+        return f"{go}{counted}"
     return f"{go}{text[rest[0].start :]}" if _asks_there(rest) else None
+
+
+def _count_of(text: str, rest: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
+    """Return "how many guards do you see?" for "how many do you see?" after a statement about guards; None for other words."""
+    match = full_match("(FILLER)* (?P<how>HOWMANY) (?P<rest>(do|can|could|DOV|MODAL|BE) (SELF|there) _*)", rest)
+    nouns = [x for x in thing if not x.has("DET", "NUM", "ADVERB", "FILLER")]
+    if match is None or not nouns:
+        return None
+    return f"how many {text[nouns[0].start : thing[-1].end]} {text[match['rest'][0].start :]}"
 
 
 def _about_newcomer(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
@@ -179,9 +191,12 @@ def _asks_there(lexemes: Sequence[Lexeme]) -> bool:
     return is_one and any(x.word == "there" for x in lexemes) and is_question(lexemes) and not any(x.has("PRESET") for x in lexemes)
 
 
-def _place_in(lexemes: Sequence[Lexeme], *, anywhere: bool = False) -> tuple[Sequence[Lexeme], str, Sequence[Lexeme]] | None:
+def _place_in(
+    lexemes: Sequence[Lexeme], *, anywhere: bool = False, counted: bool = False
+) -> tuple[Sequence[Lexeme], str, Sequence[Lexeme]] | None:
     """Return the words before the only preset of a statement, its name, and the words after it; None for other statements."""
-    if sum(x.has("PRESET") for x in lexemes) != 1 or _is_excluded(lexemes):
+    kept = [x for x in lexemes if not (counted and x.has("NUM"))]
+    if sum(x.has("PRESET") for x in lexemes) != 1 or _is_excluded(kept):
         return None
     for start in range(len(lexemes)):
         match = match_start(_PLACE, lexemes[start:])

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Turn,
     Zoom,
 )
-from scope_ptz.planner.grammar.parsing.parts.clause import Clause
+from scope_ptz.planner.grammar.parsing.parts.clause import AS_FAR_AS, Clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _HALF_TURN_DEG = 180.0
@@ -43,6 +43,9 @@ def says_size_again(move: Move, clause: Clause) -> bool:
     half_turn = full_match("(FILLER|AMOUNTISH|DET|LIMIT)* (?P<number>NUM) DEG? (FILLER)*", clause.lexemes)
     if half_turn is not None and half_turn["number"][0].value == _HALF_TURN_DEG:
         return move.parts == (Turn("pan", 1, Amount("degrees", _HALF_TURN_DEG)),)  # "turn around, a full 180"
+    at_limit = any(isinstance(part, Zoom) and part.kind in {"in", "out"} for part in move.parts)
+    if at_limit and full_match(f"(FILLER)* ({AS_FAR_AS}|LIMIT) (FILLER)*", clause.lexemes):
+        return True  # "zoom right in, as far as it goes"
     match = full_match("(FILLER|AMOUNTISH)* ((?P<little>LITTLE)|(?P<lot>LOT)) (in fact|FILLER)*", clause.lexemes)
     if match is None:
         return False

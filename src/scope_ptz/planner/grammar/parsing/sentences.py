@@ -238,7 +238,7 @@ class Sentences(Tours):
             return [Linked(clause.link, _WHICH_FIRST)]  # "take a picture, after panning left, go home"
         if (unclear := _adverbial_order(after)) is not None:
             return [Linked(clause.link, unclear)]
-        other = self.reader.read(after.lexemes)
+        other = self.reader.read(_as_command(after.lexemes))
         if before is not None and isinstance(steps[0], DoAgain):
             steps = (before,)  # "count the cars now, and again after panning left"
         first, second = (steps, other) if after.marker == "BEFORE" else (other, steps)

@@ -143,6 +143,8 @@ def _counted(
         things = things_of(source, match["thing"])
         if things:
             return Count(things, view)
+    if how is not None and (places := places_of(source, rest)):
+        return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
         return Count((Thing(f"people {text_of(source, rest)}"),), view)  # "how many in the queue?"
     if how is not None and (those := _count_those(source, rest, view)):

@@ -32,6 +32,8 @@ AS_FAR_AS = (
 """The pattern for "as far as it goes", which means all the way."""
 
 UNTIL_LIMIT = (
+    r"UNTIL (SELF|it|PRON|DET CAMERA) MODAL not (CARRY|get|CARRY-ING)? (no|any)? "
+    r"(further|MORE|lower|higher|any_further|no_further)|"
     r"UNTIL (SELF|it|PRON|DET CAMERA) (MODAL)? (hit|hits|reach|reaches|get_to|gets_to|get to|gets to|CARRY to) (DET|its)? "
     r"(LIMIT|end|limit|limits|maximum|max|minimum|stop|stops)"
 )

@@ -6,12 +6,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scope_ptz.planner.grammar.instruction_tree import (
-    PresetRef,
-)
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.planner.grammar.instruction_tree import PresetRef
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
 
 _APOSTROPHES = frozenset("'’")
 _PRESETS_NAMED = re.compile(r"\b(?:preset|position|view|bookmark|viewpoint|waypoint|location|spot|place|stop)s?\b", re.IGNORECASE)
@@ -73,14 +72,21 @@ def without_inner_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Sour
 
     The words are returned as a text of their own with its lexemes.
     """
-    match = full_match("(?P<before>_+? (FREE|SOMEONE)) (?P<at>at (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
+    match = full_match("(?P<before>_+? (FREE|SOMEONE)) (?P<at>(at|on) (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
+    if (
+        match is not None
+        and match["at"][0].word == "on"
+        and lexicon().concept(match["at"][-1].preset.replace("-", " ")) is not None
+    ):
+        return None  # "is the sign on the gantry lit?"
     if match is None or sum(x.has("PRESET") for x in lexemes) > 1 or not any(x.has("BE", "HAVEV", "DOV") for x in lexemes):
         return None
     before, after, place = match["before"], match["after"], place_of(source, match["at"])
     is_noun_next = (
         after[0].has("PREP") and len(after) > 1 and not (after[0].word.endswith("ing") or after[0].word in {"with", "without"})
     )
-    if place is None or after[0].has("COMMA", "AND", "OR") or is_noun_next:
+    is_choice = match_start("(UP|DOWN|IN|OUT) OR", after) is not None
+    if place is None or after[0].has("COMMA", "AND", "OR") or (is_noun_next and not is_choice):
         return None
     rest = text_of(source, after)
     text = f"{text_of(source, before)} {f'is{rest[2:]}' if after[0].has('BE') and rest[0] in _APOSTROPHES else rest}"

@@ -161,7 +161,9 @@ def _can_be_on(before: Sequence[Lexeme]) -> bool:
         return False
     if before[-1].word in _PARTICLES and len(before) > 1:
         before = before[:-1]  # "birds out on the roof"
-    return before[-1].has("FREE", "VISIBLE", "SOMEONE", "BE", "HAVEV", "SEE", "COUNT", "COUNTNOUN") or is_noun(before[-1].word)
+    return before[-1].has("FREE", "VISIBLE", "SOMEONE", "NOONE", "BE", "HAVEV", "SEE", "COUNT", "COUNTNOUN") or is_noun(
+        before[-1].word
+    )
 
 
 def _is_thing(places: Sequence[PresetRef]) -> bool:

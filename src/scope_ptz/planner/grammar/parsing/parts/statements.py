@@ -77,7 +77,7 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
 
 def is_event(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "before" only say what happens later: "I forget", "the ferry leaves"."""
-    if full_match("SELF (CARRY|SWITCH|KEEP|HALT|leave|finish|close) (on|off|along|up|down)? (FILLER)*", lexemes):
+    if full_match("SELF (CARRY|SWITCH|KEEP|HALT|leave|finish|close) (on|off|along|up|down|live|on_air)? (FILLER)*", lexemes):
         return True  # "we move on"
     if any(x.has(*_COMMANDS, "NUM", "DEG") for x in lexemes):
         return False

@@ -1,0 +1,46 @@
+"""Replace wordings in the text of an instruction by plainer ones, before it is split into words."""
+
+from __future__ import annotations
+
+import re
+
+_VOCATIVES = (
+    "driver|sunshine|sweetie|sweetheart|honey|hon|love|darling|pet|duck|lad|lads|guys|folks|gentlemen|ladies|captain|skipper|friend"
+    "|my friend|son|bro|bruv|dude|jeeves|james|fella|fellas|champ|big man|mind|mind you|my love|petal|treacle"
+)
+_GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
+_PICTURES = "photo|picture|pic|snap|shot|still"
+_GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
+_TAGS = "right|correct|yeah|is there|are they|is that right"
+_REPLACEMENTS = tuple(
+    (re.compile(pattern, re.IGNORECASE), plain)
+    for pattern, plain in (
+        (rf",\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", ""),
+        (rf"^({_GREETINGS})\s+(?:{_VOCATIVES})(?=\s*[,.!])", r"\1"),
+        (r"\bwhoever(?:['’]s| is)\b", "the person"),
+        (rf"^(?:so\s+)?(?:nobody|no[ -]?one)(?:['’]s| is| are) (.+?),? (?:{_TAGS})\?$", r"is anyone \1?"),
+        (r"^there (is|are)(?:n['’]t| not) (.+), \1 (?:there|they)\?$", r"\1 there \2?"),
+        (r"^you can see (.+), can(?:['’]t| not) you\?$", r"can you see \1?"),
+        (r"^((?:what|which|where|who)\b[^.!?]*?) again(?=\?)", r"\1"),
+        (r"^(?:well |right |so )?wait,? (?=what|which|where|who|how)", ""),
+        (r"\bhows\b", "how's"),
+        (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
+        (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some)\b[\w ]*\b(?:{_PICTURES})\b)", "take "),
+        (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
+        (r"\b(?:let['’]?s )?do (?:the|my|our) rounds:", ""),
+    )
+)
+"""Patterns with their replacements."""
+
+_TENS = {"ten": 10, "five": 5, "twentie": 20, "fifteen": 15, "thirtie": 30}
+
+
+def plainer(text: str) -> str:
+    """Return a text with "the person" for "whoever is", without "mate" at the end, and so on."""
+    for pattern, plain in _REPLACEMENTS:
+        text = pattern.sub(plain, text)
+    return text
+
+
+def _steps(word: str) -> str:
+    return f"{_TENS[word.lower()]} degrees at a time "
