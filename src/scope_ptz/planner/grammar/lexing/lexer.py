@@ -182,7 +182,8 @@ def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[L
     short = short_names(presets)
     out = list(lexemes)
     for i, x in enumerate(lexemes):
-        if not x.has("FREE") or x.word not in short:
+        is_noun = x.has("FREE") or (i > 0 and lexemes[i - 1].word == "the")
+        if not is_noun or x.word not in short:
             continue
         before = [y for y in lexemes[max(0, i - 2) : i] if y.word != "the"]
         is_place = bool(before) and (before[-1].word in _AT_PLACE and (i < 2 or lexemes[i - 1].word in {"the", before[-1].word}))

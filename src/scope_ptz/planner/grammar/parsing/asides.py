@@ -159,7 +159,8 @@ def pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing |
     excluded = ("NUM", "DEG", "NOT", "NONE", "IF", "HOME", "EXCEPT", "WHOLETHING")
     if any(x.has(*excluded) for x in clause.lexemes) or clause.lexemes[0].has(*VERBS):
         return None
-    for pattern in _POINTED_OUT:
+    is_bare = not is_statement(clause.lexemes)
+    for pattern in _POINTED_OUT if is_bare else _POINTED_OUT[:-1]:
         match = full_match(pattern, clause.lexemes)
         if match and (thing := thing_of(source, match["thing"])) is not None and thing.text:
             return thing

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement, subject_of
 
 _ENDS = ("STOP", "QUESTION", "COLON")
-_OTHERS = "((DET)? (FREE|CAMERA|FILLER){1,3}?|SOMEONE|they|he|she)"
+_OTHERS = "((DET)? (FREE|CAMERA|FILLER|STEPNOUN){1,3}?|SOMEONE|they|he|she)"
 _AUXILIARIES = "(BE|HAVEV|MODAL|been|just|now|also|keeps|keep|still|FILLER)*"
 _ASKS = (
     f"{_OTHERS} {_AUXILIARIES} (asking|asks|ask|asked|wondering|wonders|wants_to_know|needs_to_know|would_like_to_know)|"
@@ -44,7 +44,10 @@ _HEARSAY = (
 )
 """Words before a statement that say where it comes from: "my deputy reckons", "it looks like"."""
 
-_PLACE = "(over|FILLER)* (at|into|onto|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) (DET)? (?P<name>PRESET) PRESETNOUN?"
+_PLACE = (
+    "(over|FILLER)* (at|into|onto|by|near|on|in|around|round|outside|behind|beside|next_to|close_to) "
+    "(DET)? (?P<name>PRESET) PRESETNOUN?"
+)
 _THERE = (
     "(so|then|and|AND|please|FILLER|COMMA|(can|could|would) you|MODAL SELF)* "
     "(CARRY|SWITCH|TURN) (over|down|up|out|FILLER|straight)* there"
@@ -113,7 +116,8 @@ def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     if full_match(_CHECK, rest) is not None:
         question = _question_about(text, (*stated, *after), thing)
         return f"{go}{question}" if question else None
-    if not any(x.word in {"at", "in", "into", "onto"} for x in said[len(before) :]):
+    is_asked = rest[-1].has("QUESTION")
+    if not is_asked and not any(x.word in {"at", "in", "into", "onto"} for x in said[len(before) :]):
         return None  # "there is a lad by the breakwater, follow him" may be about the current view
     if thing and _refers(rest):
         return f"{go}{_with_thing(text, rest, thing)}"

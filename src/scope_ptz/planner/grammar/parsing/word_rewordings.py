@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 
 _BREAKS = ("COMMA", "STOP", "AND", "THEN", "COLON", "DASH", "QUESTION")
+_URGED = frozenset({"you", "it", "her", "him"})
 _COMMANDS = frozenset({"tilt", "zoom", "pan", "take", "go", "turn", "snap", "count", "tell", "read", "follow", "track", "find"})
 
 
@@ -37,10 +38,10 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
     is_order = match_start("PRESET (PRESETNOUN|VIEWNOUN)?", before[-2:]) is not None and lexeme.has("ORDINAL", "FIRSTLY")
     if is_order and (after is None or after.has(*_BREAKS)):
         return []  # "photograph the spillway view first and the tailrace view second"
-    is_urged = lexeme.word == "with" and after is not None and after.word in {"you", "it", "her", "him"}
+    is_urged = lexeme.word == "with" and after is not None and after.word in _URGED
     if is_urged and last is not None and last.has("HOME", *DIRECTIONS):
         return [_as(lexeme, "with_you", "FILLER")]  # "over to the right with you"
-    if last is not None and last.word == "with_you":
+    if last is not None and last.word == "with_you" and lexeme.word in _URGED:
         return []
     if lexeme.word == "mind" and last is None and after is not None and after.has(*(f"{verb}-ING" for verb in VERBS)):
         return []  # "mind turning 15 left?"
