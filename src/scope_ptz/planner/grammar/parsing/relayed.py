@@ -17,6 +17,8 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement, subject_of
 
+_MAX_LEXEMES = 80  # longer texts are parsed as they are, so that parsing stays fast
+_MAX_REQUEST = 14  # maximum number of lexemes of a request to check a statement
 _ENDS = ("STOP", "QUESTION", "COLON")
 _OTHERS = "((DET)? (FREE|CAMERA|FILLER|STEPNOUN){1,3}?|SOMEONE|they|he|she)"
 _AUXILIARIES = "(BE|HAVEV|MODAL|been|just|now|also|keeps|keep|still|FILLER)*"
@@ -66,6 +68,8 @@ _EXCLUDED = ("NUM", "DEG", "HOME", "QUESTION", "IF", "EVERY", "PRESETNOUN", "WRA
 
 def relayed(text: str, presets: tuple[str, ...]) -> str | None:
     """Return an instruction without the words that relay it, or with its place first; None if it has no such words."""
+    if len(lexemes_of(text, presets)) > _MAX_LEXEMES:
+        return None
     asked = _without_relay(text, presets)
     placed = _with_place_first(asked or text, presets)
     return placed or asked
@@ -183,7 +187,8 @@ def _statement_end(lexemes: Sequence[Lexeme]) -> int:
             return 0
         is_break = x.has("COMMA", "DASH") or x.word == "so"
         has_preset = any(y.has("PRESET") for y in lexemes[:i]) or (lexemes[0].has("ANY") and is_statement(lexemes[:i]))
-        if x.has("STOP") or (is_break and (has_preset or full_match(_CHECK, lexemes[i:]) is not None)):
+        is_request = len(lexemes) - i <= _MAX_REQUEST and full_match(_CHECK, lexemes[i:]) is not None
+        if x.has("STOP") or (is_break and (has_preset or is_request)):
             return i
     return 0
 
