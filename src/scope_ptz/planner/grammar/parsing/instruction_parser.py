@@ -8,14 +8,14 @@ from functools import lru_cache
 
 from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step, Sweep
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
-from scope_ptz.planner.grammar.parsing.contractions import with_contractions
-from scope_ptz.planner.grammar.parsing.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotUnderstoodError, Source
-from scope_ptz.planner.grammar.parsing.plain_text import plainer
 from scope_ptz.planner.grammar.parsing.reader import Reader
-from scope_ptz.planner.grammar.parsing.relayed import relayed
-from scope_ptz.planner.grammar.parsing.repairs import repaired, unresolved_editing
-from scope_ptz.planner.grammar.parsing.rewordings import reworded
+from scope_ptz.planner.grammar.parsing.rewording.contractions import with_contractions
+from scope_ptz.planner.grammar.parsing.rewording.contrasts import without_denials
+from scope_ptz.planner.grammar.parsing.rewording.phrases import reworded
+from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer
+from scope_ptz.planner.grammar.parsing.rewording.relayed import relayed
+from scope_ptz.planner.grammar.parsing.rewording.repairs import repaired, unresolved_editing
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first

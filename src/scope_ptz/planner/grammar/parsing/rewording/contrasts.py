@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
-from scope_ptz.planner.grammar.parsing.repairs import ENDS, Repaired, without_text
+from scope_ptz.planner.grammar.parsing.rewording.repairs import ENDS, Repaired, without_text
 
 _KINDS = (DIRECTIONS, ("PRESET",), ("PAN", "TILT", "ZOOM"), ("IN", "OUT"))
 _DENIED = (

@@ -1,8 +1,7 @@
-"""Rewrite instructions that pass on what someone else says or wants, or that say where something is before saying what to do.
+"""Rewrite statements before a command: "there's a gap in the fence by the crossing, so go there and zoom in on it".
 
-"The boss wants to know how many cars there are" becomes "tell me how many cars there are", and "there is a gap in the fence by the
-crossing, so go there and zoom in on it" becomes "go to the crossing. there is a gap in the fence. zoom in on it". The new text is
-then parsed like any other. If it cannot be parsed, the original text is.
+The new text is "go to the crossing. zoom in on the gap in the fence". A statement to be checked becomes a question: "the lights are
+out, can you check?" is read as "are the lights out?".
 """
 
 from __future__ import annotations
@@ -17,30 +16,18 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_s
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement, subject_of
 
-_MAX_LEXEMES = 80  # longer texts are parsed as they are, so that parsing stays fast
+OTHERS = "((DET)? (FREE|CAMERA|FILLER|STEPNOUN){1,3}?|SOMEONE|they|he|she)"
+AUXILIARIES = "(BE|HAVEV|MODAL|been|just|now|also|keeps|keep|still|FILLER)*"
+"""Patterns for someone else as the subject of a sentence, and for what can stand between the subject and the verb."""
+
 _MAX_REQUEST = 14  # maximum number of lexemes of a request to check a statement
 _ENDS = ("STOP", "QUESTION", "COLON")
-_OTHERS = "((DET)? (FREE|CAMERA|FILLER|STEPNOUN){1,3}?|SOMEONE|they|he|she)"
-_AUXILIARIES = "(BE|HAVEV|MODAL|been|just|now|also|keeps|keep|still|FILLER)*"
-_ASKS = (
-    f"{_OTHERS} {_AUXILIARIES} (asking|asks|ask|asked|wondering|wonders|wants_to_know|needs_to_know|would_like_to_know)|"
-    "(the_boss_wants|they_want|he_wants|she_wants) to know"
-)
-_QUESTION = f"(FILLER|COMMA)* ({_ASKS}) (me|us|SELF|FILLER)* (?=IF|WHQ|HOWMANY|whether|how|BE there)"
-"""Someone asks a question: "dispatch is asking how many trucks are at the gate"."""
-
-_REQUEST = f"(FILLER|COMMA)* {_OTHERS} {_AUXILIARIES} (asked|told|instructed|wants|needs|like|want|need) (me|us|you) to"
-"""Someone asks for something to be done: "Jim asked me to check the crossing"."""
-
-_WANTS_PICTURE = f"(FILLER|COMMA)* {_OTHERS} {_AUXILIARIES} (asking|asks|asked|calling) for (?=(DET|ANY|NUM|ANOTHER)? PICTURE)"
-"""Someone asks for a picture: "the boss is asking for a snapshot"."""
-
 _HEARD = (
     "(reckon|reckons|think|thinks|thought|say|says|said|heard|hear|hears|believe|believes|bet|guess|suspect|suspects|fear|swear|swears|"
     "reports|reported|mentioned|noticed|claims|(told|telling|tells) (me|us)?)"
 )
 _HEARSAY = (
-    f"(FILLER|COMMA)* ((({_OTHERS}|i|we) {_AUXILIARIES} {_HEARD}|(i|we) HAVEV been told|(i|we) (was|were) told) (that)? "
+    f"(FILLER|COMMA)* ((({OTHERS}|i|we) {AUXILIARIES} {_HEARD}|(i|we) HAVEV been told|(i|we) (was|were) told) (that)? "
     "((they|he|she) (SEE-ED|spotted|noticed))?|i_think|"
     "(it (looks|seems|sounds) (like|as_if|as_though|that)?|apparently|looks like|seems like|sounds like))"
 )
@@ -66,33 +53,7 @@ _PRONOUNS = frozenset({"it", "him", "her", "them", "they", "he", "she"})
 _EXCLUDED = ("NUM", "DEG", "HOME", "QUESTION", "IF", "EVERY", "PRESETNOUN", "WRAPPER", *DIRECTIONS, *MARKERS)
 
 
-def relayed(text: str, presets: tuple[str, ...]) -> str | None:
-    """Return an instruction without the words that relay it, or with its place first; None if it has no such words."""
-    if len(lexemes_of(text, presets)) > _MAX_LEXEMES:
-        return None
-    asked = _without_relay(text, presets)
-    placed = _with_place_first(asked or text, presets)
-    return placed or asked
-
-
-def _without_relay(text: str, presets: tuple[str, ...]) -> str | None:
-    """Return the text with "tell me" for "dispatch is asking", and without "Jim asked me to"; None for other texts."""
-    lexemes = lexemes_of(text, presets)
-    for i, x in enumerate(lexemes):
-        if i and not lexemes[i - 1].has("STOP", "COMMA", "AND", "BUT") and x.word != "so":
-            continue
-        rest = lexemes[i:]
-        for pattern, words in ((_QUESTION, "tell me "), (_REQUEST, "please "), (_WANTS_PICTURE, "take ")):
-            match = match_start(pattern, rest)
-            if match is None or match.size >= len(rest) or (words == "please " and not rest[match.size].has(*VERBS)):
-                continue
-            if any(y.has("NOT", "NEGATED", "NONE", "NOONE") for y in rest[: match.size]):
-                continue
-            return f"{text[: x.start]}{words}{text[rest[match.size].start :]}"
-    return None
-
-
-def _with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
+def with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     """Return the text with the preset of its first statement in front: "go to the crossing. ..."; None for other texts."""
     lexemes = lexemes_of(text, presets)
     end = _statement_end(lexemes)

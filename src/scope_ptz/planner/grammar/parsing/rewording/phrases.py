@@ -9,8 +9,8 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
-from scope_ptz.planner.grammar.parsing.preset_rewordings import with_presets_reworded
-from scope_ptz.planner.grammar.parsing.word_rewordings import reworded_in_context
+from scope_ptz.planner.grammar.parsing.rewording.preset_lists import with_presets_reworded
+from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in_context
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
