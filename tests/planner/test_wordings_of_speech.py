@@ -86,6 +86,16 @@ PLAIN = [
 ]
 """Words that are called out, and tag questions."""
 PRESET_LISTS = [
+    (
+        "compare the number of trucks at the gate with the number of wagons at the crossing",
+        "go_to_preset(name=gate); count_objects(description=trucks, view=current); "
+        "go_to_preset(name=crossing); count_objects(description=wagons, view=current)",
+    ),
+    (
+        "count the vans at the gate and afterwards the trucks at the crossing",
+        "go_to_preset(name=gate); count_objects(description=vans, view=current); "
+        "go_to_preset(name=crossing); count_objects(description=trucks, view=current)",
+    ),
     ("Is the barrier at the crossing up?", "go_to_preset(name=crossing); query_answer(question=Is the barrier up?, view=current)"),
     (
         "If the barrier at the crossing is up, go home.",
@@ -144,6 +154,8 @@ PRESET_LISTS = [
 ]
 """Presets inside a question, lists of presets, and every preset."""
 SLIPS = [
+    ("The camera shall be rotated 30 degrees to the right.", "adjust_ptz(pan_deg=30)"),
+    ("Please do the needful and take one photo of the gate.", "go_to_preset(name=gate); take_image()"),
     ("take us to the gate an tilt down 6", "go_to_preset(name=gate); adjust_ptz(tilt_deg=-6)"),
     (
         "if you see neither people nor cars, go home",
@@ -208,6 +220,7 @@ def test_instructions_as_people_say_them(text: str, calls: str) -> None:
         "zoom in on the car down 10",
         "go to the busiest preset",
         "give me 3x",
+        "Count the wagons, but not the engine.",
         "never mind",
     ],
 )

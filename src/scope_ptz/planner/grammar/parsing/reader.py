@@ -209,6 +209,8 @@ class Reader:
             return None
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
             return None
+        if asked and full_match("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM", rest):
+            return (AtPlaces(places, (Ask(f"Are there {text_of(self.source, rest).lower()} people there?"),)),)
         if full_match("(BE)? (SOMEONE|NOONE|anything|nothing)", rest):
             question = text_of(self.source, rest)
             return (AtPlaces(places, (Ask(f"{'' if rest[0].has('BE') else 'Is '}{question} there?"),)),)

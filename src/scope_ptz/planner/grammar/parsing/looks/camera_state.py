@@ -53,7 +53,7 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         lexemes,
     )
     is_facing = full_match(
-        "(FILLER)* (which|what|WHQ) (way|direction) BE (SELF|CAMERA|it|DET CAMERA) "
+        "(FILLER)* (which|what|WHQ) (way|direction|SIDE) (BE (SELF|CAMERA|it|DET CAMERA)|(SELF|CAMERA|it|DET CAMERA) BE) "
         "(looking|facing|pointing|AIM-ING|aimed|NOW|FILLER)+",
         lexemes,
     )

@@ -11,6 +11,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Compare,
     CompareWithBefore,
     Comparison,
+    Count,
     Step,
     Thing,
     Unclear,
@@ -180,7 +181,7 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     return None
 
 
-def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
     """Read "compare vans at the gate with vans in the yard"."""
     head = r"(COMPARE (DET|COUNTNOUN)*|(WHQ BE)? (DET)? difference (in|between) (DET|COUNTNOUN)*)"
     second = r"(with|to|AND|against) (DET|those|COUNTNOUN)* (?P<again>_+?)?? (at|in|on) (?P<other>_+)"
@@ -189,8 +190,10 @@ def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | None
         return None
     thing, places = thing_of(source, match["thing"]), (place_of(source, match["one"]), place_of(source, match["other"]))
     again = thing_of(source, match["again"]) if match.has("again") else thing
-    if thing is None or again != thing or not places[0] or not places[1]:
+    if thing is None or again is None or not places[0] or not places[1]:
         return None
+    if again != thing:  # "compare the trucks at the gate with the wagons in the yard"
+        return tuple(AtPlaces((place,), (Count((each,)),)) for place, each in zip(places, (thing, again), strict=True) if place)
     return WhichPreset(thing, "more", (places[0], places[1]))
 
 

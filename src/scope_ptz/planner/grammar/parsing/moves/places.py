@@ -141,7 +141,8 @@ def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, .
         (
             rf"(SWITCH|CARRY|SCAN|SHOW|AIM|TURN|SWITCH-ING|CARRY-ING|through|to|at|in|me|SELF|CAMERA|FILLER|over|on|"
             rf"for|from|up|DET (tour|round|lap|circuit) of|tour|around|round|FIRSTLY|around|AROUND|a tour of|of|TAKE|it|TRACK|do|"
-            rf"run|each|DOACT|DET (rounds|round) of|DET rounds COMMA|DET FREE? (tour|round) of)* "
+            rf"run|each|DOACT|(DET|NUM|LIMIT|complete|quick)+ (tour|round|lap|circuit) of|DET (rounds|round) of|DET rounds COMMA|"
+            rf"DET FREE? (tour|round) of)* "
             rf"(?P<places>{EVERY_PLACE}) (INTURN|COMMA|FILLER|one|by|in|turn|AND|GLUE)*"
         ),
         lexemes,

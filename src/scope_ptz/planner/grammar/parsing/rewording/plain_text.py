@@ -12,6 +12,9 @@ _GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
 _PICTURES = "photo|picture|pic|snap|shot|still"
 _GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
 _TAGS = "right|correct|yeah|is there|are they|is that right"
+_TURNED = {
+    "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
+}  # fmt: skip
 _REPLACEMENTS = tuple(
     (re.compile(pattern, re.IGNORECASE), plain)
     for pattern, plain in (
@@ -27,7 +30,19 @@ _REPLACEMENTS = tuple(
         (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
         (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some)\b[\w ]*\b(?:{_PICTURES})\b)", "take "),
         (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
-        (r"\b(?:let['’]?s )?do (?:the|my|our) rounds:", ""),
+        (r"\b(?:let['’]?s )?do (?:the|my|our|a|a quick|one) rounds?:", ""),
+        (
+            rf"\bthe camera (?:shall|should|must|needs to|has to) be ({'|'.join(_TURNED)})\b",
+            lambda match: _TURNED[match[1].lower()],
+        ),
+        (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
+        (r"\bcheck once\b", "check"),
+        (r"\b(?:please |kindly )?do the needful(?: and|,)?", ""),
+        (r"\brevert with\b", "tell me"),
+        (r"^(?:one|just one) (?:small|little|more|last|quick) (?:request|thing|favou?r)[,:]\s*", ""),
+        (r"^(?:ah |oh |ach |sure )?go on,\s*", ""),
+        (r"^(?:jaysus|jesus|christ|lord|good god|good lord|good grief),\s*", ""),
+        (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
     )
 )
 """Patterns with their replacements."""
