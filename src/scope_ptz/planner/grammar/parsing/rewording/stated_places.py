@@ -70,7 +70,7 @@ def with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     goes_there = match_start(_THERE, rest)
     counts = match_start("(FILLER)* HOWMANY", rest) is not None
     if (placed := _place_in(said, anywhere=goes_there is not None, counted=counts)) is None:
-        return _about_newcomer(text, said, rest) or _checked(text, said, rest)
+        return _about_subject(text, said, rest) or _checked(text, said, rest)
     before, name, after = placed
     stated = _without_source(before)
     thing = _thing_in(stated)
@@ -100,7 +100,7 @@ def _count_of(text: str, rest: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str
     return f"how many {text[nouns[0].start : thing[-1].end]} {text[match['rest'][0].start :]}"
 
 
-def _about_newcomer(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
+def _about_subject(text: str, said: Sequence[Lexeme], rest: Sequence[Lexeme]) -> str | None:
     """Return "zoom in on the kid" for "a kid just fell over, zoom in on him"; None for other texts."""
     subject = subject_of(said)
     if not subject or not subject[0].has("ANY") or not rest[0].has(*VERBS) or _is_excluded(said):
