@@ -154,6 +154,9 @@ PRESET_LISTS = [
 ]
 """Presets inside a question, lists of presets, and every preset."""
 SLIPS = [
+    ("Hurry up and go to the gate.", "go_to_preset(name=gate)"),
+    ("Listen up: pan left 20.", "adjust_ptz(pan_deg=-20)"),
+    ("Go right out.", "adjust_ptz(zoom_limit=out)"),
     ("The camera shall be rotated 30 degrees to the right.", "adjust_ptz(pan_deg=30)"),
     ("Please do the needful and take one photo of the gate.", "go_to_preset(name=gate); take_image()"),
     ("take us to the gate an tilt down 6", "go_to_preset(name=gate); adjust_ptz(tilt_deg=-6)"),
@@ -220,6 +223,8 @@ def test_instructions_as_people_say_them(text: str, calls: str) -> None:
         "zoom in on the car down 10",
         "go to the busiest preset",
         "give me 3x",
+        "Hurry up.",
+        "Slow down.",
         "Count the wagons, but not the engine.",
         "never mind",
     ],

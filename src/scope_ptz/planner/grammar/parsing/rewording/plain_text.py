@@ -37,10 +37,12 @@ _REPLACEMENTS = tuple(
         ),
         (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
         (r"\bcheck once\b", "check"),
+        (r"\b(?:go|come|move|pull) right (in|out)(?=[.,!;]|$| then\b| and\b)", r"zoom all the way \1"),
         (r"\b(?:please |kindly )?do the needful(?: and|,)?", ""),
         (r"\brevert with\b", "tell me"),
         (r"^(?:one|just one) (?:small|little|more|last|quick) (?:request|thing|favou?r)[,:]\s*", ""),
         (r"^(?:ah |oh |ach |sure )?go on,\s*", ""),
+        (r"^heads up[,!:.]\s*", ""),
         (r"^(?:jaysus|jesus|christ|lord|good god|good lord|good grief),\s*", ""),
         (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
     )
