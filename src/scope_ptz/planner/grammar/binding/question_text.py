@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Literal
 
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
@@ -31,6 +32,9 @@ _WINNER = re.compile(
     r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
     re.IGNORECASE,
 )
+_WHICH_HAS = re.compile(
+    r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(most|fewest|more|fewer|least)\W*", re.IGNORECASE
+)
 _ANY_THERE = re.compile(
     r"(?:is there|are there|(?:can|do) you see|do we have|have we got|is|are) "
     r"(?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",
@@ -51,6 +55,12 @@ _AT_PRESET = re.compile(r"(.+?) (at|from|in) (the )?([\w -]+?)( preset| view| po
 def is_answered_by_counts(question: str) -> bool:
     """Return whether earlier counts answer the question, such as "which has the most?", so that it need not be asked."""
     return bool(_WINNER.fullmatch(question.strip()) or _ANY_THERE.fullmatch(question.strip()))
+
+
+def which_has(question: str) -> Literal["more", "fewer"] | None:
+    """Return the comparison that "which has more?" asks for without saying of what; None for other questions."""
+    match = _WHICH_HAS.fullmatch(question.strip())
+    return None if match is None else "more" if match[1].lower().startswith("mo") else "fewer"
 
 
 def is_request_to_describe(question: str) -> bool:

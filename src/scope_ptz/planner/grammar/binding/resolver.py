@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
@@ -20,6 +20,7 @@ from scope_ptz.planner.grammar.binding.question_text import (
     sought_thing,
     split_at_preset,
     two_questions,
+    which_has,
     with_antecedent,
 )
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
@@ -72,6 +73,7 @@ class Resolver:
         whole_scene: Whether questions are about the whole scene instead of the current view.
         still: Whether the camera must not move.
         looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
+        counts: The presets at which earlier turns counted something, each with the description.
     """
 
     presets: tuple[str, ...] | None
@@ -83,15 +85,26 @@ class Resolver:
     whole_scene: bool = False
     looked: bool = False
     still: bool = False
+    counts: list[tuple[str, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        at = ""  # the preset at which the camera was
         for turn in self.conversation:
             for exchange in turn.exchanges:
                 for outcome in exchange.outcomes:
                     arguments = outcome.call.arguments
-                    self.antecedent = str(arguments.get("description", self.antecedent))
+                    self.antecedent = str(arguments.get("description", "")) or self._sought(arguments) or self.antecedent
                     if outcome.call.name == "go_to_preset" and outcome.error is None:
                         self.preset = str(arguments.get("name", ""))
+                        at = self.preset
+                    elif outcome.call.name == "count_objects" and at:
+                        self.counts.append((at, str(arguments.get("description", ""))))
+                    elif outcome.call.name in {"adjust_ptz", "go_home", "zoom_to_object", "track_object"}:
+                        at = ""
+
+    def _sought(self, arguments: Mapping[str, object]) -> str:
+        """Return what the question of an earlier call looked for: "red van" for "is there a red van?"."""
+        return sought_thing(str(arguments.get("question", "")))
 
     def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
         """Return the steps with all names resolved.
@@ -145,8 +158,8 @@ class Resolver:
 
     def _with_noun(self, text: str) -> str:
         """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
-        prepositions = r" (?:on|in|at|by|with|near|behind) "
-        parts = re.split(prepositions, self.antecedent)
+        prepositions = r" (?:on|in|at|by|with|without|near|behind) "
+        parts = re.split(rf"{prepositions}| (?:not )?\w+ing ", self.antecedent)
         is_in_phrase = len(parts) > 1 and re.search(rf"{prepositions}[\w ]*\bones?\b", text) is not None
         head = parts[-1 if is_in_phrase else 0].split(" ")[-1]  # after cars on the red bridge: "cars on the blue one"
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
@@ -257,6 +270,8 @@ class Resolver:
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.counted and is_answered_by_counts(step.question):
             return []
+        if way := which_has(step.question):
+            return self._bind(self._earlier_comparison(way))
         if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(f"{step.question} {self.antecedent if 'time' in step.question else ''}"):
@@ -271,6 +286,15 @@ class Resolver:
         self.antecedent = sought_thing(question) or self.antecedent
         zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.still else []
         return [*place, *zoom, ast.Ask(question, self._view(step.view))]
+
+    def _earlier_comparison(self, way: ast.Comparison) -> ast.WhichPreset:
+        """Return the comparison of the two presets at which earlier turns last counted the same thing."""
+        for place, description in reversed(self.counts[:-1]):
+            last, counted = self.counts[-1]
+            if place != last and description == counted:
+                places = tuple(ast.PresetRef(name, explicit=True) for name in (place, last))
+                return ast.WhichPreset(ast.Thing(counted), way, places)
+        raise UnresolvedError("Which presets shall I compare, and what shall I count there?")
 
     def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
         """Split a question that ends with a preset ("... at gate?") into the question and a step to the preset."""
@@ -328,11 +352,13 @@ class Resolver:
         return []
 
     def _doagain(self, step: ast.DoAgain) -> Sequence[ast.Step]:
+        from scope_ptz.planner.grammar.binding.continuations import continued_text
         from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
-        for turn in reversed(self.conversation):
-            steps = parse(turn.instruction, self.presets or ()).steps
-            if steps and not any(isinstance(s, ast.DoAgain) for s in steps):
+        for i in range(len(self.conversation) - 1, -1, -1):
+            said = continued_text(self.conversation[i].instruction, self.conversation[:i], self.presets or ())
+            steps = parse(said, self.presets or ()).steps
+            if steps and not any(isinstance(s, ast.DoAgain | ast.Unclear) for s in steps):
                 return self.bind(steps * (step.times or 1))
         raise UnresolvedError("What shall I do again?")
 

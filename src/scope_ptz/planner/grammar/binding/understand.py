@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.consistency.check import not_understood, objection
@@ -41,8 +42,10 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
     preset_names = None if presets is None else tuple(presets)
+    if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
+        return Understanding(clarification=question)
     resolver = Resolver(preset_names, tuple(conversation))
-    parsed = parse(instruction, preset_names or ())
+    parsed = parse(continued_text(instruction, conversation, preset_names or ()), preset_names or ())
     try:
         if parsed.steps is None:
             raise _not_parsed(parsed)

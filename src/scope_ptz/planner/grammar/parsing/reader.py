@@ -22,6 +22,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Repeat,
     Report,
     Rescope,
+    SameAt,
     Snap,
     Step,
     Unclear,
@@ -42,7 +43,7 @@ from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_st
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, without_inner_place
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
@@ -96,6 +97,10 @@ class Reader:
             raise NotUnderstoodError(lexemes)
         if full_match(_CALL_SIGN, lexemes):
             return ()
+        if asked and (elsewhere := full_match("(FILLER)* (AND|what_about|how_about) (at|in|on) (?P<places>_+)", lexemes)):
+            places = places_of(self.source, elsewhere["places"])
+            if places is not None:
+                return (SameAt(places),)  # "how many cones are there?", and in the next turn "and at the gate?"
         lexemes = bare_clause(lexemes)
         if asked and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
             lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"

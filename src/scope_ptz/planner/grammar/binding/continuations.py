@@ -1,0 +1,77 @@
+"""Read instructions that continue the move of an earlier turn: "a bit more", "another 10", "the other way"."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
+
+_NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
+_LITTLE = r"(?:just )?(?:a )?(?:little |tiny |wee )?(?:bit|touch|smidge|smidgen|tad|fraction|hair|little)"
+_MORE = re.compile(
+    rf"(?:and |now |ok |okay |yes |please )*(?:(?P<little>{_LITTLE}) (?:more|further)|(?:another|by another) (?P<small>{_LITTLE})"
+    rf"|{_NUMBER} (?:more|further)|(?:another|by another) {_NUMBER.replace('number', 'added')})(?: please)?[.!]*",
+    re.IGNORECASE,
+)
+_OTHER_WAY = re.compile(
+    r"(?:no|nope|wait|sorry|now|and)?,? ?(?:the|in the) (?:other|opposite|wrong) (?:way|direction)(?: please)?[.!]*", re.IGNORECASE
+)
+_ASKED = re.compile(r"By how many degrees shall I ((?:pan|tilt) (?:left|right|up|down))\?")
+"""The question about "the other way", which the next turn may answer with a number."""
+
+_WAYS = {("pan", 1): "right", ("pan", -1): "left", ("tilt", 1): "up", ("tilt", -1): "down"}
+_OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "in": "out", "out": "in"}
+
+
+def continued_text(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str:
+    """Return "pan left a bit" for "a bit more" after a turn that panned left; other instructions unchanged.
+
+    A number that answers the question about "the other way" becomes the move that it asks about.
+    """
+    asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
+    if asked is not None and (amount := re.fullmatch(rf"(?:by )?{_NUMBER}[.!]*", instruction.strip(), re.IGNORECASE)):
+        return f"{asked[1]} {amount['number']} degrees"
+    match = _MORE.fullmatch(instruction.strip())
+    last = _last_way(conversation, presets) if match else None
+    if match is None or last is None:
+        return instruction
+    axis, way = last
+    number = match["number"] or match["added"]
+    if axis == "zoom":
+        return instruction if number else f"zoom {way} a bit"
+    return f"{axis} {way} {number} degrees" if number else f"{axis} {way} a bit"
+
+
+def question_about_other_way(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
+    """Return the question about "the other way" after a turn that panned left; None for other instructions."""
+    last = _last_way(conversation, presets) if _OTHER_WAY.fullmatch(instruction.strip()) else None
+    if last is None:
+        return None
+    axis, way = last
+    amount = "By what factor" if axis == "zoom" else "By how many degrees"
+    return f"{amount} shall I {axis} {_OPPOSITE[way]}?"
+
+
+def _last_way(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, str] | None:
+    """Return the axis and the direction of the last move, if the last turn that did anything only moved along one axis."""
+    for i in range(len(conversation) - 1, -1, -1):
+        text = continued_text(conversation[i].instruction, conversation[:i], presets)
+        steps = parse(text, presets).steps
+        if not steps or all(isinstance(step, ast.DoAgain) for step in steps):
+            continue
+        last = steps[-1]
+        if not isinstance(last, ast.Move) or len(last.parts) != 1:
+            return None
+        part = last.parts[0]
+        if isinstance(part, ast.Turn):
+            return part.axis, _WAYS[part.axis, 1 if part.sign > 0 else -1]
+        if isinstance(part, ast.Zoom) and part.kind == "factor":
+            return "zoom", "in" if part.value > 1 else "out"
+        return None
+    return None

@@ -1,0 +1,76 @@
+"""Turns that refer to earlier turns of the conversation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.base import PastTurn
+from tests.planner.stage import Stage
+
+YES = {"answer": "Yes, there is one.", "known": True}
+
+
+def last_calls(*instructions: str, looks: tuple[Any, ...] = (1,)) -> tuple[list[tuple[str, dict[str, Any]]], str]:
+    """Return the calls and the reply of the last turn of a conversation."""
+    stage = Stage(looks)
+    turns: tuple[PastTurn, ...] = ()
+    for instruction in instructions:
+        stage.calls.clear()
+        turns = (*turns, stage.turn(instruction, turns))
+    return list(stage.calls), turns[-1].reply
+
+
+@pytest.mark.parametrize(
+    ("instructions", "arguments"),
+    [
+        (("pan left 20", "a bit more"), {"pan_deg": -5}),
+        (("pan left 20", "another 7"), {"pan_deg": -7}),
+        (("tilt up 10", "3 degrees more"), {"tilt_deg": 3}),
+        (("pan left 20", "again", "a touch further"), {"pan_deg": -5}),
+        (("pan left 20", "another 7", "again"), {"pan_deg": -7}),
+        (("zoom in", "a bit more"), {"zoom_factor": 1.25}),
+        (("pan left 20", "the other way", "30"), {"pan_deg": 30}),
+        (("pan left 20", "the other way", "again"), {"pan_deg": -20}),
+    ],
+)
+def test_a_turn_continues_the_last_move(instructions: tuple[str, ...], arguments: dict[str, float]) -> None:
+    calls, _ = last_calls(*instructions)
+    assert calls == [("adjust_ptz", arguments)]
+
+
+@pytest.mark.parametrize("before", ["go to the gate", "count the cones", "pan left 20 and tilt up 5"])
+def test_more_of_nothing_is_asked_about(before: str) -> None:
+    calls, reply = last_calls(before, "a bit more")
+    assert not calls
+    assert reply.endswith("?")
+
+
+def test_the_other_way_asks_how_far() -> None:
+    assert last_calls("pan left 20", "no, the other way") == ([], "By how many degrees shall I pan right?")
+
+
+def test_it_is_the_thing_that_was_asked_about() -> None:
+    calls, _ = last_calls("how many cones are there?", "is there a truck?", "zoom in on it", looks=(2, YES, True))
+    assert calls == [("zoom_to_object", {"description": "truck"})]
+
+
+def test_one_is_the_head_noun_of_the_last_description() -> None:
+    calls, _ = last_calls("how many workers are wearing helmets?", "zoom in on the one on the left", looks=(2, True))
+    assert calls == [("zoom_to_object", {"description": "worker on the left"})]
+
+
+def test_a_question_is_repeated_at_another_preset() -> None:
+    calls, _ = last_calls("how many cones are there?", "and at the gate?")
+    assert calls == [("go_to_preset", {"name": "gate"}), ("count_objects", {"description": "cones", "view": "current"})]
+
+
+def test_counts_of_earlier_turns_are_compared() -> None:
+    calls, reply = last_calls("go to the highway", "count the cones", "and at the gate?", "which has more?", looks=(4, 1, 4, 1))
+    assert [name for name, _ in calls] == ["go_to_preset", "count_objects"] * 2
+    assert reply.endswith("Preset highway shows more cones. (Source: the simulator's ground truth.)")
+
+
+def test_a_comparison_without_counts_is_asked_about() -> None:
+    assert last_calls("go home", "which has more?") == ([], "Which presets shall I compare, and what shall I count there?")
