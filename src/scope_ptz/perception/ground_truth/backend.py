@@ -108,7 +108,8 @@ class GroundTruthPerception(Perception):
     def _answer(self, frame: Frame, question: str) -> TruthAnswer:
         from scope_ptz.english.grammar.questions.question_parser import parse_question
         from scope_ptz.perception.ground_truth.answers import answer
-        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns
+        from scope_ptz.perception.ground_truth.answers.thing_names import unknown_answer
+        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns, find_unknown_qualities
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
@@ -120,6 +121,8 @@ class GroundTruthPerception(Perception):
         reply = answer(view, parsed)
         if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
+        if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unstated := find_unknown_qualities(view, parsed)):
+            return unknown_answer(f"I cannot tell: the scene does not say what is {_quote_list(unstated)}")
         return reply
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:
@@ -127,7 +130,7 @@ class GroundTruthPerception(Perception):
         from scope_ptz.english.grammar.questions.recognition import is_description
         from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
         from scope_ptz.perception.ground_truth.thing_search import find
-        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns
+        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns, find_unknown_qualities
 
         if not description.strip():
             raise PerceptionError("The description is empty.")
@@ -141,10 +144,20 @@ class GroundTruthPerception(Perception):
             )
         if not things and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the description. Name a kind of thing.")
+        if not things and (unstated := find_unknown_qualities(view, parsed)):
+            raise NotUnderstoodError(_UNSTATED.format(words=_quote_list(unstated)))
         return things
 
 
-_ABSENCE_BEGINNINGS = ("There is no ", "There are no ", "I cannot tell: there is no ", "I cannot tell: there are no ")
+_UNSTATED = "The scene does not say what is {words}, so its ground truth cannot tell. Describe the things by what a picture shows."
+_ABSENCE_BEGINNINGS = (
+    "No, there is no ",
+    "No, there are no ",
+    "There is no ",
+    "There are no ",
+    "I cannot tell: there is no ",
+    "I cannot tell: there are no ",
+)
 """How answers begin that state that something is absent."""
 
 

@@ -1,4 +1,4 @@
-"""Distinguish unknown nouns from the names of things that are not in view."""
+"""Distinguish unknown nouns from the names of things that are not in view, and qualities that no scene states from absent ones."""
 
 from __future__ import annotations
 
@@ -9,12 +9,18 @@ from typing import Any
 from scope_ptz import english
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS, IGNORABLE_WORDS
 from scope_ptz.perception.ground_truth.view import View
 
 _PRONOUNS = frozenset({("it",), ("them",)})
 """Pronouns that cannot refer to anything, because no sentence precedes a question about a picture."""
+
+_OPINIONS = frozenset(
+    {"wrong", "odd", "fancy", "amiss", "suspect", "weird", "nice", "interesting", "lost", "missing", "drunk", "hurt"}
+)
+"""Words for qualities that no picture states, although they are not only adjectives."""
 
 
 def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[str]:
@@ -39,6 +45,27 @@ def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> 
             and not any(word in known or english.cardinal(word) is not None for word in phrase.words)
         )
     ]
+
+
+def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question) -> list[str]:
+    """Return the adjectives beside a noun that the scene says nothing about: "dangerous" in "anything dangerous".
+
+    Words that can also be nouns or verbs ("police car", "open gate") are not returned, unless they express an opinion.
+    """
+    stated = frozenset[str]().union(*view.values.values())
+    known = english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
+    found: list[str] = []
+    for phrase in _phrases(parsed):
+        spans = nouns_in(phrase.words, view.nouns)
+        in_nouns = {i for start, end in spans for i in range(start, end)}
+        others = [word for i, word in enumerate(phrase.words) if i not in in_nouns and word not in known]
+        found += [word for word in others if spans and _is_unstated_quality(word)]
+    return found
+
+
+def _is_unstated_quality(word: str) -> bool:
+    known = parts_of_speech(word)
+    return word in _OPINIONS or ("ADJ" in known and not known & {"NOUN", "VERB", "ADV", "PROPN"})
 
 
 def _phrases(node: Any) -> Iterator[tree.Phrase]:
