@@ -85,3 +85,17 @@ async def test_an_empty_search_in_an_unknown_place_is_not_a_count_of_zero() -> N
     assert (await truth.query(yard.frame(), "how many people are on the pavement?")).known is False
     assert (await truth.detect(yard.frame(), "cars in the left lane")).boxes
     assert (await truth.detect(yard.frame(), "dogs")).boxes == ()
+
+
+@pytest.mark.anyio
+async def test_qualities_that_no_scene_states_are_not_absent() -> None:
+    truth = GroundTruthPerception(lambda _: yard.StandInScene(), lambda *_: yard.truth())  # type: ignore[arg-type, return-value]
+    with pytest.raises(NotUnderstoodError, match="does not say what is 'dangerous'"):
+        await truth.detect(yard.frame(), "dangerous cars")
+    with pytest.raises(NotUnderstoodError, match="'florp'"):
+        await truth.query(yard.frame(), "is there a florp?")
+    for question in ("is there anything unusual?", "is there a fancy car?", "is everyone ok?", "is everything under control?"):
+        reply = await truth.query(yard.frame(), question)
+        assert not reply.known, question
+        assert reply.text.startswith("I cannot tell")
+    assert (await truth.query(yard.frame(), "is there a giraffe?")).known

@@ -109,10 +109,12 @@ class GroundTruthPerception(Perception):
         from scope_ptz.english.grammar.questions.question_parser import parse_question
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.answers.thing_names import unknown_answer
-        from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns, find_unknown_qualities
+        from scope_ptz.perception.ground_truth.unknown_words import asks_for_judgement, find_unknown_nouns, find_unknown_qualities
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
+        if asks_for_judgement(question):
+            return unknown_answer("I cannot tell that from the picture")
         parsed, view = parse_question(question), self.view(frame, question)
         if parsed is None:
             raise NotUnderstoodError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -17,10 +18,20 @@ from scope_ptz.perception.ground_truth.view import View
 _PRONOUNS = frozenset({("it",), ("them",)})
 """Pronouns that cannot refer to anything, because no sentence precedes a question about a picture."""
 
+_JUDGEMENT = re.compile(
+    r"\b(?:everything|everyone|everybody|all|it|things|they)\s+(?:still\s+)?(?:ok|okay|alright|all right|fine|in order|normal"
+    r"|under control)\W*$",
+    re.IGNORECASE,
+)
 _OPINIONS = frozenset(
     {"wrong", "odd", "fancy", "amiss", "suspect", "weird", "nice", "interesting", "lost", "missing", "drunk", "hurt"}
 )
 """Words for qualities that no picture states, although they are not only adjectives."""
+
+
+def asks_for_judgement(question: str) -> bool:
+    """Return whether a question asks if all is well, which no ground truth states: "is everyone ok?"."""
+    return _JUDGEMENT.search(question) is not None
 
 
 def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> list[str]:
