@@ -31,6 +31,7 @@ def last_calls(*instructions: str, looks: tuple[Any, ...] = (1,)) -> tuple[list[
         (("pan left 20", "again", "a touch further"), {"pan_deg": -5}),
         (("pan left 20", "another 7", "again"), {"pan_deg": -7}),
         (("zoom in", "a bit more"), {"zoom_factor": 1.25}),
+        (("pan left 20", "more"), {"pan_deg": -20}),
         (("pan left 20", "the other way", "30"), {"pan_deg": 30}),
         (("pan left 20", "the other way", "again"), {"pan_deg": -20}),
     ],
@@ -66,10 +67,31 @@ def test_a_question_is_repeated_at_another_preset() -> None:
     assert calls == [("go_to_preset", {"name": "gate"}), ("count_objects", {"description": "cones", "view": "current"})]
 
 
+def test_a_share_of_the_last_count_is_counted() -> None:
+    calls, _ = last_calls("how many people are there?", "how many are sitting down?")
+    assert calls == [("count_objects", {"description": "people sitting down", "view": "current"})]
+
+
+@pytest.mark.parametrize(("instruction", "preset"), [("go to the next preset", "highway"), ("and the previous one", "highway")])
+def test_presets_have_neighbours(instruction: str, preset: str) -> None:
+    assert last_calls("go to the gate", instruction)[0] == [("go_to_preset", {"name": preset})]
+
+
 def test_counts_of_earlier_turns_are_compared() -> None:
     calls, reply = last_calls("go to the highway", "count the cones", "and at the gate?", "which has more?", looks=(4, 1, 4, 1))
     assert [name for name, _ in calls] == ["go_to_preset", "count_objects"] * 2
     assert reply.endswith("Preset highway shows more cones. (Source: the simulator's ground truth.)")
+
+
+def test_there_is_the_preset_that_was_found() -> None:
+    calls, _ = last_calls("which preset has the most cones?", "go there", looks=(4, 1))
+    assert calls == [("go_to_preset", {"name": "gate"})]
+    assert last_calls("which preset has the fewest cones?", "go there", looks=(4, 1))[0] == [("go_to_preset", {"name": "highway"})]
+    earlier = ("go to the highway", "count the cones", "and at the gate?", "which has more?")
+    assert last_calls(*earlier, "go there", looks=(4, 1, 4, 1))[0] == [("go_to_preset", {"name": "highway"})]
+    calls, reply = last_calls("which preset has the most cones?", "go there", looks=(2,))
+    assert not calls
+    assert reply == "Where is 'there'? gate and highway show the same number."
 
 
 def test_a_comparison_without_counts_is_asked_about() -> None:

@@ -1,4 +1,4 @@
-"""Read instructions that continue the move of an earlier turn: "a bit more", "another 10", "the other way"."""
+"""Read instructions that continue earlier turns: "a bit more", "another 10", "the other way", "the next preset"."""
 
 from __future__ import annotations
 
@@ -19,6 +19,13 @@ _MORE = re.compile(
     rf"|{_NUMBER} (?:more|further)|(?:another|by another) {_NUMBER.replace('number', 'added')})(?: please)?[.!]*",
     re.IGNORECASE,
 )
+_SAME = re.compile(r"(?:and |now |ok |okay |yes |please )*(?:more|further|keep going|some more)(?: please)?[.!]*", re.IGNORECASE)
+_NEIGHBOUR = re.compile(
+    r"(?:and |now |ok |okay |please )*(?:(?:go|move|switch|jump|on) (?:on )?to |show (?:me )?)?"
+    r"(?:the )?(?P<which>next|following|previous)"
+    r" (?:preset|one|position|view|place|stop)(?: please)?[.!?]*",
+    re.IGNORECASE,
+)
 _OTHER_WAY = re.compile(
     r"(?:no|nope|wait|sorry|now|and)?,? ?(?:the|in the) (?:other|opposite|wrong) (?:way|direction)(?: please)?[.!]*", re.IGNORECASE
 )
@@ -37,6 +44,10 @@ def continued_text(instruction: str, conversation: Sequence[PastTurn], presets: 
     asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
     if asked is not None and (amount := re.fullmatch(rf"(?:by )?{_NUMBER}[.!]*", instruction.strip(), re.IGNORECASE)):
         return f"{asked[1]} {amount['number']} degrees"
+    if (neighbour := _neighbour(instruction, conversation, presets)) is not None:
+        return f"go to preset {neighbour}"
+    if _SAME.fullmatch(instruction.strip()) and _last_way(conversation, presets) is not None:
+        return "again"
     match = _MORE.fullmatch(instruction.strip())
     last = _last_way(conversation, presets) if match else None
     if match is None or last is None:
@@ -75,3 +86,14 @@ def _last_way(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tup
             return "zoom", "in" if part.value > 1 else "out"
         return None
     return None
+
+
+def _neighbour(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
+    """Return the preset after or before the last one that was visited, if the instruction asks for it; otherwise None."""
+    match = _NEIGHBOUR.fullmatch(instruction.strip())
+    outcomes = [outcome for turn in conversation for exchange in turn.exchanges for outcome in exchange.outcomes]
+    visited = [str(o.call.arguments.get("name")) for o in outcomes if o.call.name == "go_to_preset" and o.error is None]
+    if match is None or not visited or visited[-1] not in presets:
+        return None
+    step = -1 if match["which"].lower() == "previous" else 1
+    return presets[(presets.index(visited[-1]) + step) % len(presets)]

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
+from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
 
@@ -32,6 +33,7 @@ _WINNER = re.compile(
     r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
     re.IGNORECASE,
 )
+_SHARE = re.compile(r"how many (?:of them )?(?:are|were) (\w+ing\b[^?]*)\?*", re.IGNORECASE)
 _WHICH_HAS = re.compile(
     r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(most|fewest|more|fewer|least)\W*", re.IGNORECASE
 )
@@ -61,6 +63,12 @@ def which_has(question: str) -> Literal["more", "fewer"] | None:
     """Return the comparison that "which has more?" asks for without saying of what; None for other questions."""
     match = _WHICH_HAS.fullmatch(question.strip())
     return None if match is None else "more" if match[1].lower().startswith("mo") else "fewer"
+
+
+def counted_share(question: str) -> str:
+    """Return "sitting down" for "how many are sitting down?", which asks about the things of the last count; empty for others."""
+    match = _SHARE.fullmatch(question.strip())
+    return match[1] if match else ""
 
 
 def is_request_to_describe(question: str) -> bool:
@@ -100,6 +108,8 @@ def with_antecedent(question: str, antecedent: str) -> str:
         question = f"{question.strip(' ?')} there?"
     if not antecedent or is_impersonal(question) or _THE_THING_AND_IT.search(question):
         return question
+    if not is_plural(antecedent.split(" ")[-1]):
+        question = re.sub(r"\bare they\b", "is it", question, flags=re.IGNORECASE)
     return _POSSESSIVE.sub(f"the {antecedent}'s", _PRONOUN.sub(f"the {antecedent}", question, count=1), count=1)
 
 

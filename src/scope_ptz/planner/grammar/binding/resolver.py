@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from scope_ptz.english import is_plural, listing
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.earlier_comparison import compared_winners
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset, plausible_name
 from scope_ptz.planner.grammar.binding.question_text import (
+    counted_share,
     is_about_the_future,
     is_answered_by_counts,
     is_impersonal,
@@ -170,8 +173,8 @@ class Resolver:
         if preset is None:
             if self.presets is None:
                 raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
-            listing = ", ".join(self.presets) or "none"
-            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
+            known = ", ".join(self.presets) or "none"
+            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {known}. Which one do you mean?")
         self.preset = preset
         return ast.PresetRef(preset, explicit=True)
 
@@ -227,6 +230,10 @@ class Resolver:
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
         if self.compared:
             return [step]
+        if (winners := compared_winners(self.conversation, self.presets or ())) is not None:
+            if len(winners) != 1:
+                raise UnresolvedError(f"Where is 'there'? {listing(winners, 'and')} show the same number.")
+            return [ast.GoToPreset(ast.PresetRef(winners[0], explicit=True))]
         if not self.preset:
             raise UnresolvedError("Where is 'there'? Please name a preset.")
         return [ast.GoToPreset(ast.PresetRef(self.preset, explicit=True))]
@@ -270,6 +277,8 @@ class Resolver:
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.counted and is_answered_by_counts(step.question):
             return []
+        if self.conversation and (said := counted_share(step.question)) and is_plural(self.antecedent.split(" ")[-1]):
+            return self._count(ast.Count((ast.Thing(f"{self.antecedent} {said}"),), step.view))
         if way := which_has(step.question):
             return self._bind(self._earlier_comparison(way))
         if is_request_to_describe(step.question):
@@ -323,8 +332,8 @@ class Resolver:
         if re.match(
             r"(?:preset|saved view|stored view|saved position|stored position|bookmark)s?\b", step.thing.text, re.IGNORECASE
         ):
-            listing = ", ".join(self.presets or ()) or "none"
-            raise UnresolvedError(f"I do not know that preset. Presets: {listing}. Which one do you mean?")
+            known = ", ".join(self.presets or ()) or "none"
+            raise UnresolvedError(f"I do not know that preset. Presets: {known}. Which one do you mean?")
         if relative := _RELATIVE_POSITION.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {relative[1]} it. By how many degrees shall I move?")
         return [ast.ZoomTo(self.thing(step.thing))]

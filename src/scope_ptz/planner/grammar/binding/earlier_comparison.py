@@ -1,0 +1,43 @@
+"""Find the preset to which "there" refers after a turn that compared presets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.question_text import which_has
+from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+
+if TYPE_CHECKING:
+    from scope_ptz.planner.base import PastTurn
+
+
+def compared_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Return the preset that the last turn found to show the most or the fewest, or several if they show the same number.
+
+    None if the last turn did not compare presets.
+    """
+    steps = parse(conversation[-1].instruction, presets).steps if conversation else None
+    compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
+    if compared is None or compared.any_of:
+        return None
+    counts: dict[str, int] = {}
+    at = ""
+    for exchange in conversation[-1].exchanges:
+        for outcome in exchange.outcomes:
+            if outcome.call.name == "go_to_preset":
+                at = str(outcome.call.arguments.get("name", ""))
+            elif outcome.call.name == "count_objects" and at and outcome.result is not None:
+                counts[at] = int(outcome.result.get("count", 0))
+    values = sorted(set(counts.values()), reverse=compared.comparison == "more")
+    if len(values) < compared.rank:
+        return None
+    return tuple(preset for preset, count in counts.items() if count == values[compared.rank - 1])
+
+
+def _comparison_of(step: ast.Step) -> ast.WhichPreset | None:
+    """Return a step that compares presets, or what "which has more?" stands for; None for other steps."""
+    if isinstance(step, ast.Ask) and (way := which_has(step.question)) is not None:
+        return ast.WhichPreset(ast.Thing(), way)
+    return step if isinstance(step, ast.WhichPreset) else None
