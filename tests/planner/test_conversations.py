@@ -77,6 +77,25 @@ def test_presets_have_neighbours(instruction: str, preset: str) -> None:
     assert last_calls("go to the gate", instruction)[0] == [("go_to_preset", {"name": preset})]
 
 
+@pytest.mark.parametrize(
+    ("instructions", "expected"),
+    [
+        (("go to the gate", "no, the highway"), [("go_to_preset", {"name": "highway"})]),
+        (("count the vans", "and the cars?"), [("count_objects", {"description": "cars", "view": "current"})]),
+        (("count the vans", "and now?"), [("count_objects", {"description": "vans", "view": "current"})]),
+        (("take a picture", "two more"), [("take_image", {}), ("take_image", {})]),
+        (("track the van", "for 20 seconds"), [("track_object", {"description": "van", "duration_s": 20})]),
+        (("go home", "and the gate?"), [("go_to_preset", {"name": "gate"})]),
+    ],
+)
+def test_a_turn_changes_or_repeats_the_last_one(instructions: tuple[str, ...], expected: list[tuple[str, dict[str, Any]]]) -> None:
+    assert last_calls(*instructions)[0] == expected
+
+
+def test_no_is_not_a_command() -> None:
+    assert last_calls("pan left 20", "no") == ([], "Then I do nothing. What shall I do instead?")
+
+
 def test_counts_of_earlier_turns_are_compared() -> None:
     calls, reply = last_calls("go to the highway", "count the cones", "and at the gate?", "which has more?", looks=(4, 1, 4, 1))
     assert [name for name, _ in calls] == ["go_to_preset", "count_objects"] * 2

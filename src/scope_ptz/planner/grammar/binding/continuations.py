@@ -26,6 +26,12 @@ _NEIGHBOUR = re.compile(
     r" (?:preset|one|position|view|place|stop)(?: please)?[.!?]*",
     re.IGNORECASE,
 )
+_PICTURES = re.compile(
+    r"(?:and )?(?:another(?: one)?|one more|(?P<number>two|three|four|five|\d) more)(?: please)?[.!]*", re.IGNORECASE
+)
+_NOW = re.compile(r"(?:and |what about |how about )?now\?*", re.IGNORECASE)
+_FOR = re.compile(r"for (.+ (?:seconds?|minutes?))[.!]*", re.IGNORECASE)
+_CORRECTION = re.compile(r"(?:no|nope|sorry|wait|oops|i meant|i mean|make that|make it|actually)\b", re.IGNORECASE)
 _OTHER_WAY = re.compile(
     r"(?:no|nope|wait|sorry|now|and)?,? ?(?:the|in the) (?:other|opposite|wrong) (?:way|direction)(?: please)?[.!]*", re.IGNORECASE
 )
@@ -46,6 +52,8 @@ def continued_text(instruction: str, conversation: Sequence[PastTurn], presets: 
         return f"{asked[1]} {amount['number']} degrees"
     if (neighbour := _neighbour(instruction, conversation, presets)) is not None:
         return f"go to preset {neighbour}"
+    if (changed := _changed_turn(instruction, conversation, presets)) is not None:
+        return changed
     if _SAME.fullmatch(instruction.strip()) and _last_way(conversation, presets) is not None:
         return "again"
     match = _MORE.fullmatch(instruction.strip())
@@ -85,6 +93,29 @@ def _last_way(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tup
         if isinstance(part, ast.Zoom) and part.kind == "factor":
             return "zoom", "in" if part.value > 1 else "out"
         return None
+    return None
+
+
+def _changed_turn(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
+    """Return the last instruction with a correction or an addition: "no, the yard", "for 20 seconds"; None otherwise."""
+    if not conversation:
+        return None
+    said = instruction.strip()
+    last = continued_text(conversation[-1].instruction, conversation[:-1], presets)
+    steps = parse(last, presets).steps or ()
+    if len(steps) != 1:
+        return None
+    (step,) = steps
+    if isinstance(step, ast.Snap) and (more := _PICTURES.fullmatch(said)) is not None:
+        return f"take {more['number'] or 'another'} {'pictures' if more['number'] else 'picture'}"
+    if isinstance(step, ast.Count | ast.Ask) and _NOW.fullmatch(said):
+        return last
+    if isinstance(step, ast.Track) and step.thing.text and (time := _FOR.fullmatch(said)) is not None:
+        return f"follow the {step.thing.text} for {time[1]}"
+    if _CORRECTION.match(said) and isinstance(step, ast.GoToPreset | ast.ZoomTo | ast.Count | ast.Track):
+        corrected = parse(f"{last.rstrip('.!? ')}, {said}", presets)
+        if corrected.steps is not None and [type(other) for other in corrected.steps] == [type(step)]:
+            return corrected.text
     return None
 
 

@@ -412,7 +412,9 @@ class Resolver:
 
     def _sameat(self, step: ast.SameAt) -> Sequence[ast.Step]:
         if not (body := self._last_question()):
-            raise UnresolvedError("What shall I do there?")
+            if not step.or_go or len(step.places) != 1:
+                raise UnresolvedError("What shall I do there?")
+            return [ast.GoToPreset(self.place(step.places[0]))]
         return self._atplaces(ast.AtPlaces(step.places, tuple(body)))
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
+
+_NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +45,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
     preset_names = None if presets is None else tuple(presets)
+    if _NO.fullmatch(instruction.strip()):
+        return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
         return Understanding(clarification=question)
     resolver = Resolver(preset_names, tuple(conversation))

@@ -126,9 +126,10 @@ class AtPlaces:
 
 @dataclass(frozen=True, slots=True)
 class SameAt:
-    """Repeat the previous steps at other presets."""
+    """Repeat the previous steps at other presets. ``or_go``: whether to go to the preset if there is nothing to repeat."""
 
     places: tuple[PresetRef, ...]
+    or_go: bool = False
 
 
 @dataclass(frozen=True, slots=True)

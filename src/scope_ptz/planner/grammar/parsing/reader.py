@@ -26,6 +26,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Snap,
     Step,
     Unclear,
+    WhatAbout,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
@@ -42,6 +43,7 @@ from scope_ptz.planner.grammar.parsing.moves.special_turns import CLOCK_POSITION
 from scope_ptz.planner.grammar.parsing.moves.zooming import ZOOM_TOPICS, zoom_step
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodError, Source, text_of
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
@@ -97,10 +99,14 @@ class Reader:
             raise NotUnderstoodError(lexemes)
         if full_match(_CALL_SIGN, lexemes):
             return ()
-        if asked and (elsewhere := full_match("(FILLER)* (AND|what_about|how_about) (at|in|on) (?P<places>_+)", lexemes)):
-            places = places_of(self.source, elsewhere["places"])
-            if places is not None:
-                return (SameAt(places),)  # "how many cones are there?", and in the next turn "and at the gate?"
+        if asked and (more := full_match("(FILLER)* (?P<and>AND|what_about|how_about) (?P<in>at|in|on)? (?P<what>_+)", lexemes)):
+            places, thing = places_of(self.source, more["what"]), thing_of(self.source, more["what"])
+            if places:
+                return (
+                    SameAt(places, or_go=more["and"][0].has("AND")),
+                )  # "how many cones are there?", and in the next turn "and at the gate?"
+            if thing is not None and thing.text and not more.has("in"):
+                return (WhatAbout(thing),)  # "and the cars?"
         lexemes = bare_clause(lexemes)
         if asked and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
             lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"
