@@ -92,6 +92,13 @@ def test_a_turn_changes_or_repeats_the_last_one(instructions: tuple[str, ...], e
     assert last_calls(*instructions)[0] == expected
 
 
+def test_long_conversations_stay_fast() -> None:
+    turn = Stage([1]).turn("pan left 20")
+    more = [turn.model_copy(update={"instruction": "a bit more"}) for _ in range(3000)]
+    assert Stage([1]).turn("a bit more", (turn, *more[:20])).exchanges[0].outcomes[0].call.arguments == {"pan_deg": -5}
+    Stage([1]).run("again", (turn, *more))
+
+
 def test_no_is_not_a_command() -> None:
     assert last_calls("pan left 20", "no") == ([], "Then I do nothing. What shall I do instead?")
 

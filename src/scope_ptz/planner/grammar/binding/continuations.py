@@ -12,7 +12,9 @@ from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
+_MAX_TURNS = 30  # maximum number of earlier turns that are considered
 _NUMBER = r"(?P<number>\d+(?:\.\d+)?)(?: degrees?| deg|°)?"
+_AMOUNT = re.compile(rf"(?:by )?{_NUMBER}[.!]*", re.IGNORECASE)
 _LITTLE = r"(?:just )?(?:a )?(?:little |tiny |wee )?(?:bit|touch|smidge|smidgen|tad|fraction|hair|little)"
 _MORE = re.compile(
     rf"(?:and |now |ok |okay |yes |please )*(?:(?P<little>{_LITTLE}) (?:more|further)|(?:another|by another) (?P<small>{_LITTLE})"
@@ -47,29 +49,25 @@ def continued_text(instruction: str, conversation: Sequence[PastTurn], presets: 
 
     A number that answers the question about "the other way" becomes the move that it asks about.
     """
-    asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
-    if asked is not None and (amount := re.fullmatch(rf"(?:by )?{_NUMBER}[.!]*", instruction.strip(), re.IGNORECASE)):
-        return f"{asked[1]} {amount['number']} degrees"
-    if (neighbour := _neighbour(instruction, conversation, presets)) is not None:
-        return f"go to preset {neighbour}"
-    if (changed := _changed_turn(instruction, conversation, presets)) is not None:
-        return changed
-    if _SAME.fullmatch(instruction.strip()) and _last_way(conversation, presets) is not None:
-        return "again"
-    match = _MORE.fullmatch(instruction.strip())
-    last = _last_way(conversation, presets) if match else None
-    if match is None or last is None:
+    if not conversation or not _continues(instruction):
         return instruction
-    axis, way = last
-    number = match["number"] or match["added"]
-    if axis == "zoom":
-        return instruction if number else f"zoom {way} a bit"
-    return f"{axis} {way} {number} degrees" if number else f"{axis} {way} a bit"
+    return _continued(instruction, conversation[-_MAX_TURNS:], continued_texts(conversation, presets), presets)
+
+
+def continued_texts(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> list[str]:
+    """Return what each of the latest turns stands for, such as "pan left a bit" for "a bit more"."""
+    recent = conversation[-_MAX_TURNS:]
+    texts: list[str] = []
+    for i, turn in enumerate(recent):
+        texts.append(_continued(turn.instruction, recent[:i], texts, presets) if _continues(turn.instruction) else turn.instruction)
+    return texts
 
 
 def question_about_other_way(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
     """Return the question about "the other way" after a turn that panned left; None for other instructions."""
-    last = _last_way(conversation, presets) if _OTHER_WAY.fullmatch(instruction.strip()) else None
+    if not _OTHER_WAY.fullmatch(instruction.strip()):
+        return None
+    last = _last_way(continued_texts(conversation, presets), presets)
     if last is None:
         return None
     axis, way = last
@@ -77,12 +75,41 @@ def question_about_other_way(instruction: str, conversation: Sequence[PastTurn],
     return f"{amount} shall I {axis} {_OPPOSITE[way]}?"
 
 
-def _last_way(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, str] | None:
+def _continues(instruction: str) -> bool:
+    """Return whether an instruction has the form of one that refers to an earlier turn."""
+    said = instruction.strip()
+    forms = (_AMOUNT, _NEIGHBOUR, _SAME, _MORE, _PICTURES, _NOW, _FOR)
+    return any(form.fullmatch(said) for form in forms) or _CORRECTION.match(said) is not None
+
+
+def _continued(instruction: str, conversation: Sequence[PastTurn], texts: Sequence[str], presets: tuple[str, ...]) -> str:
+    """Return what an instruction stands for. ``texts`` are what the earlier turns stand for."""
+    said = instruction.strip()
+    asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
+    if asked is not None and (amount := _AMOUNT.fullmatch(said)):
+        return f"{asked[1]} {amount['number']} degrees"
+    if (neighbour := _neighbour(said, conversation, presets)) is not None:
+        return f"go to preset {neighbour}"
+    if texts and (changed := _changed_turn(said, texts[-1], presets)) is not None:
+        return changed
+    match = _MORE.fullmatch(said)
+    last = _last_way(texts, presets) if match or _SAME.fullmatch(said) else None
+    if last is None:
+        return instruction
+    if match is None:
+        return "again"
+    axis, way = last
+    number = match["number"] or match["added"]
+    if axis == "zoom":
+        return instruction if number else f"zoom {way} a bit"
+    return f"{axis} {way} {number} degrees" if number else f"{axis} {way} a bit"
+
+
+def _last_way(texts: Sequence[str], presets: tuple[str, ...]) -> tuple[str, str] | None:
     """Return the axis and the direction of the last move, if the last turn that did anything only moved along one axis."""
-    for i in range(len(conversation) - 1, -1, -1):
-        text = continued_text(conversation[i].instruction, conversation[:i], presets)
+    for text in reversed(texts):
         steps = parse(text, presets).steps
-        if not steps or all(isinstance(step, ast.DoAgain) for step in steps):
+        if not steps or all(isinstance(step, ast.DoAgain | ast.Unclear) for step in steps):
             continue
         last = steps[-1]
         if not isinstance(last, ast.Move) or len(last.parts) != 1:
@@ -96,12 +123,8 @@ def _last_way(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tup
     return None
 
 
-def _changed_turn(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
+def _changed_turn(said: str, last: str, presets: tuple[str, ...]) -> str | None:
     """Return the last instruction with a correction or an addition: "no, the yard", "for 20 seconds"; None otherwise."""
-    if not conversation:
-        return None
-    said = instruction.strip()
-    last = continued_text(conversation[-1].instruction, conversation[:-1], presets)
     steps = parse(last, presets).steps or ()
     if len(steps) != 1:
         return None
@@ -119,9 +142,9 @@ def _changed_turn(instruction: str, conversation: Sequence[PastTurn], presets: t
     return None
 
 
-def _neighbour(instruction: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
+def _neighbour(said: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
     """Return the preset after or before the last one that was visited, if the instruction asks for it; otherwise None."""
-    match = _NEIGHBOUR.fullmatch(instruction.strip())
+    match = _NEIGHBOUR.fullmatch(said)
     outcomes = [outcome for turn in conversation for exchange in turn.exchanges for outcome in exchange.outcomes]
     visited = [str(o.call.arguments.get("name")) for o in outcomes if o.call.name == "go_to_preset" and o.error is None]
     if match is None or not visited or visited[-1] not in presets:

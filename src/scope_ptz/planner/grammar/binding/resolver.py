@@ -361,11 +361,10 @@ class Resolver:
         return []
 
     def _doagain(self, step: ast.DoAgain) -> Sequence[ast.Step]:
-        from scope_ptz.planner.grammar.binding.continuations import continued_text
+        from scope_ptz.planner.grammar.binding.continuations import continued_texts
         from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
-        for i in range(len(self.conversation) - 1, -1, -1):
-            said = continued_text(self.conversation[i].instruction, self.conversation[:i], self.presets or ())
+        for said in reversed(continued_texts(self.conversation, self.presets or ())):
             steps = parse(said, self.presets or ()).steps
             if steps and not any(isinstance(s, ast.DoAgain | ast.Unclear) for s in steps):
                 return self.bind(steps * (step.times or 1))

@@ -18,7 +18,7 @@ _TURNED = {
 _REPLACEMENTS = tuple(
     (re.compile(pattern, re.IGNORECASE), plain)
     for pattern, plain in (
-        (rf",\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", ""),
+        (rf"^([^,]*),\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", r"\1"),
         (rf"^({_GREETINGS})\s+(?:{_VOCATIVES})(?=\s*[,.!])", r"\1"),
         (r"\bwhoever(?:['’]s| is)\b", "the person"),
         (rf"^(?:so\s+)?(?:nobody|no[ -]?one)(?:['’]s| is| are) (.+?),? (?:{_TAGS})\?$", r"is anyone \1?"),
@@ -28,7 +28,7 @@ _REPLACEMENTS = tuple(
         (r"^(?:well |right |so )?wait,? (?=what|which|where|who|how)", ""),
         (r"\bhows\b", "how's"),
         (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
-        (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some)\b[\w ]*\b(?:{_PICTURES})\b)", "take "),
+        (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
         (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
         (r"\b(?:let['’]?s )?do (?:the|my|our|a|a quick|one) rounds?:", ""),
         (
