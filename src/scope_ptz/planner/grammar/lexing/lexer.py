@@ -106,13 +106,13 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
 def _preset_word(word: str, known: set[str]) -> str:
     """Return the word in a preset's name that a misspelt word stands for; any other word unchanged.
 
-    The misspelling is a doubled letter ("yardd") or, in a long word, an exchange of two letters.
+    The misspelling is a doubled letter ("yardd") or, in a long word, one wrong, missing or additional letter ("weighbrige").
     """
     single = {word[:i] + word[i + 1 :] for i in range(1, len(word)) if word[i] == word[i - 1]} & known
     if len(single) == 1 and len(word) > 4:
         return single.pop()
-    close = [name for name in known if len(word) == len(name) > 5 and sorted(word) == sorted(name) and within_one_edit(word, name)]
-    return close[0] if len(close) == 1 else word
+    close = [name for name in known if len(word) > 5 and len(name) > 5 and within_one_edit(word, name)]
+    return close[0] if len(close) == 1 and word not in known and not is_english(word) else word
 
 
 def _is_near(word: str, known: set[str]) -> bool:

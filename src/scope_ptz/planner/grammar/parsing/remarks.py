@@ -5,7 +5,7 @@ from __future__ import annotations
 from scope_ptz.planner.grammar.instruction_tree import Count, Move, Step
 from scope_ptz.planner.grammar.parsing.asides import is_news, is_reason, is_shared_knowledge, is_wish
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 from scope_ptz.planner.grammar.parsing.restatements import says_size_again
 
@@ -14,6 +14,11 @@ _TOO_MUCH = "(FILLER|LITTLE|LOT|PRON|BE|DET|AMOUNTISH)* too (LOT|LITTLE|much|FRE
 
 _WANTS_A_LOOK = "(DET)? FREE{1,2} (wants|needs|WRAPPER|TAKE-S|SHOW-S) (to)? (DET)? (look|see|SEE|FREE look|SHOW)"
 """A reason for the previous move: "tilt down 10, the foreman wants a look at the pit"."""
+
+_WANTED_VIEW = (
+    "(FILLER)* (i_need|i_want|we_need|we_want|SELF (need|want)) DET (FREE|CLOSER|WIDER|TIGHT|WIDE)? (VIEWNOUN|look) (of|at) _+"
+)
+"""A view that is wanted, as the reason for the move in the next sentence."""
 
 _NO_MORE = (
     "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"
@@ -45,6 +50,14 @@ def adds_nothing(clause: Clause, after: Clause | None, last: Step | None, *, is_
         return True
     is_move_next = after is not None and after.link == "," and not after.marker and after.lexemes[0].has(*MOTION_VERBS)
     wants_a_look = full_match(f"(FILLER)* ({_WANTS_A_LOOK}) (FILLER|COMMA)*", clause.lexemes)
+    is_motion_next = after is not None and not after.marker and after.lexemes[:1] and after.lexemes[0].has(*MOTION_VERBS)
+    if (
+        is_motion_next
+        and after is not None
+        and full_match(_WANTED_VIEW, clause.lexemes)
+        and not search("(on|onto) PRON", after.lexemes)
+    ):
+        return True  # "I need a clear view of the load. Zoom right in."
     if is_move_next and (is_wish(clause.lexemes) or wants_a_look):
         return True  # "I need to see the door, pan left 20", "the foreman wants a look, pan left 20"
     words = [x.word for x in clause.lexemes if not x.has("FILLER", "COMMA")]

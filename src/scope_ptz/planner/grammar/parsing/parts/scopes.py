@@ -125,7 +125,7 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
         preposition = lead["prep"][0].word
         is_certain = (
             not places
-            or preposition in {"at", "from", "in", "using"}
+            or preposition in {"at", "from", "in", "using", "across"}
             or any(x.has("PRESETNOUN") for x in lead["place"])
             or (
                 preposition == "on"
