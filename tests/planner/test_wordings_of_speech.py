@@ -154,6 +154,8 @@ PRESET_LISTS = [
 ]
 """Presets inside a question, lists of presets, and every preset."""
 SLIPS = [
+    ("Tilt to the lower mechanical limit.", "adjust_ptz(tilt_deg=-90)"),
+    ("how many cones are there in the entire surroundings?", "count_objects(description=cones, view=full)"),
     ("Hurry up and go to the gate.", "go_to_preset(name=gate)"),
     ("Listen up: pan left 20.", "adjust_ptz(pan_deg=-20)"),
     ("Go right out.", "adjust_ptz(zoom_limit=out)"),
@@ -223,6 +225,9 @@ def test_instructions_as_people_say_them(text: str, calls: str) -> None:
         "zoom in on the car down 10",
         "go to the busiest preset",
         "give me 3x",
+        "go to bus stop",
+        "go to bay 7",
+        "Ask the driver whether he has had dinner.",
         "Hurry up.",
         "Slow down.",
         "Count the wagons, but not the engine.",

@@ -7,7 +7,7 @@ from difflib import SequenceMatcher
 
 from scope_ptz.planner.grammar.lexing.lexicon import phrases
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
-from scope_ptz.planner.grammar.lexing.spelling import within_one_edit
+from scope_ptz.planner.grammar.lexing.spelling import is_english, within_one_edit
 
 _MIN_SIMILARITY = 0.8  # minimum similarity of two preset names, from 0 to 1
 _MAX_NAME_WORDS = 4
@@ -36,7 +36,12 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
     inside = [p for p in presets if len(name_key) >= 3 and set(preset_key(name)) < set(preset_key(p))]
     if len(inside) == 1:
         return inside[0]
-    similar = [preset for preset, key in keys.items() if len(key) >= 4 and within_one_edit(name_key, key)]
+    numbers = {word for word in preset_key(name) if word.isdigit()}
+    similar = [
+        preset
+        for preset, key in keys.items()
+        if len(key) >= 4 and within_one_edit(name_key, key) and numbers <= set(preset_key(preset))  # "tower 6" is not "tower-4"
+    ]
     if len(similar) == 1:
         return similar[0]
     short = [preset for preset, key in keys.items() if abbreviates(name_key, key)]
@@ -44,7 +49,13 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
         return short[0]
     scored = sorted(((SequenceMatcher(None, name_key, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
     clear = scored and scored[0][0] >= _MIN_SIMILARITY and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
-    return scored[0][1] if clear else None
+    return scored[0][1] if clear and not _names_another(name, scored[0][1]) else None
+
+
+def _names_another(name: str, preset: str) -> bool:
+    """Return whether a name contains a number or an English word that the preset's name lacks: "tower six" is not "tower-four"."""
+    own = set(preset_key(preset))
+    return any(word not in own and (word.isdigit() or is_english(word)) for word in preset_key(name))
 
 
 def abbreviates(short: str, long: str) -> bool:

@@ -155,6 +155,8 @@ def question_step(
     )
     if told:
         rest = told["rest"]
+        if lexemes[0].word == "ask" and rest[0].has("DET"):
+            raise NotUnderstoodError(lexemes)  # "ask the sound guy whether he has had dinner"
         nobody = full_match("(that)? NOONE BE (?P<where>_*)", rest)
         if nobody is not None and not search(_NO_TOPIC, rest):
             return Ask(f"Is anyone {text_of(source, nobody['where']) or 'there'}?", scope)  # "make sure nobody is on the track"

@@ -12,6 +12,7 @@ _GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
 _PICTURES = "photo|picture|pic|snap|shot|still"
 _GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
 _TAGS = "right|correct|yeah|is there|are they|is that right"
+_ENDS = {"lower": "down", "upper": "up", "left": "left", "right": "right"}
 _TURNED = {
     "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
 }  # fmt: skip
@@ -37,6 +38,11 @@ _REPLACEMENTS = tuple(
         ),
         (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
         (r"\bcheck once\b", "check"),
+        (
+            r"\bto (?:the|its) (lower|upper|left|right)(?:most|[- ]hand)? (?:mechanical |physical |end |hard )*(?:limit|stop)\b",
+            lambda match: f"all the way {_ENDS[match[1].lower()]}",
+        ),
+        (r"\bseparately (?=on|at|in\b)", ""),
         (r"\b(?:go|come|move|pull) right (in|out)(?=[.,!;]|$| then\b| and\b)", r"zoom all the way \1"),
         (r"\b(?:please |kindly )?do the needful(?: and|,)?", ""),
         (r"\brevert with\b", "tell me"),
