@@ -109,7 +109,12 @@ class GroundTruthPerception(Perception):
         from scope_ptz.english.grammar.questions.question_parser import parse_question
         from scope_ptz.perception.ground_truth.answers import answer
         from scope_ptz.perception.ground_truth.answers.thing_names import unknown_answer
-        from scope_ptz.perception.ground_truth.unknown_words import asks_for_judgement, find_unknown_nouns, find_unknown_qualities
+        from scope_ptz.perception.ground_truth.unknown_words import (
+            asks_for_judgement,
+            find_unknown_nouns,
+            find_unknown_qualities,
+            is_english_noun,
+        )
 
         if not question.strip():
             raise PerceptionError("The question is empty.")
@@ -123,7 +128,9 @@ class GroundTruthPerception(Perception):
         reply = answer(view, parsed)
         if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
-        if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unstated := find_unknown_qualities(view, parsed)):
+        if reply.text.startswith(_DENIALS) and (unknown := [x for x in find_unknown_nouns(view, parsed) if not is_english_noun(x)]):
+            raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
+        if reply.text.startswith((*_DENIALS, *_ABSENCE_BEGINNINGS)) and (unstated := find_unknown_qualities(view, parsed)):
             return unknown_answer(f"I cannot tell: the scene does not say what is {_quote_list(unstated)}")
         return reply
 
@@ -152,9 +159,8 @@ class GroundTruthPerception(Perception):
 
 
 _UNSTATED = "The scene does not say what is {words}, so its ground truth cannot tell. Describe the things by what a picture shows."
+_DENIALS = ("No, there is no ", "No, there are no ")
 _ABSENCE_BEGINNINGS = (
-    "No, there is no ",
-    "No, there are no ",
     "There is no ",
     "There are no ",
     "I cannot tell: there is no ",

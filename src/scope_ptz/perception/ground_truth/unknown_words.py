@@ -74,6 +74,11 @@ def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question)
     return found
 
 
+def is_english_noun(phrase: str) -> bool:
+    """Return whether the last word of a phrase is a noun in the dictionary, even if no scene uses it: "square"."""
+    return "NOUN" in parts_of_speech(phrase.split()[-1])
+
+
 def _is_unstated_quality(word: str) -> bool:
     known = parts_of_speech(word)
     return word in _OPINIONS or ("ADJ" in known and not known & {"NOUN", "VERB", "ADV", "PROPN"})
