@@ -218,6 +218,12 @@ def test_instructions_as_people_say_them(text: str, calls: str) -> None:
     [
         "Nobody asked you to pan left 20.",
         "I asked you to pan left 20.",
+        "The crossing is forbidden. Check.",
+        "The crossing is off limits. Check.",
+        "The crossing is not to be filmed. Check.",
+        "I told you not to go to the crossing, go there.",
+        "He wants me to pan left but I don't want to.",
+        "Jim told me to pan left 20, which is wrong.",
         "My supervisor told me not to pan left 20.",
         "We had a report of smoke at the gate.",
         "There's a van at the gate and a lorry at the crossing. Zoom in on it.",

@@ -44,8 +44,7 @@ def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> 
     Returns:
         The words of each phrase, in order.
     """
-    stated = frozenset[str]().union(*view.values.values())
-    known = english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
+    known = _known_words(view)
     return [
         " ".join(phrase.words)
         for phrase in _phrases(parsed)
@@ -63,8 +62,7 @@ def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question)
 
     Words that can also be nouns or verbs ("police car", "open gate") are not returned, unless they express an opinion.
     """
-    stated = frozenset[str]().union(*view.values.values())
-    known = english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
+    known = _known_words(view)
     found: list[str] = []
     for phrase in _phrases(parsed):
         spans = nouns_in(phrase.words, view.nouns)
@@ -72,6 +70,12 @@ def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question)
         others = [word for i, word in enumerate(phrase.words) if i not in in_nouns and word not in known]
         found += [word for word in others if spans and _is_unstated_quality(word)]
     return found
+
+
+def _known_words(view: View) -> frozenset[str]:
+    """Return the words that need no explanation: colours, words that add nothing, and those of the scene's facts."""
+    stated = frozenset[str]().union(*view.values.values())
+    return english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
 
 
 def is_english_noun(phrase: str) -> bool:

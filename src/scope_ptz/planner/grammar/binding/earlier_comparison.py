@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.question_text import which_has
+from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
 if TYPE_CHECKING:
@@ -14,26 +15,23 @@ if TYPE_CHECKING:
 
 
 def compared_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Return the preset that the last turn found to show the most or the fewest, or several if they show the same number.
+    """Return the preset that the last turn with calls found to show the most or the fewest, or several with the same number.
 
-    None if the last turn did not compare presets.
+    None if that turn did not compare presets.
     """
-    steps = parse(conversation[-1].instruction, presets).steps if conversation else None
+    last = next((turn for turn in reversed(conversation) if turn.exchanges), None)
+    steps = parse(last.instruction, presets).steps if last is not None else None
     compared = next((found for step in reversed(steps or ()) if (found := _comparison_of(step)) is not None), None)
-    if compared is None or compared.any_of:
+    if last is None or compared is None or compared.any_of:
         return None
     counts: dict[str, int] = {}
     at = ""
-    for exchange in conversation[-1].exchanges:
-        for outcome in exchange.outcomes:
-            if outcome.call.name == "go_to_preset":
-                at = str(outcome.call.arguments.get("name", ""))
-            elif outcome.call.name == "count_objects" and at and outcome.result is not None:
-                counts[at] = int(outcome.result.get("count", 0))
-    values = sorted(set(counts.values()), reverse=compared.comparison == "more")
-    if len(values) < compared.rank:
-        return None
-    return tuple(preset for preset, count in counts.items() if count == values[compared.rank - 1])
+    for outcome in (outcome for exchange in last.exchanges for outcome in exchange.outcomes):
+        if outcome.call.name == "go_to_preset":
+            at = str(outcome.call.arguments.get("name", ""))
+        elif outcome.call.name == "count_objects" and at and outcome.result is not None:
+            counts[at] = int(outcome.result["count"])
+    return tuple(presets_of_rank(counts, compared.comparison, compared.rank)) or None
 
 
 def _comparison_of(step: ast.Step) -> ast.WhichPreset | None:

@@ -26,17 +26,16 @@ _TWO_QUESTIONS = re.compile(
     r",? and (?:if so,? )?(?P<more>(?:what|which|where|how)\b.+)",
     re.IGNORECASE,
 )
+_HAS_MORE = r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(most|fewest|more|fewer|least)\W*"
 _WINNER = re.compile(
     r"what(?:['’]s| is) the (?:total|sum|difference|result|answer)\W*|how many (?:is that|are there) (?:in total|"
     r"altogether|together)\W*"
     r"|where (?:there )?(?:are|is) (?:the )?(?:most|fewest|least)\W*"
-    r"|which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    rf"|{_HAS_MORE}",
     re.IGNORECASE,
 )
 _SHARE = re.compile(r"how many (?:of them )?(?:are|were) (\w+ing\b[^?]*)\?*", re.IGNORECASE)
-_WHICH_HAS = re.compile(
-    r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(most|fewest|more|fewer|least)\W*", re.IGNORECASE
-)
+_WHICH_HAS = re.compile(_HAS_MORE, re.IGNORECASE)
 _ANY_THERE = re.compile(
     r"(?:is there|are there|(?:can|do) you see|do we have|have we got|is|are) "
     r"(?:one|any|it|them|some|there any)(?: there| visible| anywhere)?\W*",

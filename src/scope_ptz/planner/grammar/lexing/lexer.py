@@ -86,6 +86,10 @@ class Lexeme:
         """Return whether the lexeme belongs to one of the classes."""
         return not self.classes.isdisjoint(classes)
 
+    def reworded(self, word: str, *classes: str) -> Lexeme:
+        """Return another word with the given classes at the place of this lexeme."""
+        return Lexeme(word, self.start, self.end, frozenset(classes))
+
 
 @lru_cache(maxsize=512)
 def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:

@@ -45,6 +45,7 @@ _WITHDRAWAL = re.compile(
     r"|\b(?:it|that|this) (?:is|was|has been|would be) (?:all )?(?:wrong|an error|banned|unnecessary|cancell?ed|called off)\b"
     r"|\b(?:not|never|no longer) (?:be(?:en|ing)? )?(?:allowed|permitted|needed|necessary|required|supposed|wanted|meant)\b"
     r"|\b(?:not|nobody|no one) (?:wants?|needs?|asked for) (?:it|that|this|you|them|any)\b"
+    r"|\bdo(?:es)? not want (?:to|it|that|this)\b|\b(?:which|that|this) (?:is|was) (?:wrong|an? (?:error|mistake))\b"
     r"|\b(?:has|have) already been done\b|\balready did (?:it|that)\b"
 )
 """Words of statements that may take back or forbid what was asked."""
@@ -78,13 +79,17 @@ def is_wish(lexemes: Sequence[Lexeme]) -> bool:
     return bool(full_match(f"(FILLER|COMMA)* ({_WISH})", lexemes))
 
 
+def may_withdraw(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes contain words that may take back or forbid something: "off limits", "a mistake"."""
+    return _WITHDRAWAL.search(" ".join(x.word.replace("_", " ") for x in lexemes)) is not None
+
+
 def withdraws(clause: Clause) -> bool:
     """Return whether a statement may take back or forbid what was asked: "I changed my mind", "that is not allowed".
 
     Unlike other statements, it must not be ignored.
     """
-    words = " ".join(x.word.replace("_", " ") for x in clause.lexemes)
-    if clause.is_question or _WITHDRAWAL.search(words) is None:
+    if clause.is_question or not may_withdraw(clause.lexemes):
         return False
     openers = match_start("(no|wait|oh|hang_on|hold_on|FILLER|COMMA|HALT)*", clause.lexemes)
     return is_statement(clause.lexemes) or is_statement(clause.lexemes[openers.size if openers else 0 :])

@@ -41,6 +41,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import (
     Clause,
     NotUnderstoodError,
     Source,
+    command_of,
 )
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
@@ -260,8 +261,8 @@ class Sentences(Tours):
 
 def _as_command(lexemes: tuple[Lexeme, ...]) -> tuple[Lexeme, ...]:
     """Return the command for a participle at the beginning: "count the cars" for "(after you have) counted the cars"."""
-    verb = next((name for name in VERBS if lexemes[0].has(f"{name}-ED") and not lexemes[0].has(*VERBS)), None)
-    return lexemes if verb is None else (replace(lexemes[0], word=verb.lower(), classes=frozenset({verb})), *lexemes[1:])
+    command = command_of(lexemes[0])
+    return lexemes if command is None else (command, *lexemes[1:])
 
 
 def _is_meanwhile(clause: Clause) -> bool:

@@ -92,6 +92,12 @@ def text_of(source: Source, lexemes: Sequence[Lexeme]) -> str:
     return " ".join(source.text[lexemes[0].start : lexemes[-1].end].split()) if lexemes else ""
 
 
+def command_of(lexeme: Lexeme) -> Lexeme | None:
+    """Return the command for a past form or participle: "count" for "counted". None for other words, and for verbs as they are."""
+    verb = next((name for name in VERBS if lexeme.has(f"{name}-ED")), None)
+    return None if verb is None or lexeme.has(*VERBS) else lexeme.reworded(verb.lower(), verb)
+
+
 def trimmed(lexemes: Sequence[Lexeme], *classes: str) -> tuple[Lexeme, ...]:
     """Return lexemes without those of the given classes at either end."""
     first, last = 0, len(lexemes)

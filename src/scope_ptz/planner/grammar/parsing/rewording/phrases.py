@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
@@ -51,7 +50,7 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     i = 0
     while i < len(lexemes):
         if _wants_to_see(out, lexemes[i:]):
-            out.append(_as(lexemes[i], "let_me_see", "SHOW", "SHOW-ED"))
+            out.append(lexemes[i].reworded("let_me_see", "SHOW", "SHOW-ED"))
             i += 2
         else:
             out += _other_words(out, lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None)
@@ -67,7 +66,7 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     dropped = [*match["each"], *match["go"]]
     changed = {id(match["at"][0]): ("at", "PREP", "GLUE"), id(match["end"][0]): (",", "COMMA")}
     kept = (x for x in lexemes if not any(x is other for other in dropped))
-    return [_as(x, *changed[id(x)]) if id(x) in changed else x for x in kept]
+    return [x.reworded(*changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
 def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
@@ -85,13 +84,13 @@ def _without_yes_or_no(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
         return lexemes
     first = next(i for i in range(len(lexemes) - 1, -1, -1) if lexemes[i].word == "yes")
     kept = lexemes[: first - 1] if lexemes[first - 1].has("COMMA", "DASH", "COLON", "STOP") else lexemes[:first]
-    return [*kept, _as(lexemes[first], "?", "QUESTION")]
+    return [*kept, lexemes[first].reworded("?", "QUESTION")]
 
 
 def _count_at_list(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with "count people at the gate and the yard" for "count people: the gate, the yard"."""
     match = match_start(_COUNT_AT_LIST, lexemes)
-    return lexemes if match is None else [_as(x, "at", "PREP", "GLUE") if x is match["end"][0] else x for x in lexemes]
+    return lexemes if match is None else [x.reworded("at", "PREP", "GLUE") if x is match["end"][0] else x for x in lexemes]
 
 
 def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
@@ -102,7 +101,7 @@ def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     if any(x.word in {"it", "him", "her", "them"} for x in lexemes[match.size :]):
         return lexemes  # "zoom in on it" needs the thing in the wish
     go, place = match["go"][0], match["place"][0]
-    return [go, _as(go, "to", "PREP", "GLUE"), place, _as(go, ",", "COMMA"), *lexemes[match.size :]]
+    return [go, go.reworded("to", "PREP", "GLUE"), place, go.reworded(",", "COMMA"), *lexemes[match.size :]]
 
 
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
@@ -111,28 +110,28 @@ def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None)
     if (changed := reworded_in_context(before, lexeme, after)) is not None:
         return changed
     if _is_noun_here(before, lexeme) and not (before[-1].has("NONE") and after is not None and after.has("DET", "PRON")):
-        return [_as(lexeme, lexeme.word, "FREE")]  # "is there a train at the crossing?"
+        return [lexeme.reworded(lexeme.word, "FREE")]  # "is there a train at the crossing?"
     if lexeme.word in {"into", "close_to"} and last is not None and _is_approach(before, lexeme):
-        way = [] if last.has("IN", "ENLARGE") else [_as(lexeme, "in", "IN", "GLUE")]
-        return [*way, _as(lexeme, "on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
+        way = [] if last.has("IN", "ENLARGE") else [lexeme.reworded("in", "IN", "GLUE")]
+        return [*way, lexeme.reworded("on", "ADVERB", "GLUE", "PREP")]  # "zoom into it", "get close to it"
     if lexeme.word == "where_you_are" and after is not None and (after.has("AIM-ING") or after.word in _AIMED):
-        return [_as(lexeme, "where", "WHQ", "REL"), _as(lexeme, "you", "SELF"), _as(lexeme, "are", "BE", "GLUE")]
+        return [lexeme.reworded("where", "WHQ", "REL"), lexeme.reworded("you", "SELF"), lexeme.reworded("are", "BE", "GLUE")]
     if lexeme.word == "remind" and after is not None and after.has("SELF"):
-        return [_as(lexeme, "tell", "TELL", "LISTING")]  # "remind me which presets there are"
+        return [lexeme.reworded("tell", "TELL", "LISTING")]  # "remind me which presets there are"
     if lexeme.has("TILT") and match_start("(DET|SELF|current) PAN AND", before[-3:]):
-        return [_as(lexeme, "tilt", "TILTNOUN")]  # "what is the pan and tilt?"
+        return [lexeme.reworded("tilt", "TILTNOUN")]  # "what is the pan and tilt?"
     if lexeme.word == "right_now" and last is not None and last.word == "the":
-        return [_as(lexeme, "right", "RIGHT", "ADVERB"), _as(lexeme, "now", "NOW", "FILLER")]  # "over to the right now"
+        return [lexeme.reworded("right", "RIGHT", "ADVERB"), lexeme.reworded("now", "NOW", "FILLER")]  # "over to the right now"
     if lexeme.word == "at_each" and after is not None and after.has("COLON"):
-        return [_as(lexeme, "at", "PREP", "GLUE"), _as(lexeme, "each_of", "EVERY")]  # "take a picture at each: gate, yard"
+        return [lexeme.reworded("at", "PREP", "GLUE"), lexeme.reworded("each_of", "EVERY")]  # "take a picture at each: gate, yard"
     if lexeme.has("COLON") and last is not None and last.word == "each_of":
         return []
     if lexeme.word in {"last", "lastly"} and last is not None and last.has("COMMA", "AND") and _is_place_next(after):
-        return [_as(lexeme, "finally", "FIRSTLY")]  # "first the gate, then the yard, last the dock"
+        return [lexeme.reworded("finally", "FIRSTLY")]  # "first the gate, then the yard, last the dock"
     if lexeme.word == "at_each" and last is not None and last.has("BE") and _counts_on_tour(before):
-        return [_as(lexeme, "there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
+        return [lexeme.reworded("there", "ADVERB", "GLUE", "VISIBLE")]  # "do a lap of the presets and tell me how many are at each"
     if lexeme.word == "return" and after is not None and after.has(*DIRECTIONS):
-        return [_as(lexeme, "go", "CARRY"), _as(lexeme, "back", "BACK")]
+        return [lexeme.reworded("go", "CARRY"), lexeme.reworded("back", "BACK")]
     return [lexeme]
 
 
@@ -154,11 +153,6 @@ def _counts_on_tour(before: Sequence[Lexeme]) -> bool:
     return search("EVERY (of|DET|SELF|single)* PRESETNOUN", before[:count]) is not None or any(
         x.has("PRESETNOUN") and x.word.endswith("s") for x in before[:count]
     )
-
-
-def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
-    """Return another word at the place of a lexeme."""
-    return replace(lexeme, word=word, classes=frozenset(classes))
 
 
 def _wants_to_see(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
@@ -32,7 +31,7 @@ def with_presets_reworded(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     if (match := match_start(_CHECKED_FIRST, lexemes)) is not None:
         start = next(i for i, x in enumerate(lexemes) if x is match["asked"][0])
         ones = match["ones"][0]
-        lexemes = [_as(x, "presets", "PRESETNOUN") if x is ones else x for x in lexemes[start:]]
+        lexemes = [x.reworded("presets", "PRESETNOUN") if x is ones else x for x in lexemes[start:]]
     for pattern in (_CHECKED_IN_ORDER, _STOP_AT_FIRST):
         if (match := match_start(pattern, lexemes)) is not None:
             lexemes = [_joined(x) if x in match["places"] or x in match["end"] else x for x in lexemes]
@@ -49,14 +48,10 @@ def _with_condition(lexemes: Sequence[Lexeme], i: int) -> Sequence[Lexeme]:
     match = full_match("(?P<done>_+) (?P<place>at EVERY (of|DET|SELF)* PRESETNOUN)", lexemes[start:i])
     if match is None:
         return lexemes
-    comma, condition = _as(lexemes[i], ",", "COMMA"), _as(lexemes[i], "if", "IF")
+    comma, condition = lexemes[i].reworded(",", "COMMA"), lexemes[i].reworded("if", "IF")
     return [*lexemes[:start], *match["place"], comma, *match["done"], condition, *lexemes[i + 1 :]]
 
 
 def _joined(lexeme: Lexeme) -> Lexeme:
     """Return a comma for a separator, so that a list of presets is read as one; any other lexeme unchanged."""
-    return _as(lexeme, ",", "COMMA") if lexeme.has("THEN", "STOP", "COLON") else lexeme
-
-
-def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
-    return replace(lexeme, word=word, classes=frozenset(classes))
+    return lexeme.reworded(",", "COMMA") if lexeme.has("THEN", "STOP", "COLON") else lexeme

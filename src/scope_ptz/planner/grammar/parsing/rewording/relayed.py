@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.asides import may_withdraw
 from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
-from scope_ptz.planner.grammar.parsing.parts.patterns import match_start
+from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 from scope_ptz.planner.grammar.parsing.rewording.stated_places import AUXILIARIES, OTHERS, with_place_first
 
 _MAX_LEXEMES = 80  # longer texts are parsed as they are, so that parsing stays fast
@@ -42,7 +43,9 @@ def _without_relay(text: str, presets: tuple[str, ...]) -> str | None:
             match = match_start(pattern, rest)
             if match is None or match.size >= len(rest) or (words == "please " and not rest[match.size].has(*VERBS)):
                 continue
-            if any(y.has("NOT", "NEGATED", "NONE", "NOONE") for y in rest[: match.size]):
+            wanted = rest[match.size :]
+            is_denied = search("(BUT|COMMA|DASH) _* (NOT|NEGATED)", wanted) is not None or may_withdraw(wanted)
+            if is_denied or any(y.has("NOT", "NEGATED", "NONE", "NOONE") for y in rest[: match.size]):
                 continue
             return f"{text[: x.start]}{words}{text[rest[match.size].start :]}"
     return None

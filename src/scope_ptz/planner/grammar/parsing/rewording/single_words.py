@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
-from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS, command_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 
 _BREAKS = ("COMMA", "STOP", "AND", "THEN", "COLON", "DASH", "QUESTION")
@@ -26,11 +26,11 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
     begins = last is None or last.has(*_BREAKS, "FILLER")
     ends = after is None or after.has("STOP", "QUESTION")
     if lexeme.word == "an" and after is not None and after.word in _COMMANDS:
-        return [_as(lexeme, "and", "AND", "GLUE")]  # "go to the gate an tilt down 6"
+        return [lexeme.reworded("and", "AND", "GLUE")]  # "go to the gate an tilt down 6"
     if lexeme.word == "neither" and search("IF|WHEN|UNLESS|UNTIL", before):
-        return [_as(lexeme, "no", "NONE", "DET")]  # "if you see neither people nor cars"
+        return [lexeme.reworded("no", "NONE", "DET")]  # "if you see neither people nor cars"
     if lexeme.word == "nor" and any(x.has("NONE") for x in before):
-        return [_as(lexeme, "and", "AND", "GLUE")]
+        return [lexeme.reworded("and", "AND", "GLUE")]
     if lexeme.word in {"i_mean", "i_meant"} and ends and last is not None:
         return []  # "everywhere, I mean"
     if lexeme.has("PRESET") and lexeme.has(*VERBS) and begins and after is not None and after.has("DET"):
@@ -40,19 +40,19 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
         return []  # "photograph the spillway view first and the tailrace view second"
     is_urged = lexeme.word == "with" and after is not None and after.word in _URGED
     if is_urged and last is not None and last.has("HOME", *DIRECTIONS):
-        return [_as(lexeme, "with_you", "FILLER")]  # "over to the right with you"
+        return [lexeme.reworded("with_you", "FILLER")]  # "over to the right with you"
     if last is not None and last.word == "with_you" and lexeme.word in _URGED:
         return []
     if lexeme.word == "mind" and last is None and after is not None and after.has(*(f"{verb}-ING" for verb in VERBS)):
         return []  # "mind turning 15 left?"
     if lexeme.word == "its" and after is not None and (after.has("AIM-ING", "LOT") or after.word in {"too", "so", "getting"}):
-        return [_as(lexeme, "it", "PRON", "ANOTHER"), _as(lexeme, "is", "BE", "GLUE")]  # "its pointing at the sky"
+        return [lexeme.reworded("it", "PRON", "ANOTHER"), lexeme.reworded("is", "BE", "GLUE")]  # "its pointing at the sky"
     if lexeme.word == "once" and begins and after is not None and after.word == "at":
         return []  # "once at the gate, zoom in"
     if lexeme.word in {"reaching", "arriving"} and last is not None and last.word == "on_reaching":
-        return [] if after is not None and after.word == "at" else [_as(lexeme, "at", "PREP", "GLUE")]
+        return [] if after is not None and after.word == "at" else [lexeme.reworded("at", "PREP", "GLUE")]
     if lexeme.word in {"on", "upon"} and last is None and after is not None and after.word in {"reaching", "arriving"}:
-        return [_as(lexeme, "on_reaching", "FILLER")]  # "on reaching the gate, take a picture"
+        return [lexeme.reworded("on_reaching", "FILLER")]  # "on reaching the gate, take a picture"
     if (base := _base_of_past(before, lexeme)) is not None:
         return [base]
     return None
@@ -60,14 +60,10 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
 
 def _base_of_past(before: Sequence[Lexeme], lexeme: Lexeme) -> Lexeme | None:
     """Return the command for "you followed" in "I would be obliged if you followed the postman and then went home"."""
-    verb = next((name for name in VERBS if lexeme.has(f"{name}-ED")), None)
-    if verb is None or lexeme.has(*VERBS) or not before:
+    command = command_of(lexeme)
+    if command is None or not before:
         return None
     asked = search("(obliged|grateful|glad|pleased|happy|help|great|nice|good|lovely|appreciate_it) (if SELF|IF SELF)", before)
     is_asked = asked is not None or any(x.has("WRAPPER") and x.word.endswith("if_you") for x in before)
     follows = before[-1].has("SELF", "AND", "THEN") or before[-1].word.endswith("if_you")
-    return _as(lexeme, verb.lower(), verb) if is_asked and follows else None
-
-
-def _as(lexeme: Lexeme, word: str, *classes: str) -> Lexeme:
-    return replace(lexeme, word=word, classes=frozenset(classes))
+    return command if is_asked and follows else None

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.asides import may_withdraw
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MARKERS, VERBS, trimmed
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
@@ -50,6 +51,7 @@ _STATE = "(FILLER)* (DET)? (?P<name>PRESET) (BE|LOOKSLIKE|looks|seems|sounds|get
 """A statement about a preset: "the main gate looks busy"."""
 
 _PRONOUNS = frozenset({"it", "him", "her", "them", "they", "he", "she"})
+_VERB_FORMS = tuple(f"{verb}{ending}" for verb in VERBS for ending in ("-ED", "-ING"))
 _EXCLUDED = ("NUM", "DEG", "HOME", "QUESTION", "IF", "EVERY", "PRESETNOUN", "WRAPPER", *DIRECTIONS, *MARKERS)
 
 
@@ -58,7 +60,7 @@ def with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     lexemes = lexemes_of(text, presets)
     end = _statement_end(lexemes)
     said, rest = lexemes[:end], trimmed(lexemes[end:], "STOP", "COMMA", "DASH", "AND", "COLON")
-    if not end or not rest:
+    if not end or not rest or may_withdraw(said) or _may_forbid(said):
         return None
     if (state := full_match(_STATE, said)) is not None:
         name = state["name"][0].preset.replace("-", " ")
@@ -89,6 +91,12 @@ def with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
     if (counted := _count_of(text, rest, thing)) is not None:
         return f"{go}{counted}"
     return f"{go}{text[rest[0].start :]}" if _asks_there(rest) else None
+
+
+def _may_forbid(said: Sequence[Lexeme]) -> bool:
+    """Return whether a statement may forbid a command: "he told you not to go to the gate", but not "I don't trust him"."""
+    denied = next((i for i, x in enumerate(said) if x.has("NOT", "NEGATED")), len(said))
+    return any(x.has(*VERBS, *_VERB_FORMS) for x in said[denied + 1 :]) and not match_start("there BE", said)
 
 
 def _count_of(text: str, rest: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
