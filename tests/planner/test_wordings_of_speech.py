@@ -199,6 +199,13 @@ SLIPS = [
     ("zoom in on the men up the ladder", "zoom_to_object(description=men up the ladder)"),
     ("Track the cyclist for 1 min 30", "track_object(description=cyclist, duration_s=90)"),
     ("Make sure nobody is on the track.", "query_answer(question=Is anyone on the track?, view=current)"),
+    ("as far left as you can go", "adjust_ptz(pan_deg=-360)"),
+    ("tilt up 20, then come back down", "adjust_ptz(tilt_deg=20); adjust_ptz(tilt_deg=-20)"),
+    (
+        "if there is a van, zoom in on it. If not, don't bother.",
+        "count_objects(description=van, view=current); zoom_to_object(description=van)",
+    ),
+    ("how many impala, I mean kudu, are there?", "count_objects(description=kudu, view=current)"),
     ("Queue at the gate?", "go_to_preset(name=gate); query_answer(question=Is there any queue?, view=current)"),
 ]
 """Slips, corrections, verbs in unusual forms, and descriptions."""

@@ -39,7 +39,8 @@ _REPLACEMENTS = tuple(
         (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
         (r"\bcheck once\b", "check"),
         (
-            r"\bto (?:the|its) (lower|upper|left|right)(?:most|[- ]hand)? (?:mechanical |physical |end |hard )*(?:limit|stop)\b",
+            r"\b(?:(?:all the way|right|round|around|over) )*"
+            r"to (?:the|its) (lower|upper|left|right)(?:most|[- ]hand)? (?:mechanical |physical |end |hard )*(?:limit|stop)\b",
             lambda match: f"all the way {_ENDS[match[1].lower()]}",
         ),
         (r"\bseparately (?=on|at|in\b)", ""),

@@ -96,7 +96,10 @@ def with_place_first(text: str, presets: tuple[str, ...]) -> str | None:
 def _may_forbid(said: Sequence[Lexeme]) -> bool:
     """Return whether a statement may forbid a command: "he told you not to go to the gate", but not "I don't trust him"."""
     denied = next((i for i, x in enumerate(said) if x.has("NOT", "NEGATED")), len(said))
-    return any(x.has(*VERBS, *_VERB_FORMS) for x in said[denied + 1 :]) and not match_start("there BE", said)
+    forbidden = said[denied + 1 :]
+    words = " ".join(x.word.replace("_", " ") for x in said)
+    is_act = any(x.has(*VERBS, *_VERB_FORMS) for x in forbidden) or " not to " in f" {words} "
+    return is_act and not match_start("there BE", said)
 
 
 def _count_of(text: str, rest: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
