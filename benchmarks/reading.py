@@ -10,7 +10,7 @@ spaces and punctuation are ignored.
 With ``--tasks`` (a split or a task file), the views are those in which the reference programs of the OCR tasks read texts, and the
 benchmark's answer check decides whether the engine's output at the position of the answer is correct.
 
-The benchmark requires the extra ``ocr``.
+The benchmark requires the ``ocr`` extra.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@
         print(run.answer)
 
 The public interface consists of the names in ``__all__`` and the module ``scope_ptz.contracts``, which contains the types needed to
-implement a camera, a planner or a perception backend, and of ``scope_ptz.gym``, which needs the extra ``gym``. Every other module
+implement a camera, a planner or a perception backend, and of ``scope_ptz.gym``, which needs the ``gym`` extra. Every other module
 is internal and may change in any release.
 
 Sessions: ``open``, ``open_async``, ``Scope``, ``AsyncScope``, ``Run``, ``CallResult``, ``Event``.

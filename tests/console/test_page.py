@@ -1,4 +1,4 @@
-"""The operator's page in Chromium."""
+"""The operator console in Chromium."""
 
 from __future__ import annotations
 

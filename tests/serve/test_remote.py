@@ -143,7 +143,7 @@ def test_errors_have_clear_messages(
 ) -> None:
     with pytest.raises(UnknownNameError, match="There is no camera 'nothing'"):
         scope_ptz.open(f"{served.root}/nothing")
-    with nobody_listens() as url, pytest.raises(CameraError, match="does not answer"):
+    with nobody_listens() as url, pytest.raises(CameraError, match="is not responding"):
         scope_ptz.open(url.replace("/v1", "/yard"))
     for wrong in (served.root, f"{served.root}/a/b", "http:///yard", f"{served.root}/yard?x=1"):
         with pytest.raises(ConfigError, match="http://HOST:PORT/CAMERA"):

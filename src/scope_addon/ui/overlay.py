@@ -1,4 +1,4 @@
-"""A text at the bottom of the 3D viewport that shows the current step of a run or its answer."""
+"""Text at the bottom of the 3D viewport that shows the current step of a run or its answer."""
 
 from __future__ import annotations
 

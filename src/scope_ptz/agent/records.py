@@ -13,7 +13,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
 FORMAT_VERSION = 1
-"""Version of the trace format. It is raised when a change could make an older program misread traces."""
+"""Version of the trace format. It is incremented when a change could make an older program misread traces."""
 
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
@@ -51,7 +51,7 @@ class RecordedPose(_Record):
 
 
 class Budgets(_Record):
-    """Limits of a run: planner steps (T_max), wall-clock seconds, and input plus output tokens of the planner."""
+    """Limits on a run: planner steps (T_max), wall-clock seconds, and input plus output tokens of the planner."""
 
     max_steps: int = Field(default=60, ge=1)
     time_s: float | None = Field(default=None, gt=0)
@@ -146,7 +146,7 @@ class Called(_Record):
 
     @property
     def perception_s(self) -> float:
-        """Wall-clock seconds of this call's own perception calls, without those of concurrent calls."""
+        """Wall-clock seconds spent in this call's own perception calls, excluding those of concurrent calls."""
         return sum(reply.wall_s for reply in self.replies)
 
 
@@ -157,7 +157,7 @@ class Ended(_Record):
         text: The answer, the clarifying question, or the reason why there is no answer.
         detail: A traceback or other details for debugging.
         kind: Failure kind of the planner's model server (``endpoints.FailureKind``, such as "refused"), if it failed.
-        server_events: Number of failed requests to model servers by failure kind, including those that a retry recovered.
+        server_events: Number of failed requests to model servers by failure kind, including those that succeeded on retry.
     """
 
     event: Literal["end"] = "end"

@@ -21,7 +21,7 @@ def addon_folder() -> Path:
     """
     spec = importlib.util.find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise BlenderError("The add-on's sources are not installed. Install scope-ptz again.")
+        raise BlenderError("The add-on's sources are not installed. Reinstall scope-ptz.")
     return Path(next(iter(spec.submodule_search_locations)))
 
 

@@ -1,4 +1,4 @@
-"""A camera in live Blender: Cycles renders each frame on request."""
+"""A camera in a running Blender process: Cycles renders each frame on request."""
 
 from __future__ import annotations
 

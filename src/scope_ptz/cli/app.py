@@ -162,7 +162,7 @@ def console(
     server: ServerFlags,
     as_json: JsonOption = False,
 ) -> None:
-    """Serve the operator's page to browsers, together with the HTTP API, until Ctrl-C."""
+    """Serve the operator console to browsers, together with the HTTP API, until Ctrl-C."""
     from scope_ptz.cli.serve import run_server
 
     run_server(server, kind="page", as_json=as_json)

@@ -24,7 +24,7 @@ SWITCH_INTERVAL_S = 0.001
 
 
 Serving = Literal["api", "page", "mcp"]
-"""What a server offers: "api" (the HTTP API and MCP), "page" (also the operator's page), or "mcp" (only MCP)."""
+"""What a server offers: "api" (the HTTP API and MCP), "page" (also the operator console), or "mcp" (only MCP)."""
 
 _PACKAGES = ("fastapi", "mcp", "mcp_types", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets")
 

@@ -1,4 +1,4 @@
-"""Serve the operator's page and the HTTP API from one server."""
+"""Serve the operator console and the HTTP API from one server."""
 
 from __future__ import annotations
 

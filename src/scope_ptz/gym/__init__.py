@@ -5,7 +5,7 @@
 
     env = gymnasium.make("scope_ptz/Task-v0", task="scope1-highway-works-counting-002")
 
-Importing this package registers the environments. It needs the extra ``gym``: ``pip install "scope-ptz[gym]"``.
+Importing this package registers the environments. It needs the ``gym`` extra: ``pip install "scope-ptz[gym]"``.
 """
 
 try:

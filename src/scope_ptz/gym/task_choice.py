@@ -23,8 +23,7 @@ def select_tasks(choice: TaskChoice) -> tuple[Task, ...]:
     """Return the selected tasks.
 
     Raises:
-        UnknownNameError: A name is neither a task id nor a split.
-        InputError: The choice is empty.
+        InputError: The choice is empty, or a name is neither a task id nor a split.
     """
     parts = [choice] if isinstance(choice, str | Task) else list(choice)
     tasks = tuple(task for part in parts for task in _tasks_of(part))

@@ -40,7 +40,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
     """Base class for the task environments. An episode is one run of one task.
 
     The frames in observations count as looks by the agent, like the frames that a planner with vision receives. Whether a look
-    covers the evidence for a task depends on the frame size.
+    shows enough of the evidence for a task depends on the frame size.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 2}  # type: ignore[misc]
@@ -59,11 +59,11 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
 
         Args:
             task: A task, a task id, the name of a split, or a sequence of these. Each episode samples one task.
-            perception: The perception backend that the tools use, by its name in ``--perception`` or as an object.
+            perception: The perception backend that the tools use: a name as accepted by ``--perception``, or a backend object.
             frame_size: Width and height of the observed frames in pixels.
             max_steps: Number of actions after which an episode is truncated.
             reward_weights: Reward weights that replace the defaults; see ``scope_ptz.gym.rewards``.
-            render_mode: "rgb_array", for which ``render`` returns the view at 1280x720, or None.
+            render_mode: Either "rgb_array", in which case ``render`` returns the view at 1280x720, or None for no rendering.
 
         Raises:
             InputError: An argument is invalid.
@@ -85,7 +85,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
 
     @abstractmethod
     def _decode(self, action: _Action) -> Call | Finish:
-        """Convert an action to a tool call, or to the end of the run."""
+        """Convert an action to a tool call, or to a ``Finish`` that ends the run."""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode.
@@ -200,7 +200,7 @@ class MoveTaskEnv(_TaskEnv[NDArray[np.float32]]):
 
         Args:
             task: As in ``_TaskEnv``. Tasks in a split that require more than moves are omitted.
-            move_scale: The size of the moves that actions of 1 represent.
+            move_scale: The size of the move that an action value of 1 represents, for each axis.
         """
         super().__init__(task, **options)
         self.action_space = move_space()

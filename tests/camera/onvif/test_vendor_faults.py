@@ -190,7 +190,7 @@ def generic_only(name: str, reply: bytes) -> bytes:
 
 
 async def test_generic_space_needs_a_mapping(device: VirtualDevice) -> None:
-    with pytest.raises(CameraError, match=r"pan range and the tilt range.*scope camera calibrate"):
+    with pytest.raises(CameraError, match=r"pan range and tilt range.*scope camera calibrate"):
         async with driver(device, Vendor(change=generic_only)):
             pass
     async with driver(device, Vendor(change=generic_only), mapping=MEASURED) as camera:

@@ -345,7 +345,7 @@ def test_an_unknown_category_is_reported_when_another_column_replaces_it(tmp_pat
     (task, usual) = result.tasks
     assert (task.facts.category, usual.facts.category) == ("location", "counting")
     (finding,) = [f for f in result.findings[result.rows[0].line] if f.kind == "unknown-value"]
-    assert finding.detail == "eval_category: Telepathy; read as location, by question_type: location"
+    assert finding.detail == "eval_category: Telepathy; read as location, based on question_type: location"
     assert "unknown-value" not in kinds(result, 1)
 
 

@@ -72,7 +72,8 @@ class Connection:
             raise ConfigError("Remove the user name and password from the server's address. Set the token in SCOPE_TOKEN instead.")
         if not parts.hostname or not camera or "/" in camera or parts.query or parts.fragment:
             raise ConfigError(
-                "The address of a camera on a server must be http://HOST:PORT/CAMERA, for example http://localhost:8000/highway-works."
+                "The address of a camera on a server must have the form http://HOST:PORT/CAMERA, for example "
+                "http://localhost:8000/highway-works."
             )
         self.server, self.camera = f"{parts.scheme}://{parts.netloc}", camera
         token = load_settings().token
@@ -191,8 +192,8 @@ class Connection:
     def _unreachable(self, error: Exception) -> CameraError:
         reason = str(error) or type(error).__name__
         return CameraError(
-            f"The server {self.server} does not answer: {reason}. Start the server with `scope serve`, or check the address."
+            f"The server {self.server} is not responding: {reason}. Start the server with `scope serve`, or check the address."
         )
 
     def _not_a_scope_server(self) -> CameraError:
-        return CameraError(f"{self.server} answers, but it is not a `scope serve` server. Check the address.")
+        return CameraError(f"{self.server} responds, but is not a `scope serve` server. Check the address.")

@@ -17,7 +17,7 @@ from scope_ptz.errors import TraceError
 ENGINE = "inspect-ai"
 """Name of the Python package that runs evaluations."""
 CARD = "card"
-"""Key for the run card in a log's metadata. Logs written by Inspect's own command do not have this key."""
+"""Key for the run card in a log's metadata. Logs written by Inspect's own CLI do not have this key."""
 METADATA_KEY = "scope"
 """Key for data about the tasks and the agent loop in a log's metadata."""
 AGENT_SOURCE = "agent_source"
@@ -30,7 +30,7 @@ def engine_version() -> str:
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """Return the run card of a log. For a log written by Inspect's own command, derive the card from the header.
+    """Return the run card of a log. For a log written by Inspect's own CLI, derive the card from the header.
 
     Args:
         header: The header of the log.

@@ -25,7 +25,7 @@ class DeviceControlHeldError(ControlHeldError):
     """Another client has control of the device, according to the device's own control queue."""
 
     def __init__(self, camera: str, place: QueuePlace) -> None:
-        wait = f"about {place.seconds} s" if place.seconds >= 0 else "an unknown time"
+        wait = f"about {place.seconds} s" if place.seconds >= 0 else "unknown length"
         # VAPIX reports a position in the queue, but not the names of the clients.
         CameraError.__init__(
             self,
@@ -46,7 +46,7 @@ class VapixClient:
     def __init__(self, http: DeviceHttp, channel: int = 1) -> None:
         self.http, self.channel = http, channel
         self.control_queue_on = False
-        """Whether the device's control queue is on. If it is, commands require control."""
+        """Whether the device's control queue is enabled. If it is, commands require control."""
         self._control_until_s = 0.0
 
     @property

@@ -39,7 +39,7 @@ class AxisDevice:
         speeds: The relation between the device's speeds and degrees per second.
         capabilities: Capabilities beyond moving to a pose.
         supported: Names of the functions whose ``PTZ.Support`` parameter is true, such as ``AutoFocus``.
-        control_queue_on: Whether the control queue is on, so that commands require control.
+        control_queue_on: Whether the control queue is enabled, so that commands require control.
         locked: Whether the position is locked, so that the camera cannot be moved.
         sizes: Picture sizes that the device reports, as (width, height); empty if it reports none.
         firmware: Firmware version; empty if the device reports none.

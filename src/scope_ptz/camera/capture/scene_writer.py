@@ -47,7 +47,7 @@ It compensates for resampling twice: frames to the pack, and later the pack to a
 of views is closest to that of the captured frames.
 """
 
-SEEN_STEP = 4  # factor by which the mask of seen pixels is reduced in both directions
+SEEN_STEP = 4  # factor by which the mask of seen pixels is downsampled along each axis
 
 Picture = NDArray[np.uint8]
 
@@ -59,7 +59,7 @@ class WrittenScene:
     Attributes:
         folder: The scene's folder.
         file: The content of its ``scene.json``.
-        tiles: Number of sharper tiles.
+        tiles: Number of tiles, which are sharper than the panorama.
         omitted_presets: Names of the presets that were omitted because they are outside the captured range.
     """
 

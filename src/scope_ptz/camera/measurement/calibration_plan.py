@@ -25,7 +25,7 @@ class CalibrationPlan:
         camera: The camera's name.
         base: The pose from which the camera turns.
         pan_deg: The largest pan turn to either side in degrees, if the camera turns exactly as commanded.
-        tilt_deg: The largest tilt turn in degrees; negative if downwards.
+        tilt_deg: The largest tilt turn in degrees; negative means down.
         zooms: The magnifications at which the field of view is measured.
     """
 
@@ -67,13 +67,13 @@ def base_pose(limits: Limits, start: Pose, turn_deg: float) -> Pose:
 
 
 def vertical_turn_deg(limits: Limits, base: Pose, size_deg: float) -> float:
-    """Return the tilt change towards the side with more room, at most ``size_deg``."""
+    """Return the tilt change in the direction with more room, at most ``size_deg``."""
     up, down = limits.max_tilt_deg - base.tilt_deg, base.tilt_deg - limits.min_tilt_deg
     return min(size_deg, up) if up > down else -min(size_deg, down)
 
 
 def zoom_levels(limits: Limits, zooms: int) -> tuple[float, ...]:
-    """Return magnifications in equal ratios, from the widest to the closest zoom; only one if the lens cannot zoom."""
+    """Return geometrically spaced magnifications, from the widest to the closest zoom; only one if the lens cannot zoom."""
     ratio = limits.max_zoom / limits.min_zoom
     if ratio < 1.01:
         return (limits.min_zoom,)

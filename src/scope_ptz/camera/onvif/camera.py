@@ -69,17 +69,17 @@ class OnvifCamera(NetworkCamera):
         latency_s: float = 0.1,
         settling: SettlingCriteria | None = None,
     ) -> OnvifCamera:
-        """Connect to a camera and read its capabilities. Closing the camera closes ``http``, and so does a failure to open it.
+        """Connect to a camera and read its capabilities. ``http`` is closed when the camera is closed, or if opening it fails.
 
         Args:
             http: The HTTP connection to the device.
             credentials: The credentials for signing in.
             mapping: Configured or measured values that ONVIF does not report, such as fields of view.
-            assume: Whether to assume values that are neither reported nor known, for example in order to measure them.
+            assume: Whether to assume values that are neither reported nor known, for example so that they can then be measured.
             profile: Token or name of the ONVIF profile; by default, a suitable one is chosen.
             width: Width of a frame in pixels; by default, that of the device's pictures.
             height: Height of a frame in pixels; by default, that of the device's pictures.
-            stream: The transport of ``frames``.
+            stream: The transport that ``frames`` uses.
             rtsp_port: Port of the RTSP server; None for the port that the device reports.
             latency_s: Seconds from the exposure of a streamed frame to its arrival.
             settling: The criteria for deciding that the camera has settled.
@@ -162,6 +162,6 @@ class OnvifCamera(NetworkCamera):
 def _check_known(device: OnvifDevice, where: str) -> None:
     if device.assumed:
         raise CameraError(
-            f"ONVIF does not report the {' and the '.join(device.assumed)} of the {device.name} at {where}. Calibrate the camera "
+            f"The {device.name} at {where} does not report its {' and '.join(device.assumed)} over ONVIF. Calibrate the camera "
             "with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera spec."
         )

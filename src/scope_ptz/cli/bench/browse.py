@@ -21,13 +21,13 @@ MAX_AMBIGUOUS_LISTED = 4
 def browse(
     task: Annotated[str, typer.Argument(help="Id of a task, or the end of one (counting-017).")] = "",
     tasks: Annotated[str, typer.Option("--tasks", help="Split or task file (default: every split).")] = "",
-    category: Annotated[str, typer.Option(help="Show only tasks of this category.")] = "",
-    scene: Annotated[str, typer.Option("--scene", help="Show only tasks of this scene.")] = "",
+    category: Annotated[str, typer.Option(help="Show only tasks in this category.")] = "",
+    scene: Annotated[str, typer.Option("--scene", help="Show only tasks in this scene.")] = "",
     at_random: Annotated[bool, typer.Option("--random", help="Show one of the matching tasks at random.")] = False,
     seed: Annotated[int | None, typer.Option(help="Seed for --random.")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start view and of the evidence.")] = None,
 ) -> None:
-    """List tasks, or show one: instruction, expected answer, reference run, and the frames with its evidence."""
+    """List tasks, or show one: instruction, expected answer, reference run, and the frames that contain its evidence."""
     rows = _matching_tasks(_tasks(tasks), check_category(category), scene)
     if task:
         chosen = _task_with_id(rows, task)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from scope_ptz.factory.models import ModelOptions
 
 MIN_WIDTH_FOR_CATEGORIES = 160
-"""Minimum terminal width, in characters, at which there is a column per category."""
-PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the column with the names of pairs
+"""Minimum terminal width, in characters, for showing one column per category."""
+PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the pair-name column
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class SweepServerFlags(ModelFlags):
 
 def sweep(
     selection: SelectionFlags,
-    running: EvaluationFlags,
+    evaluation: EvaluationFlags,
     servers: SweepServerFlags,
     pairs: Annotated[
         str | None,
@@ -66,7 +66,7 @@ def sweep(
 
     require_engine()
     names = pair_names(pairs, paper=paper)
-    shared = evaluation_options(selection, running, servers.options())
+    shared = evaluation_options(selection, evaluation, servers.options())
     console = Console(highlight=False, stderr=as_json)
     results = _run_all(names, shared, console)
     if as_json:
@@ -102,7 +102,7 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
 
 
 def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
-    """Run all pairs. Return, for each pair, the evaluation or the message of the error that prevented it."""
+    """Run all pairs. Return, for each pair, its evaluation or, if it failed, the error message."""
     import anyio
 
     from scope_ptz.bench.engine.failure_summary import failure_summary
@@ -156,7 +156,7 @@ def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[T
     if ranked:
         yield _pairs_table("Pairs of models, best first", ranked, width)
     if others:
-        yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not results of models", others, width)
+        yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not model results", others, width)
     failures = [(name, line) for name, e in evaluations for line in failure_summary(e.trials, e.card)]
     missing = [(name, message) for name, message in results.items() if isinstance(message, str)]
     for title, rows in (("Server failures", failures), ("Not run", missing)):
@@ -173,15 +173,15 @@ def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int)
 
     categories = CATEGORIES if width >= MIN_WIDTH_FOR_CATEGORIES else ()
     table = _table(title)
-    for column in ("macro", "micro", *(c.replace("_", " ") for c in categories), "runs", "broken"):
-        table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "broken"))
+    for column in ("macro", "micro", *(c.replace("_", " ") for c in categories), "runs", "failed"):
+        table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "failed"))
     for name, evaluation in sorted(rows, key=lambda row: -(macro_accuracy(row[1].trials) or 0.0)):
         trials = evaluation.trials
         fractions = [macro_accuracy(trials), accuracy(trials)]
         fractions += [accuracy([t for t in trials if t.task.category == category]) for category in categories]
-        broken = sum(t.headline == "infrastructure" for t in trials)
+        failed = sum(t.headline == "infrastructure" for t in trials)
         cells = [f"{100 * fraction:.1f}" if fraction is not None else "-" for fraction in fractions]
-        table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
+        table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(failed) if failed else "-")
     return table
 
 

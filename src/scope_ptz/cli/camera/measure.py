@@ -54,7 +54,9 @@ def probe(
     report: Annotated[
         bool, typer.Option("--report", help="Write a report for the table of tested devices, without addresses or serial numbers.")
     ] = False,
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="File of the report (default: camera-report-MODEL.md).")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="File to write the report to (default: camera-report-MODEL.md).")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Read a camera's capabilities and store them in its profile. The camera does not move."""
@@ -84,7 +86,7 @@ def calibrate(
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Measure a camera from its own pictures: signs and response of pan and tilt, field of view by zoom, latency, settling time.
+    """Measure a camera from its pictures: direction and scale of pan and tilt, field of view at each zoom, latency, settling time.
 
     The camera moves for a minute or two. The exit code is 1 if its pictures contradict the values that it reports.
     """
@@ -189,8 +191,8 @@ def _calibration_lines(record: CalibrationRecord) -> list[str]:
     return [
         *signs,
         f"Horizon: at a reported tilt of 0, the camera points {horizon_deg:+.1f} degrees from the horizon",
-        "Zoom     measured  stated (horizontal field of view in degrees)",
-        *(f"{row.zoom:6.2f}x {row.measured_deg:9.2f} {row.stated_deg:7.2f}" for row in record.fields),
-        f"Picture: {1000 * record.snapshot_s:.0f} ms; move of 20 degrees: {record.move_s:.2f} s; "
+        "Zoom     measured reported (horizontal field of view in degrees)",
+        *(f"{row.zoom:6.2f}x {row.measured_deg:9.2f} {row.stated_deg:8.2f}" for row in record.fields),
+        f"Picture: {1000 * record.snapshot_s:.0f} ms; 20-degree move: {record.move_s:.2f} s; "
         f"settled {record.settling_s:.2f} s after arrival",
     ]

@@ -31,7 +31,7 @@ export async function request(method, path, body, options = {}) {
   try {
     reply = await fetch(ROOT + path, { ...options, method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
   } catch {
-    throw new ApiError(0, "offline", "The server does not answer. Check that it is running.");
+    throw new ApiError(0, "offline", "The server is not responding. Check that it is running.");
   }
   if (reply.status === 401) location.assign("/sign-in");
   const text = await reply.text();

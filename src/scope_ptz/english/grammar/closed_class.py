@@ -1,4 +1,4 @@
-"""Load the words and fixed expressions with a grammatical meaning from ``closed_class.txt``."""
+"""Load the function words and fixed expressions from ``closed_class.txt``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class WordClass(NamedTuple):
 
 @cache
 def instruction_classes() -> Mapping[str, WordClass]:
-    """Return the word classes of instructions and the spelling lists, by name."""
+    """Return the word classes used in instructions, and the spelling lists, by name."""
     classes: dict[str, WordClass] = {}
     for head, members in _lines():
         if head[0] not in "@?":
@@ -39,7 +39,7 @@ def misspellings() -> Mapping[str, str]:
 
 @cache
 def question_phrases() -> Mapping[tuple[str, ...], tuple[str, str]]:
-    """Return the token type and value of each expression of descriptions and questions, keyed by its words."""
+    """Return the token type and value of each expression used in descriptions and questions, keyed by its words."""
     table: dict[tuple[str, ...], tuple[str, str]] = {}
     for head, members in _lines():
         if head[0] == "?":

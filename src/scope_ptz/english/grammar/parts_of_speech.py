@@ -1,4 +1,4 @@
-"""Look up the parts of speech of English words in the dictionary of LemmInflect.
+"""Look up the parts of speech of English words in LemmInflect's dictionary.
 
 The first look-up loads the dictionary, which takes about 0.2 s.
 """
@@ -13,7 +13,7 @@ VerbForm = Literal["base", "third person", "past", "participle"]
 
 @lru_cache(maxsize=8192)
 def parts_of_speech(word: str) -> frozenset[str]:
-    """Return the parts of speech that a word in lower case can have, such as {"NOUN", "VERB"}; an empty set for an unknown word."""
+    """Return the parts of speech that a lower-case word can have, such as {"NOUN", "VERB"}; an empty set for an unknown word."""
     from lemminflect import getAllLemmas
 
     return frozenset(getAllLemmas(word))
@@ -21,7 +21,7 @@ def parts_of_speech(word: str) -> frozenset[str]:
 
 @lru_cache(maxsize=8192)
 def verb_form(word: str) -> VerbForm | None:
-    """Return the form of a verb in lower case; None for other words.
+    """Return the form of a lower-case verb; None for other words.
 
     A past form may also be a past participle. "participle" is the form that ends in "ing".
     """

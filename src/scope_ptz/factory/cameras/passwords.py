@@ -62,7 +62,7 @@ def store_password(spec: CameraSpec, password: str) -> None:
         raise InputError("The password is empty. Enter a password.")
     keyring = _keyring()
     if keyring is None:
-        raise ConfigError("No keyring is available. Install the extra `camera`, or set SCOPE_CAMERA_PASSWORD.")
+        raise ConfigError("No keyring is available. Install the `camera` extra, or set SCOPE_CAMERA_PASSWORD.")
     try:
         keyring.set_password(KEYRING_SERVICE, account, password)
     except Exception as error:  # each keyring backend raises its own exceptions

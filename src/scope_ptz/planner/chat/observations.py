@@ -13,7 +13,7 @@ from scope_ptz.planner.base import ToolOutcome
 
 MAX_BOXES = 12  # further boxes are counted, but not listed
 MAX_CHARS = 4000
-"""Maximum length of texts from perception. Longer texts usually come from models that did not stop generating."""
+"""Maximum length of text from perception. Longer text usually comes from a model that did not stop generating."""
 
 BRIEF_CHARS = 120  # maximum length of texts in shortened outcomes
 

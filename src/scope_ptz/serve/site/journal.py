@@ -23,7 +23,7 @@ MAX_TURNS = 20
 """Maximum number of conversation turns that the planner receives."""
 
 SETTLE_S = 2.0
-"""Maximum time, in seconds, for which a request that lists runs waits until recently ended runs are indexed."""
+"""Maximum time, in seconds, that a request to list runs waits for recently ended runs to be indexed."""
 
 _T = TypeVar("_T")
 
@@ -63,7 +63,7 @@ class Journal:
             self._queue.task_done()
 
     async def settle(self, limit_s: float = SETTLE_S) -> None:
-        """Wait at most ``limit_s`` seconds until all queued runs are indexed, so that lists contain recently ended runs."""
+        """Wait up to ``limit_s`` seconds for all queued runs to be indexed, so that lists include recently ended runs."""
         with anyio.move_on_after(limit_s):
             await self._queue.join()
 

@@ -16,7 +16,10 @@ from scope_ptz.taskgen.facts.answer_phrasing import offered_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
 PAIR_QUOTAS: dict[Category, int] = {"counting": 31, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
-"""Number of pairs per category. Both tasks of a pair have the same wording, one about an absent and one about a present object."""
+"""Number of pairs per category.
+
+The two tasks in a pair have the same wording, but one is about an object that is absent and the other about one that is present.
+"""
 
 MAX_PAIRS_OF_TYPE = {"not-there": 4, "half-none": 3, "neither": 4}
 """Caps on absence/presence pairs per question type, so that always answering yes scores low."""
@@ -26,7 +29,7 @@ MAX_SAME_ANSWER: dict[Category, int] = {
 }  # fmt: skip
 """Maximum number of tasks per category that have the same correct answer, not counting pairs.
 
-Over all categories, at most 3% of the tasks have the same correct answer.
+Across all categories, at most 3% of the tasks have the same correct answer.
 """
 
 MAX_SAME_YES_NO = 1
@@ -38,10 +41,10 @@ MAX_SAME_QUESTION = 2
 MAX_AT_ONE_POSITION: dict[Category, int] = {"descriptor": 3, "location": 3, "comparative": 5}
 """Maximum number of tasks whose correct answer has the same position among the question's options, not counting pairs.
 
-Over all categories, the correct answer has the same position in at most 3% of the tasks.
+Across all categories, the correct answer has the same position in at most 3% of the tasks.
 """
 
-_NO_LIMIT = 1000.0  # slack at which the limits on equal questions, equal answers and answer positions have no effect
+_NO_LIMIT = 1000.0  # slack at which the limits on repeated questions, repeated answers and answer positions have no effect
 
 MAX_FRAME_SHARE = 0.06  # maximum fraction of a category's tasks with the same sentence frame
 MAX_FROM_START = 3  # maximum number of tasks per category that can be answered from the start view
@@ -77,8 +80,8 @@ class SharedLimits:
     """Limits that all categories share, and the questions and instructions that any category has already used.
 
     Attributes:
-        used_questions: Keys of the questions and views that are already used.
-        texts: Instructions that are already used.
+        used_questions: Keys of the questions and views that have already been used.
+        texts: Instructions that have already been used.
         scale: Size of this dataset relative to the published one. Limits are multiplied by it.
         can_answer: Returns whether perception can answer a draft; None accepts all drafts.
     """
@@ -123,7 +126,7 @@ class Selection:
         return self.rows
 
     def _add_best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
-        """Select the draft that improves the balance most, and return whether there is one.
+        """Select the draft that improves the balance most, and return whether one was selected.
 
         The selected draft and the drafts that ``add_draft`` rejected are removed from the pool.
         """
@@ -134,7 +137,7 @@ class Selection:
         return False
 
     def _cost(self, draft: TaskDraft) -> float:
-        """Return the weighted number of times that a draft's traits are already used."""
+        """Return the weighted number of times that a draft's traits have already been used."""
         twin = () if draft.twin is None else (("answer", draft.twin.answer_key),)
         return sum(_WEIGHTS[name] * self.used[name][value] for name, value in (*draft.traits, *twin))
 
@@ -224,7 +227,7 @@ class Selection:
 
 
 def answer_positions(draft: TaskDraft, text: str) -> list[str]:
-    """Return the position of the correct answer among the options in a wording, and also "last" for the last option.
+    """Return the position of the correct answer among the options in a wording, and also "last" if it is the last option.
 
     The list is empty if the wording does not contain the answer.
     """
@@ -236,7 +239,7 @@ def answer_positions(draft: TaskDraft, text: str) -> list[str]:
 
 
 def is_answerable_from_start(draft: TaskDraft) -> bool:
-    """Return whether a task that needs a move or a sweep would also pass all checks if a run observed only the start view."""
+    """Return whether a task that needs a move or a sweep would pass all checks even if a run observed only the start view."""
     place = draft.place
     needs = place.needs if draft.needs is None else draft.needs
     views = [view for view in draft.evidence if view.must_look]

@@ -1,4 +1,4 @@
-"""Find questionable rows: duplicates, contradictions, answers in the question, and requirements that contradict the question.
+"""Find questionable rows: duplicates, contradictions, answers given away by the question, and requirements that contradict it.
 
 No row is changed or omitted. Questionable rows are imported like any other, and the report lists the findings about them.
 """
@@ -21,7 +21,7 @@ _NOW = re.compile(
 _THEN = re.compile(r"\b(?:then|afterwards?|after that|finally|followed by|once (?:there|done))\b", re.IGNORECASE)
 _DONE = r"(?:followed|completed?|executed|performed|finished|done|carried out)"
 _WORK = r"(?:steps?|instructions?|commands?|tasks?|requests?|actions?|operations?|sequence)"
-_EMPTY_ANSWER = re.compile(
+_VACUOUS_ANSWER = re.compile(
     r"\W*(?:(?:ok(?:ay)?|done|ready|sure|complete|completed|finished|success|successful|successfully)"
     rf"|(?:(?:i|we|the agent|the camera|the system)\W?\s?(?:ve|have|has)? )?(?:successfully )?{_DONE} "
     rf"(?:all |of |the |your |these |those |requested |given |specified |required )*{_WORK}"
@@ -54,7 +54,7 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
         yield _finding("now-but-full")
     if _THEN.search(row.question) and row.order == "any" and len(row.calls) > 1:
         yield _finding("then-unordered", ", ".join(call.tool for call in row.calls))
-    if _EMPTY_ANSWER.fullmatch(row.answer):
+    if _VACUOUS_ANSWER.fullmatch(row.answer):
         yield _finding("empty-assertion", row.answer)
     if (part := answer_in_question(row.question, row.answer)) is not None:
         yield _finding("answer-in-question", part)

@@ -56,7 +56,7 @@ class ParsedRow:
 
     @property
     def line(self) -> int:
-        """The line number at which the row begins."""
+        """The number of the line on which the row begins."""
         return self.row.line
 
     @property
@@ -154,7 +154,7 @@ def parse_row(row: Row, scene_names: SceneNames) -> ParsedRow:
 
 
 def unique_ids(rows: list[Row], dataset: str) -> list[str]:
-    """Return a unique task id for every row, which contains the row's own id or, if it has none, its line number."""
+    """Return a unique task id for every row. The id contains the row's own id or, if it has none, its line number."""
     base_ids = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
     uses, ids = Counter[str](), list[str]()
     for name in base_ids:
@@ -180,7 +180,7 @@ def _parse_category(cells: Mapping[str, str], note: Note) -> Category | None:
     column, category = match
     first = next(iter(filled))
     if column != first:
-        note("unknown-value", f"{first}: {filled[first]}; read as {category}, by {column}: {filled[column]}")
+        note("unknown-value", f"{first}: {filled[first]}; read as {category}, based on {column}: {filled[column]}")
     return category
 
 
@@ -211,7 +211,10 @@ def _parse_modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal[
 
 
 def _parse_scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
-    """Return the scope in the cell ``answer_view``. Without one, return "full" if an expected call does, otherwise "current"."""
+    """Return the scope in the cell ``answer_view``.
+
+    If it has none, return "full" if an expected call uses the full view, otherwise "current".
+    """
     cell = cells.get("answer_view", "")
     scope = scope_of(cell)
     if scope is not None:

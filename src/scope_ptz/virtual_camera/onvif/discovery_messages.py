@@ -54,7 +54,7 @@ class Query:
     """A Probe or Resolve message.
 
     Attributes:
-        message_id: The message id, to which the response refers.
+        message_id: The message id, which the response refers to.
         resolves: The address of the device to resolve; None for a Probe.
         types: The types that a device must have to match a Probe.
         scopes: The scopes that a device must have to match a Probe.
@@ -112,7 +112,7 @@ class DiscoveryMessages:
 
     Args:
         target: The device.
-        instance: A number that increases each time the device starts. Message numbers then start again.
+        instance: A number that increases each time the device starts. Message numbering then restarts.
     """
 
     def __init__(self, target: Target, instance: int) -> None:

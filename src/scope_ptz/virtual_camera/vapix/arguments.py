@@ -11,7 +11,7 @@ MAX_SHOWN_CHARS = 60  # longer text from a client is truncated in error messages
 
 
 class Arguments:
-    """The arguments of a request. Conversions raise ``InputError``, which names the argument, if a value is invalid.
+    """The arguments of a request. If a value is invalid, conversions raise an ``InputError`` that names the argument.
 
     Args:
         values: The text of each argument, by name.
@@ -43,7 +43,7 @@ class Arguments:
         return int(self.number(name, low, high))
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
-        """Return an argument as ``count`` finite numbers, separated by commas."""
+        """Parse a comma-separated argument as ``count`` finite numbers."""
         return tuple(self._numbers(name, count))
 
     def choice(self, name: str, known: tuple[str, ...]) -> str:

@@ -1,4 +1,4 @@
-"""Traditional British street furniture: pillar box, telephone kiosk, lamp standards, planters, signals, fingerposts."""
+"""Traditional British street furniture: pillar boxes, telephone kiosks, lamp standards, planters, traffic signals, fingerposts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def post_box() -> Built:
 
 
 def phone_box() -> Built:
-    """Build a telephone kiosk, 0.92 m square and 2.45 m high, with glazed doors, domed roof, and an opal fascia on each side."""
+    """Build a telephone kiosk, 0.92 m square and 2.45 m high, with glazed sides, a domed roof, and an opal fascia on each side."""
     s = Solid("phone box")
     red = paint("red", dirt=0.14, roughness=0.24)
     s.box((0.96, 0.96, 0.10), (0, 0, 0.05), paint("dark grey"), 0.01)
@@ -108,7 +108,7 @@ def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
 
 
 def planter(colours: Sequence[str], *, seed: int = 0, width_m: float = 1.1) -> Built:
-    """Build a timber trough with flowers, along x."""
+    """Build a timber flower trough that extends along x."""
     s = Solid("planter")
     for z in (0.08, 0.20, 0.32, 0.44):
         for y in (-0.24, 0.24):

@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 def suitcase(colour: str = "navy", *, height: float = 0.66, handle: bool = True) -> Built:
     """Build a ribbed hard-shell case on four wheels, with its broad side towards +y.
 
-    If ``handle`` is true, the handle is pulled out.
+    If ``handle`` is true, the handle is extended.
     """
     s = Solid(f"{colour} suitcase")
     _case(s, colour, height, handle)
@@ -40,7 +40,7 @@ def _case(s: Solid, colour: str, height: float, handle: bool) -> None:
 
 
 def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
-    """Build a suitcase that is pulled on two wheels by a person who walks towards +y. Its handle ends at the position ``hand``."""
+    """Build a suitcase tilted onto two wheels, as pulled by a person walking towards +y. The end of its handle is at ``hand``."""
     s = Solid(f"{colour} suitcase")
     with s.at(hand[0], hand[1] - 0.62, 0.0, pitch=-38.0):
         _case(s, colour, height, True)

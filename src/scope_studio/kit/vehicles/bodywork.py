@@ -33,7 +33,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window between two stations and two rows of section points, on both sides or, with ``across``, over the middle.
+    """A window between two stations and two rows of section points, on both sides or, with ``across``, across the middle.
 
     ``frame_m`` is the width of its black frame.
     """
@@ -124,7 +124,7 @@ def _glaze(
     crease: bmesh.types.BMLayerItem,
     corner: bmesh.types.BMLayerItem,
 ) -> None:
-    """Change a region of faces to a window with a sharp frame of black trim."""
+    """Turn a region of faces into a window with a sharp frame of black trim."""
     bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
@@ -179,7 +179,7 @@ class Surface:
         self.tree = BVHTree.FromPolygons([v.co for v in mesh.vertices], [p.vertices for p in mesh.polygons])
 
     def side(self, y: float, z: float) -> float:
-        """Return the body's half width at ``(y, z)`` on the right."""
+        """Return the body's half-width at ``(y, z)`` on the right."""
         hit = self.tree.ray_cast(Vector((9.0, y, z)), Vector((-1, 0, 0)))[0]
         return hit.x if hit is not None else 0.0
 
@@ -215,7 +215,7 @@ _LETTERING_AXES: dict[str, tuple[Point, Point]] = {
 
 
 def text_line(
-    body: str,
+    text: str,
     cap_m: float,
     centre: Point,
     facing: str,
@@ -228,7 +228,7 @@ def text_line(
 
     With ``onto``, it is projected onto that curved surface instead of a plane.
     """
-    flat, faces = lettering.letters(body, cap_m)
+    flat, faces = lettering.letters(text, cap_m)
     if onto is not None:
         flat, faces = _subdivide(flat, faces)
     xs, ys = [p[0] for p in flat], [p[1] for p in flat]
@@ -245,7 +245,7 @@ def text_line(
         points.append((px, py, pz))
     if onto is not None:
         centre = (sum(p[0] for p in points) / len(points), centre[1], centre[2])
-    return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
+    return Lettering(points, faces, colour, TextMark(text, centre, right, up, width * squeeze, height, cap_m))
 
 
 def _subdivide(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
@@ -268,7 +268,7 @@ def _subdivide(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[
 
 
 def text_on_both_sides(
-    body: str,
+    text: str,
     cap_m: float,
     y: float,
     z: float,
@@ -278,18 +278,18 @@ def text_on_both_sides(
     width_m: float = math.inf,
     onto: Surface | None = None,
 ) -> list[Lettering]:
-    """Return the same line of lettering for the right and the left side.
+    """Return the same line of lettering for the right and left sides.
 
     The lettering is on the planes at ``x`` and -``x`` or, with ``onto``, projected onto that surface.
     """
     return [
-        text_line(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
+        text_line(text, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
         for sign, facing in ((1, "+X"), (-1, "-X"))
     ]
 
 
 def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
-    """Return UK number plates (white in front, yellow at the rear) and their lettering.
+    """Return UK number plates (white at the front, yellow at the rear) and their lettering.
 
     ``front`` and ``rear`` are the positions (y, z) of the faces of the plates.
     """

@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
-    """Build a motorcycle, 2.1 m long, that faces +y. It is upright; to lean it, use ``lean_deg`` of ``Stage.place``."""
+    """Build a motorcycle, 2.1 m long, that faces +y. It stands upright; to lean it, pass ``lean_deg`` to ``Stage.place``."""
     s = Solid(f"{colour} motorcycle")
     skin, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
     chrome, iron = (

@@ -33,7 +33,7 @@ def build(stage: Stage) -> None:
 
 
 def _front_x(x: float) -> float:
-    """Convert a world x coordinate to the x coordinate of the warehouse builder."""
+    """Convert a world x coordinate to the warehouse's local x coordinate."""
     return MIDDLE_X - x
 
 

@@ -10,7 +10,7 @@ from scope_studio.kit.ground.wet_street import KERB_M
 WEST_KERB, EAST_KERB = -3.2, 5.4
 """x coordinates of the edges of the carriageway. The easternmost 2.2 m are parking bays."""
 WEST_FRONT, EAST_FRONT = -7.4, 9.6
-"""x coordinates of the fronts of the two rows."""
+"""x coordinates of the fronts of the two rows of shops."""
 ROW_END = 48.0
 """The rows of shops extend from y = -ROW_END to ROW_END."""
 JUNCTION = (52.0, 59.0)
@@ -20,9 +20,9 @@ FAR_FRONT = 63.0
 BAY_X = 4.28
 """x coordinate of the middle of the parking bays."""
 NORTHBOUND_X, SOUTHBOUND_X = -1.6, 1.55
-"""x coordinates of the middle of the two lanes."""
+"""x coordinates of the centre lines of the two lanes."""
 ZEBRA = (11.6, 15.2)
-"""Southern and northern edge (y) of the zebra crossing."""
+"""y coordinates of the southern and northern edges of the zebra crossing."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,6 @@ class Plot:
     z: float = KERB_M
 
     def at(self, x: float, y: float, z: float = 0.0) -> tuple[float, float, float]:
-        """Return the world position of a point that is given in the coordinates of the building."""
+        """Return the world position of a point given in the building's local coordinates."""
         a = math.radians(self.bearing_deg)
         return (self.x + x * math.cos(a) + y * math.sin(a), self.y - x * math.sin(a) + y * math.cos(a), self.z + z)

@@ -50,9 +50,9 @@ def build(stage: Stage) -> None:
     prototypes = Prototypes()
     _fountain(stage)
     _seats_and_bins(stage, prototypes)
-    _bollards_planters_and_lanterns(stage, prototypes)
+    _posts_and_planters(stage, prototypes)
     _kiosk(stage)
-    _signs(stage)
+    _signs_and_machines(stage)
     _tram_stop(stage)
 
 
@@ -102,8 +102,8 @@ def _seats_and_bins(stage: Stage, prototypes: Prototypes) -> None:
         )
 
 
-def _bollards_planters_and_lanterns(stage: Stage, prototypes: Prototypes) -> None:
-    """Place bollards, planters and lanterns."""
+def _posts_and_planters(stage: Stage, prototypes: Prototypes) -> None:
+    """Place bollards, planters, lanterns, the camera mast and the flags."""
     for k in range(12):
         stage.place(
             prototypes.get("bollard", roadside.bollard),
@@ -209,7 +209,7 @@ def _kiosk(stage: Stage) -> None:
         )
 
 
-def _signs(stage: Stage) -> None:
+def _signs_and_machines(stage: Stage) -> None:
     stage.place(
         clocks.post_clock(9, 14), "clock", "post clock", (-2.2, -6.2, 0), 118, time="9:14", colour="dark green", mounted="post"
     )

@@ -21,7 +21,7 @@ APPROACH = (23.5, 32.5)
 STREET = (-25.5, -11.8)
 """y coordinates of the south and north edges of the street."""
 TRACKS = (-14.0, -17.4)
-"""y coordinates of the eastbound and the westbound track."""
+"""y coordinates of the eastbound and westbound tracks."""
 
 
 def build(stage: Stage) -> None:

@@ -1,4 +1,4 @@
-"""Read a clause that changes the magnification."""
+"""Parse clauses that change the magnification."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _MAG = (
 _RELATIVE_MAG = (
     r"((as|of|DET|current|present)+ (ZOOMNOUN|level|close|big|large|near|tight|wide)|(as|of|DET|current|present)* ASCLOSE)"
 )
-"""What an amount is a multiple of. Unlike "3 times the magnification", "3x zoom" is not relative."""
+"""The base that an amount multiplies. "3 times the magnification" is relative to the current zoom; "3x zoom" is absolute."""
 
 _CHUNKS = (
     ("to factor", rf"(to|at) (DET|AMOUNTISH)* (?P<number>NUM) X? {_RELATIVE_MAG}"),
@@ -96,7 +96,7 @@ _NOT_CLEAR = Unclear("Shall I zoom in or out?")
 
 
 def _with_way(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes with "in there" after "zoom" as a direction and a filler: "zoom in there as close as it goes"."""
+    """Split "in there" after "zoom" into a direction and a filler, as in "zoom in there as close as it goes"."""
     for i, x in enumerate(lexemes):
         if x.word in {"in_there", "in_here"} and 0 < i < len(lexemes) - 1 and lexemes[i - 1].has("ZOOM", "ZOOM-ING"):
             way = Lexeme("in", x.start, x.start + 2, frozenset({"IN", "GLUE"}))
@@ -108,7 +108,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a clause that changes the magnification; None if the clause is about something else.
 
     Raises:
-        NotUnderstoodError: The clause zooms, but has words that are not accounted for.
+        NotUnderstoodError: The clause is about zooming, but contains words that were not understood.
     """
     lexemes = _with_way(lexemes)
     if search(
@@ -283,7 +283,7 @@ def _step(amounts: list[tuple[str, float]], silent: Sequence[Lexeme], lexemes: S
 
 
 def _zoomed(amount: tuple[str, float], sign: int, *, bare: bool, lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step that zooms by an amount, inwards, outwards, or in no stated direction."""
+    """Return the step that zooms in or out by an amount, or in an unstated direction."""
     kind, value = amount
     if search("as wide", lexemes) and kind in {"fraction", "factor"} and value > 0:
         return Move((Zoom("factor", 1 / value),))  # half as wide is twice as close
