@@ -113,6 +113,8 @@ def test_there_is_the_preset_that_was_found() -> None:
     calls, _ = last_calls("which preset has the most cones?", "go there", looks=(4, 1))
     assert calls == [("go_to_preset", {"name": "gate"})]
     assert last_calls("which preset has the fewest cones?", "go there", looks=(4, 1))[0] == [("go_to_preset", {"name": "highway"})]
+    calls, _ = last_calls("which preset has the most cones?", "thanks", "go there", looks=(4, 1))
+    assert calls == [("go_to_preset", {"name": "gate"})]
     earlier = ("go to the highway", "count the cones", "and at the gate?", "which has more?")
     assert last_calls(*earlier, "go there", looks=(4, 1, 4, 1))[0] == [("go_to_preset", {"name": "highway"})]
     calls, reply = last_calls("which preset has the most cones?", "go there", looks=(2,))

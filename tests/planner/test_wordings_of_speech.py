@@ -199,6 +199,40 @@ SLIPS = [
     ("zoom in on the men up the ladder", "zoom_to_object(description=men up the ladder)"),
     ("Track the cyclist for 1 min 30", "track_object(description=cyclist, duration_s=90)"),
     ("Make sure nobody is on the track.", "query_answer(question=Is anyone on the track?, view=current)"),
+    ("Pan as far right as possible and zoom in 2x.", "adjust_ptz(pan_deg=360, zoom_factor=2)"),
+    ("Swing all the way round to the left stop", "adjust_ptz(pan_deg=-360)"),
+    ("zoom in on the little girl", "zoom_to_object(description=little girl)"),
+    ("pan left all the way, then come back right", "adjust_ptz(pan_deg=-360); adjust_ptz(pan_deg=10)"),
+    ("pan left 20 and tilt up 5, then come back right", "adjust_ptz(pan_deg=-20, tilt_deg=5); adjust_ptz(pan_deg=20)"),
+    (
+        "tilt up 20, go to the crossing, then come back down",
+        "adjust_ptz(tilt_deg=20); go_to_preset(name=crossing); adjust_ptz(tilt_deg=-10)",
+    ),
+    (
+        "pan right 20, tell me if the gate is shut, then swing back left",
+        "adjust_ptz(pan_deg=20); query_answer(question=Is the gate shut?, view=current); adjust_ptz(pan_deg=-20)",
+    ),
+    (
+        "track the person at the crossing for 20 seconds",
+        "go_to_preset(name=crossing); track_object(description=person, duration_s=20)",
+    ),
+    (
+        "please follow the cyclist at the crossing for half a minute, then go home",
+        "go_to_preset(name=crossing); track_object(description=cyclist, duration_s=30); go_home()",
+    ),
+    ("follow the man in the red coat for 20 seconds", "track_object(description=man in the red coat, duration_s=20)"),
+    (
+        "How many bikes are there at the crossing, and is anyone watching them?",
+        "go_to_preset(name=crossing); count_objects(description=bikes, view=current); "
+        "query_answer(question=is anyone watching the bikes?, view=current)",
+    ),
+    (
+        "Is anyone feeding the ducks at the crossing? They know they mustn't.",
+        "go_to_preset(name=crossing); query_answer(question=Is anyone feeding the ducks?, view=current)",
+    ),
+    ("how busy is it? pan left 20?", "query_answer(question=how busy is it?, view=current); adjust_ptz(pan_deg=-20)"),
+    ("how many deer can you see all around the tower?", "count_objects(description=deer, view=full)"),
+    ("Where's the caretaker's ladder? Show me.", "zoom_to_object(description=caretaker's ladder)"),
     ("as far left as you can go", "adjust_ptz(pan_deg=-360)"),
     ("tilt up 20, then come back down", "adjust_ptz(tilt_deg=20); adjust_ptz(tilt_deg=-20)"),
     (
@@ -231,6 +265,8 @@ def test_instructions_as_people_say_them(text: str, calls: str) -> None:
         "I told you not to go to the crossing, go there.",
         "He wants me to pan left but I don't want to.",
         "Jim told me to pan left 20, which is wrong.",
+        "Can you pan left 20? They're not allowed there.",
+        "tilt down 20, then back up",
         "My supervisor told me not to pan left 20.",
         "We had a report of smoke at the gate.",
         "There's a van at the gate and a lorry at the crossing. Zoom in on it.",

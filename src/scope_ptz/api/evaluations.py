@@ -245,12 +245,12 @@ def evaluate(
     """
     from scope_ptz.api.evaluating import EvaluationRequest, run_evaluation
     from scope_ptz.bench.agents.launch import AgentOptions
-    from scope_ptz.bench.agents.planner import AgentTimes
+    from scope_ptz.bench.agents.planner import AgentTimeLimits
 
     options = AgentOptions(
         command=agent_command or "", python=None if agent_python is None else Path(agent_python), in_process=agent_in_process,
         sandbox=sandbox, variables=_names("agent_env", agent_env), memory_mb=agent_memory_mb,
-        times=AgentTimes(agent_step_s, agent_run_s),
+        times=AgentTimeLimits(agent_step_s, agent_run_s),
     )  # fmt: skip
     request = EvaluationRequest(
         planner=planner, perception=perception, pair=pair, tasks=tasks if isinstance(tasks, str | PathLike) else tuple(tasks),

@@ -153,7 +153,8 @@ class Prefetches:
     def start(self, start: Callable[[], Prefetch]) -> None:
         """Start a prefetch. If ``cancel`` has been called, the prefetch is cancelled immediately.
 
-        The call blocks while the table of tiles is read, so it may run in a thread whose caller is cancelled in the meantime.
+        The call blocks while the table of tiles is read, so callers may run it in a worker thread, and may be cancelled before it
+        returns.
         """
         prefetch = start()
         with self._lock:

@@ -16,13 +16,13 @@ import pytest
 from scope_ptz.bench.agents import pipe
 from scope_ptz.bench.agents.faults import AGENT_FAULTS
 from scope_ptz.bench.agents.launch import AgentOptions
-from scope_ptz.bench.agents.planner import AgentTimes
+from scope_ptz.bench.agents.planner import AgentTimeLimits
 from scope_ptz.bench.scoring.verdict import AGENT_FAILURES
 from scope_ptz.errors import PlannerError
 from tests.bench.agents.conformance import STATE
 from tests.bench.agents.programs import local_agent_in, run_to_reply, write_agent
 
-QUICK = AgentTimes(step_s=1.0, run_s=5.0)
+QUICK = AgentTimeLimits(step_s=1.0, run_s=5.0)
 
 
 def is_running(pid: int) -> bool:
@@ -103,7 +103,7 @@ async def test_failures_of_an_agent(tmp_path: Path, body: str, kind: str, messag
 
 
 async def test_memory_above_the_limit(tmp_path: Path) -> None:
-    options = AgentOptions(memory_mb=150, times=AgentTimes(30, 30))
+    options = AgentOptions(memory_mb=150, times=AgentTimeLimits(30, 30))
     body = "kept = []\nwhile True:\n    kept.append(b'x' * 5_000_000)\n    time.sleep(0.005)"
     error = await failure_of(tmp_path, body, options, "import time")
     assert error.kind == "agent-memory" and "150 MB" in str(error)
@@ -117,7 +117,7 @@ async def test_the_memory_limit_applies_to_all_processes_together(tmp_path: Path
             time.sleep(60)
     time.sleep(60)
     """
-    options = AgentOptions(memory_mb=150, times=AgentTimes(30, 30))
+    options = AgentOptions(memory_mb=150, times=AgentTimeLimits(30, 30))
     error = await failure_of(tmp_path, body, options, "import os, time")
     assert error.kind == "agent-memory"
 
@@ -131,19 +131,19 @@ async def test_too_many_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
             time.sleep(60)
         time.sleep(0.002)
     """
-    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimes(30, 30)), "import os, time")
+    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimeLimits(30, 30)), "import os, time")
     assert error.kind == "agent-processes" and "20" in str(error)
 
 
 async def test_a_flood_on_stderr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipe, "MAX_STDERR_BYTES", 100_000)
-    error = await failure_of(tmp_path, "while True: print('x' * 1000)", AgentOptions(times=AgentTimes(30, 30)))
+    error = await failure_of(tmp_path, "while True: print('x' * 1000)", AgentOptions(times=AgentTimeLimits(30, 30)))
     assert error.kind == "agent-output"
 
 
 async def test_the_time_limit_of_a_run(tmp_path: Path) -> None:
     body = "while True:\n    await asyncio.sleep(0.2)\n    await session.call('take_image')"
-    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimes(step_s=30, run_s=1)), "import asyncio")
+    error = await failure_of(tmp_path, body, AgentOptions(times=AgentTimeLimits(step_s=30, run_s=1)), "import asyncio")
     assert error.kind == "agent-timeout" and "for the whole run" in str(error)
 
 
@@ -175,7 +175,7 @@ async def test_processes_that_an_agent_started_end_with_it(tmp_path: Path, endin
     {ending}
     """
     name = write_agent(tmp_path, body, imports="import os, signal, time")
-    agent = local_agent_in(tmp_path, name, AgentOptions(times=AgentTimes(3, 30)))
+    agent = local_agent_in(tmp_path, name, AgentOptions(times=AgentTimeLimits(3, 30)))
     if ending.startswith("return"):
         reply, _ = await run_to_reply(agent)
         assert reply.text == "done"

@@ -10,7 +10,7 @@ import pytest
 
 import scope_ptz
 from scope_ptz.bench.agents.launch import AgentOptions
-from scope_ptz.bench.agents.planner import AgentTimes
+from scope_ptz.bench.agents.planner import AgentTimeLimits
 from scope_ptz.bench.agents.sandbox import SandboxContents, require_sandbox, sandbox_command
 from scope_ptz.errors import ConfigError, PlannerError
 from tests.bench.agents.programs import create_environment, local_agent_in, run_to_reply, write_agent
@@ -147,7 +147,7 @@ async def test_a_command(tmp_path: Path) -> None:
     ],
 )
 async def test_failures_in_a_sandbox(tmp_path: Path, body: str, kind: str) -> None:
-    options = AgentOptions(sandbox=True, memory_mb=300, times=AgentTimes(step_s=20 if "urandom" in body else 2, run_s=30))
+    options = AgentOptions(sandbox=True, memory_mb=300, times=AgentTimeLimits(step_s=20 if "urandom" in body else 2, run_s=30))
     with pytest.raises(PlannerError) as excinfo:
         await run_to_reply(local_agent_in(tmp_path, write_agent(tmp_path, body, imports="import os, time"), options))
     assert excinfo.value.kind == kind

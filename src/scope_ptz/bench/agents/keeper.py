@@ -42,7 +42,7 @@ class KeeperOptions:
         memory_mb: Maximum total memory of all processes in MB; None for no limit.
         processes: Maximum number of processes.
         stderr_bytes: Maximum number of bytes that the processes may write to stderr.
-        grace_s: Seconds that the program has to exit by itself after the control pipe was closed.
+        grace_s: Seconds that the program is given to exit on its own after the control pipe is closed.
     """
 
     command: list[str]
@@ -198,7 +198,7 @@ def descendants(root: int) -> list[int]:
 
 def exceeds_memory(pids: list[int], limit_bytes: int) -> bool:
     """Return whether the total memory of processes exceeds a limit. Pages that several processes share are counted once."""
-    # Computing the exact memory is slow for large processes. It never exceeds the simple estimate.
+    # The exact total is slow to compute for large processes, but it never exceeds the simple estimate.
     return simple_memory_bytes(pids) > limit_bytes and exact_memory_bytes(pids) > limit_bytes
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from scope_ptz.bench.agents.channel import Isolation
-from scope_ptz.bench.agents.planner import AgentTimes
+from scope_ptz.bench.agents.planner import AgentTimeLimits
 from scope_ptz.errors import ConfigError
 
 DEFAULT_MEMORY_MB = 4_096
@@ -37,7 +37,7 @@ class AgentOptions:
     sandbox: bool = False
     variables: tuple[str, ...] = ()
     memory_mb: int | None = DEFAULT_MEMORY_MB
-    times: AgentTimes = field(default_factory=AgentTimes)
+    times: AgentTimeLimits = field(default_factory=AgentTimeLimits)
 
     @property
     def isolation(self) -> Isolation:

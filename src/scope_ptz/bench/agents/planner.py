@@ -43,7 +43,7 @@ MAX_VIEWS_PER_STEP = 100
 
 
 @dataclass(frozen=True, slots=True)
-class AgentTimes:
+class AgentTimeLimits:
     """Limits on the time that an agent takes, not counting the time of tools, perception and the camera.
 
     Attributes:
@@ -68,7 +68,7 @@ class ChannelPlanner(Planner):
         failure: The error with which the agent failed; None if it has not failed.
     """
 
-    def __init__(self, channel: AgentChannel, name: str = "", times: AgentTimes | None = None) -> None:
+    def __init__(self, channel: AgentChannel, name: str = "", times: AgentTimeLimits | None = None) -> None:
         """Create a planner.
 
         Args:
@@ -76,7 +76,7 @@ class ChannelPlanner(Planner):
             name: The agent's name in traces. The default is the name in the agent's first message.
             times: The limits on the agent's time.
         """
-        self.channel, self.name, self.times = channel, name or "external agent", times or AgentTimes()
+        self.channel, self.name, self.times = channel, name or "external agent", times or AgentTimeLimits()
         self.spent_s = 0.0
         self._step_spent_s = 0.0
         self._named = bool(name)

@@ -13,7 +13,7 @@ MAX_SHARED_VIEWPOINTS = 2
 
 
 def viewpoint_order(entries: Iterable[Entry], open_scene: OpenScene) -> list[Entry]:
-    """Sort entries so that few viewpoints are in use at the same time, because loading a viewpoint takes as long as many runs.
+    """Sort entries so that few viewpoints are in use at the same time. Loading one viewpoint takes as much time as many runs do.
 
     Within a scene, entries with one or two viewpoints are sorted so that neighbouring entries share a viewpoint. Entries with more
     viewpoints come last.

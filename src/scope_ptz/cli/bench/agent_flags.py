@@ -106,7 +106,7 @@ class AgentFlags:
 def agent_options(flags: AgentFlags) -> AgentOptions:
     """Return the options for starting an external agent."""
     from scope_ptz.bench.agents.launch import AgentOptions
-    from scope_ptz.bench.agents.planner import AgentTimes
+    from scope_ptz.bench.agents.planner import AgentTimeLimits
 
     if flags.agent_command is not None and not flags.agent_command.strip():
         raise InputError("--agent-command is empty. Give the command line of a program that speaks the agent protocol.")
@@ -117,5 +117,5 @@ def agent_options(flags: AgentFlags) -> AgentOptions:
         sandbox=flags.sandbox,
         variables=tuple(flags.agent_env or ()),
         memory_mb=flags.agent_memory_mb,
-        times=AgentTimes(flags.agent_step_s, flags.agent_run_s),
+        times=AgentTimeLimits(flags.agent_step_s, flags.agent_run_s),
     )

@@ -20,9 +20,10 @@ MAX_CONCURRENT_TILES = 4
 """Maximum number of tiles that are processed concurrently."""
 
 SAME_POINT = 0.15
-"""Maximum distance between two points in different tiles that mark the same object, as a fraction of the panorama's height.
+"""Limit on the distance between two points in different tiles that mark the same object.
 
-Vertically, the fraction is divided by the ratio of width to height; horizontally, it is divided by 5.
+Horizontally, they may be a fifth of this number of panorama heights apart; vertically, this fraction of the height,
+divided by the panorama's ratio of width to height.
 """
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around

@@ -149,7 +149,7 @@ class _Writer:
 
 
 def valid_tool_name(name: str) -> str:
-    """Replace characters that the OpenAI API does not allow in tool names with underscores. Models can invent any name."""
+    """Replace with underscores the characters that the OpenAI API does not allow in tool names. Models can invent any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 
 

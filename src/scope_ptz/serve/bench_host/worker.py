@@ -118,14 +118,14 @@ class Worker:
 
     async def _open_agent(self) -> ChannelPlanner:
         """Offer a run to the agent, and connect it when it begins the run."""
-        from scope_ptz.bench.agents.planner import AgentTimes, ChannelPlanner
+        from scope_ptz.bench.agents.planner import AgentTimeLimits, ChannelPlanner
 
         settings = self._settings
         self._begin.clear()
         self._channel = HostedChannel(self._run_key(self.sample), self._link.send)
         await self._link.send(RunOffered(run=self._channel.run))
         await self._begin.wait()
-        times = AgentTimes(step_s=settings.evaluation.step_s, run_s=settings.evaluation.task_s)
+        times = AgentTimeLimits(step_s=settings.evaluation.step_s, run_s=settings.evaluation.task_s)
         planner = ChannelPlanner(self._channel, settings.participant, times)
         await planner.connect()
         return planner

@@ -208,7 +208,7 @@ async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # n
     """Return a run's filmstrip: one image that shows all its steps."""
     trace = await trace_of_run(site, run)
     if trace.ended is None:
-        raise InputError("The run is still in progress. Its filmstrip is available when it has ended.")
+        raise InputError("The run is still in progress. Its filmstrip will be available once it has ended.")
 
     def read() -> bytes:
         path: FilePath | None = trace.folder / "filmstrip.png"

@@ -8,7 +8,7 @@ from scope_studio.kit.yard import floor as yard_floor
 from scope_studio.kit.yard import lamps as yard_lamps
 
 WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
-"""Edges of the yard in metres. There are fences in the west, east and south; the warehouse front is in the north."""
+"""Edges of the yard in metres. There are fences on the west, east and south sides; the warehouse front is on the north side."""
 IN_X, OUT_X = -1.2, 7.2
 """x coordinates of the lanes into and out of the yard. Traffic drives on the left."""
 

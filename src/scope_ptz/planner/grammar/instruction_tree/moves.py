@@ -88,10 +88,16 @@ class Further:
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Return to the previous position, or only to its zoom ("zoom back out")."""
+    """Return to the previous position, or only to its zoom ("zoom back out").
+
+    Attributes:
+        amount: How far to turn back; None to return all the way.
+        turn: The direction, if the instruction names only that ("come back down"); it need not undo the previous turn.
+    """
 
     zoom_only: bool = False
     amount: Amount | None = None
+    turn: Turn | None = None
 
 
 @dataclass(frozen=True, slots=True)

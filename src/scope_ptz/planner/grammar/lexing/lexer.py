@@ -20,7 +20,7 @@ _MARKS = {
 }  # fmt: skip
 _MAX_NUMBER_WORDS = 8
 _ENDING = frozenset({"IFSO", "IFNOT", "EACHTIME", "PURPOSE"})
-"""Classes of expressions that are complete: "if there is" is one only before a comma, the end or a command."""
+"""Classes of expressions that end their clause: "if there is" has its class only before a comma, a command or the end."""
 
 _AFTER_ENDING = frozenset(
     {
@@ -87,14 +87,14 @@ class Lexeme:
         return not self.classes.isdisjoint(classes)
 
     def reworded(self, word: str, *classes: str) -> Lexeme:
-        """Return another word with the given classes at the place of this lexeme."""
+        """Return a lexeme with another word and the given classes, at the same position."""
         return Lexeme(word, self.start, self.end, frozenset(classes))
 
 
 @lru_cache(maxsize=512)
 def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
     """Return the lexemes of a text. At every position the longest preset name, number or expression of the lexicon wins."""
-    tokens = _without_inner_hyphens(_without_list_marks(tokenise(text)))
+    tokens = _without_inner_hyphens(_without_list_markers(tokenise(text)))
     known = {part for preset in presets for part in re.findall(r"[^\W\d_]+", preset.lower())}
     words = [_preset_word(token.text, known) if _is_near(token.text, known) else corrected_word(token.text) for token in tokens]
     words = ["and" if word == "&" else word for word in words]
@@ -162,7 +162,7 @@ def _phrase_at(words: Sequence[str], i: int, presets: tuple[str, ...]) -> tuple[
 
 
 def _fits(words: Sequence[str], i: int, length: int, classes: frozenset[str], presets: tuple[str, ...]) -> bool:
-    """Return whether an expression may stand at a position: it must not overlap a preset, and some expressions end a clause."""
+    """Return whether an expression can occur at a position: it must not overlap a preset, and some must end a clause."""
     if words[i : i + length] == ["right", "then"] and i and words[i - 1].isalpha():
         return False  # "a quarter turn right then zoom in"
     if words[i + 1 : i + length] == ["the", "far"] and (i + length >= len(words) or words[i + length] in {"end", "side", "corner"}):
@@ -199,15 +199,15 @@ def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[L
 
 
 def _is_listed(lexemes: Sequence[Lexeme], i: int) -> bool:
-    """Return whether the word at a position stands beside a preset: "the yard or the dock"."""
+    """Return whether "and" or "or" joins the word at a position to a preset: "the yard or the dock"."""
     before = [x for x in lexemes[max(0, i - 3) : i] if x.word != "the"]
     after = [x for x in lexemes[i + 1 : i + 4] if x.word != "the"]
     sides = (before[::-1][:2], after[:2])
     return any(len(side) == 2 and side[0].has("OR", "AND") and side[1].has("PRESET") for side in sides)
 
 
-def _without_list_marks(tokens: list[Token]) -> list[Token]:
-    """Drop the marks of a numbered or lettered list: "1. pan left", "a) pan left", "- pan left"."""
+def _without_list_markers(tokens: list[Token]) -> list[Token]:
+    """Drop the markers of a numbered or lettered list: "1. pan left", "a) pan left", "- pan left"."""
     out: list[Token] = []
     expected = 1
     i = 0

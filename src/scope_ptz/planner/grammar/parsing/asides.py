@@ -1,4 +1,4 @@
-"""Recognise remarks beside a command: reasons, things that are pointed out, courtesy, and conditions without "if"."""
+"""Recognise remarks that accompany a command: reasons, things that are pointed out, courtesy, and conditions without "if"."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def takes_back(clause: Clause) -> bool:
     return not clause.is_question and full_match(_TAKEN_BACK, clause.lexemes) is not None
 
 
-def is_dropped(clause: Clause) -> bool:
+def drops_everything(clause: Clause) -> bool:
     """Return whether a clause drops everything said before it: "no, forget it"."""
     return (
         not clause.is_question
@@ -121,18 +121,18 @@ def is_shared_knowledge(clause: Clause) -> bool:
     return not clause.is_question and full_match(f"{knows} (how|what|why|where|WHQ) _{{1,4}}", clause.lexemes) is not None
 
 
-def explains(clause: Clause, clauses: int) -> bool:
-    """Return whether a clause that cannot be read only gives the reason for the others.
+def explains(clause: Clause, clause_count: int) -> bool:
+    """Return whether a clause that cannot be parsed only gives the reason for the others.
 
     It must not state an angle, a place, or something to do several times.
 
     Args:
         clause: The clause.
-        clauses: The number of clauses of the instruction.
+        clause_count: The number of clauses in the instruction.
     """
-    if clauses > 1 and is_polite(clause.lexemes):
+    if clause_count > 1 and is_polite(clause.lexemes):
         return True
-    if clause.is_question or clauses < 2:
+    if clause.is_question or clause_count < 2:
         return False
     clause = replace(clause, lexemes=without_time_ahead(clause.lexemes))
     if not (match_start(STATEMENT, clause.lexemes) or is_statement(clause.lexemes) or is_comment(clause.lexemes)):
@@ -152,7 +152,7 @@ def explains(clause: Clause, clauses: int) -> bool:
 
 
 def pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing | None:
-    """Return the thing that a clause points out for the next one: "there is a man by the van. Follow him."; None for none."""
+    """Return the thing that a clause points out for the next one: "there is a man by the van. Follow him."; otherwise None."""
     if (
         after is None
         or clause.is_question

@@ -38,7 +38,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Zoom,
     ZoomTo,
 )
-from scope_ptz.planner.grammar.parsing.repeated_amounts import add_back_by, add_further, with_same_amounts
+from scope_ptz.planner.grammar.parsing.repeated_amounts import add_back_by, add_back_towards, add_further, with_same_amounts
 from scope_ptz.planner.grammar.parsing.repetitions import add_again, add_at_intervals, add_each_time, done_at_place, interleaved
 from scope_ptz.planner.grammar.parsing.turns_in_steps import stepped, stepped_loop
 
@@ -104,6 +104,8 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
             add_further(out, step)
         case Back() if step.amount is not None:
             add_back_by(out, step.amount)
+        case Back() if step.turn is not None:
+            add_back_towards(out, step.turn)
         case WhichPreset(places=()) if len(visited := _last_visited(out)) > 1:
             out[-len(visited) :] = [replace(step, places=visited)]  # "go to the gate, then the yard, and say which has more cars"
         case FirstWith(places=places) if places and (visited := _last_visited(out)):

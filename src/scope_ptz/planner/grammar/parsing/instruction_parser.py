@@ -12,7 +12,6 @@ from scope_ptz.planner.grammar.parsing.parts.clause import MARKERS, Clause, NotU
 from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.rewording.contractions import with_contractions
 from scope_ptz.planner.grammar.parsing.rewording.contrasts import without_denials
-from scope_ptz.planner.grammar.parsing.rewording.everyday_text import everyday
 from scope_ptz.planner.grammar.parsing.rewording.phrases import reworded
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer
 from scope_ptz.planner.grammar.parsing.rewording.relayed import relayed
@@ -49,7 +48,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Return the steps of an instruction. No text raises an exception."""
     if len(text) > MAX_CHARS:
         return Parsed(text, None)
-    plain = everyday(plainer(text))
+    plain = plainer(text)
     for said in (relayed(plain, presets), plain if plain != text else None):
         if said is not None and (parsed := _parsed(said, presets)).steps is not None:
             return parsed

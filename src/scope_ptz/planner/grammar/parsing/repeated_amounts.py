@@ -36,6 +36,15 @@ def add_back_by(out: list[Step], amount: Amount) -> None:
         out.append(Unclear("Which way shall I turn back, and how far?"))
 
 
+def add_back_towards(out: list[Step], turn: Turn) -> None:
+    """Turn towards one side again ("tilt up 20, is it open?, come back down"), as far as the last move turned away from it."""
+    last = next((s for s in reversed(out) if not isinstance(s, Snap | Count | Ask)), None)
+    turns = [p for p in last.parts if isinstance(p, Turn) and p.axis == turn.axis] if isinstance(last, Move) else []
+    away = turns[0] if len(turns) == 1 and turns[0].sign == -turn.sign and not turns[0].step else None
+    has_amount = away is not None and away.amount is not None and away.amount.kind != "limit"
+    out.append(Move((replace(turn, amount=away.amount) if away is not None and has_amount else turn,)))
+
+
 def _multiple_of(turn: Turn, amount: Amount) -> Turn | None:
     """Return a turn with another amount, which may be a multiple of its own; None if its own has no multiple."""
     if amount.kind != "same":

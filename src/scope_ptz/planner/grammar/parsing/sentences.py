@@ -25,10 +25,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
 from scope_ptz.planner.grammar.instruction_tree.conditions import Answered, Condition, Negated, Quantity, Seen
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.asides import (
+    drops_everything,
     elliptical_condition,
     is_ability,
     is_courtesy,
-    is_dropped,
     is_need,
     takes_back,
     withdraws,
@@ -117,7 +117,7 @@ class Sentences(Tours):
     def _takes_back(self, clause: Clause) -> bool:
         """Return whether a clause takes back or forbids another one: "I changed my mind", or "no, don't" at the end."""
         after = self._peek()
-        is_last = self.next > 1 and (after is None or after.link == "." or is_dropped(clause))
+        is_last = self.next > 1 and (after is None or after.link == "." or drops_everything(clause))
         return (len(self.clauses) > 1 and withdraws(clause)) or (is_last and takes_back(clause))
 
     def _follows_search(self) -> bool:

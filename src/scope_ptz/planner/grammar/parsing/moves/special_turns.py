@@ -7,6 +7,7 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Part, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.moves.returns import BACK_UP
 from scope_ptz.planner.grammar.parsing.moves.turn_words import SILENT_IN_TURNS, TURN_VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
@@ -61,7 +62,7 @@ def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     if (match := full_match("(FILLER)* (crank|turn) (it|DET CAMERA) (?P<way>UP|DOWN) (FILLER)*", lexemes)) is not None:
         way, zoom = ("up", "in") if match["way"][0].has("UP") else ("down", "out")
         return Unclear(f"Shall I tilt {way}, or zoom {zoom}?")  # "crank it up" may ask for more of anything
-    if full_match("(FILLER)* BACK UP (FILLER|LITTLE|LOT)*", lexemes):
+    if full_match(BACK_UP, lexemes):
         return Unclear("Shall I zoom out, tilt up, or go back to where I was?")
     if full_match(r"(FILLER)* go to the (LEFT|RIGHT) (FILLER)*", lexemes):
         return Unclear("By how many degrees shall I turn?")

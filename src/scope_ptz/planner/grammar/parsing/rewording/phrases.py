@@ -8,6 +8,7 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
+from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS
 from scope_ptz.planner.grammar.parsing.rewording.preset_lists import with_presets_reworded
 from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in_context
 
@@ -40,10 +41,16 @@ _WANTED_PICTURE = (
 )
 """A wish for a picture, before the commands that take it at that place."""
 
+_FOLLOWED_AT_PLACE = (
+    "(FILLER|COMMA)* (KEEP|TRACK|TRACK-ING) ((?!COMMA|STOP|AND|THEN) _)+? (?P<place>(at|in) (DET)? PRESET PRESETNOUN?) (COMMA)? "
+    rf"(for|during|over) {SECONDS} FILLER* (?=COMMA|STOP|AND|THEN|\Z)"
+)
+"""A thing to follow at a preset, before the time: "follow the van at the gate for 20 seconds"."""
+
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
-    lexemes = _zoomed_in_steps(lexemes)
+    lexemes = _followed_at_place(_zoomed_in_steps(lexemes))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []
@@ -67,6 +74,16 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     changed = {id(match["at"][0]): ("at", "PREP", "GLUE"), id(match["end"][0]): (",", "COMMA")}
     kept = (x for x in lexemes if not any(x is other for other in dropped))
     return [x.reworded(*changed[id(x)]) if id(x) in changed else x for x in kept]
+
+
+def _followed_at_place(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with "at the gate, follow the van for 20 seconds" for "follow the van at the gate for 20 seconds"."""
+    match = match_start(_FOLLOWED_AT_PLACE, lexemes)
+    if match is None:
+        return lexemes
+    place = match["place"]
+    kept = [x for x in lexemes if not any(x is y for y in place)]
+    return [place[0].reworded("at", "PREP", "GLUE"), *place[1:], place[-1].reworded(",", "COMMA"), *kept]
 
 
 def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:

@@ -1,4 +1,4 @@
-"""Put clauses in the order in which they are meant: "pan left 20, but first take a picture" begins with the picture."""
+"""Put clauses in the order in which they are to be carried out: "pan left 20, but first take a picture" begins with the picture."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _BEFORE_FIRST = ("PICTURE", "NUM", "DEG", "HOME", *DIRECTIONS, "IN", "OUT", "X",
 
 
 def in_order(clauses: Sequence[Clause]) -> list[Clause]:
-    """Return clauses in execution order: a clause that says "first" comes before the command that it follows.
+    """Return clauses in execution order: a clause that says "first" is moved ahead of the command before it.
 
     Raises:
         NotUnderstoodError: It is unclear which clauses come first, or which clauses they precede.
@@ -59,6 +59,6 @@ def _says_first_at_end(clauses: Sequence[Clause], i: int) -> bool:
 
 
 def _ends_with_first(clause: Clause) -> bool:
-    """Return whether a clause is a command that ends with "first". In "the gate first", it belongs to a name."""
+    """Return whether a clause is a command that ends with "first". In "the gate first", that word belongs to the name."""
     lexemes = trimmed(clause.lexemes, "FILLER", "COMMA")
     return len(lexemes) > 1 and not clause.marker and lexemes[-1].word == "first" and lexemes[-2].has(*_BEFORE_FIRST)

@@ -1,0 +1,48 @@
+"""Patterns that take remarks out of the text of an instruction: greetings, forms of address, and phrases that ask for nothing."""
+
+from __future__ import annotations
+
+_VOCATIVES = (
+    "driver|sunshine|sweetie|sweetheart|honey|hon|love|darling|pet|duck|lad|lads|guys|folks|gentlemen|ladies|captain|skipper|friend"
+    "|my friend|son|bro|bruv|dude|jeeves|james|fella|fellas|champ|big man|mind|mind you|my love|petal|treacle"
+)
+_GREETINGS = "hey|hi|hello|ok|okay|morning|evening|thanks|cheers|listen|look"
+_TIMES_OF_DAY = "of the (?:day|morning|shift|night)|this morning|today|tonight"
+_CHILDREN = "girl|boy|one|lad|son|daughter|brother|sister"
+_NOBODY = "nobody|no[ -]?one|none|neither|who|which|i |we |and |but "
+_NOTHING_ELSE = r"don['’]?t bother|leave it(?: be| alone)?|never mind|forget (?:about )?it|no worries|that['’]s fine|fine"
+_NOT_ALLOWED = r"(?:(?:are|is) not|(?:are|is)n['’]t|['’](?:re|s) not) (?:allowed|permitted|supposed to be|meant to be)"
+_MUST_NOT = rf"(?:{_NOT_ALLOWED}(?: in| on| there| here| it)*|mustn['’]t|shouldn['’]t)"
+_SHARES = r"(?:a |one |two |three )?(?:half|thirds?|quarters?|full|empty)(?: full| empty)?"
+
+REMARKS = (
+    (rf"^([^,]*),\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", r"\1"),
+    (rf"^({_GREETINGS})\s+(?:{_VOCATIVES})(?=\s*[,.!])", r"\1"),
+    (r"^(?:well |right |so )?wait,? (?=what|which|where|who|how)", ""),
+    (r"\b(?:let['’]?s )?do (?:the|my|our|a|a quick|one) rounds?:", ""),
+    (r"\b(?:please |kindly )?do the needful(?: and|,)?", ""),
+    (r"^(?:one|just one) (?:small|little|more|last|quick) (?:request|thing|favou?r)[,:]\s*", ""),
+    (r"^(?:ah |oh |ach |sure )?go on,\s*", ""),
+    (r"^heads up[,!:.]\s*", ""),
+    (r"^oi[,!]?\s+", ""),
+    (r"^(?:jaysus|jesus|christ|lord|good god|good lord|good grief),\s*", ""),
+    (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
+    (r",? shall we\s*[?.!]*$", ""),
+    (r"\bhere['’]?s the thing\s*[:,]\s*", ""),
+    (rf"(^|[.!] )(?:(?:first|last|next) (?:job|task|stop|thing|order of business)|job one)(?: {_TIMES_OF_DAY})?[,:]\s*", r"\1"),
+    (r",? (?:and|but) make it (?:quick|snappy|fast|sharpish)\b", ""),
+    (
+        rf"\b(my|our|the|his|her|their) (?:little|wee|young|small) ({_CHILDREN})(?= (?:wants?|asks?|asked|needs?|would)\b)",
+        r"\1 \2",
+    ),
+    (rf"(?<=\w), (?!{_NOBODY})(?:the |my |our )?\w+ (?:wants?|needs?|asked for|would like) (?:one|a copy)\s*[.!]*$", ""),
+    (
+        r"^((?:any|is|are|how many|who|do you see|can you see)\b[^?.!;]*\?)\s+"
+        rf"(?:they|he|she)(?: knows? (?:that )?(?:they|he|she))? ?{_MUST_NOT}\s*[.!]*$",
+        r"\1",
+    ),
+    (rf"^(how (?:full|empty)\b[^?]*\?)(?:\s*{_SHARES}\?)+$", r"\1"),
+    (r", do (?:i|we) need (?:my|a|an|our) \w+\s*\?", "?"),
+    (rf"\b(if|when|should|in case)\b(.+?)[;,.]\s*(?:if not|otherwise),? (?:{_NOTHING_ELSE})\s*[.!]*$", r"\1\2"),
+)
+"""Patterns of remarks, with what is left of them."""
