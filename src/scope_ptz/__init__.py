@@ -6,9 +6,9 @@
         run = scope.ask("how many cones are there?")
         print(run.answer)
 
-The public interface consists of the names in ``__all__`` and the module ``scope_ptz.contracts``, which contains the types needed to
-implement a camera, a planner or a perception backend, and of ``scope_ptz.gym``, which needs the ``gym`` extra. Every other module
-is internal and may change in any release.
+The public interface consists of the names in ``__all__``, the module ``scope_ptz.contracts``, which contains the types needed to
+implement a camera, a planner or a perception backend, and ``scope_ptz.gym``, which needs the ``gym`` extra. Every other module is
+internal and may change in any release.
 
 Sessions: ``open``, ``open_async``, ``Scope``, ``AsyncScope``, ``Run``, ``CallResult``, ``Event``.
 Scenes, models and tools: ``scenes``, ``SceneInfo``, ``models``, ``tool_schemas``.

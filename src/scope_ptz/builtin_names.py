@@ -22,11 +22,11 @@ SERVED_TRUTH = "simulation-only-truth"
 """Perception that asks a virtual camera on the same machine for the ground truth of its frames."""
 
 EXACT_PERCEPTION = (GROUND_TRUTH, SERVED_TRUTH)
-"""Perception that states only what is true of the frame."""
+"""Perception backends whose results are always true of the frame."""
 
 BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY, SERVED_TRUTH)
 DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY, SERVED_TRUTH)
-"""Planners and perception that need no model: the same input always gives the same output."""
+"""Planners and perception backends that need no model: the same input always gives the same output."""
 
 DEFAULT_SCENE = "highway-works"
 """The scene that commands use by default."""

@@ -22,7 +22,7 @@ _Product = TypeVar("_Product")
 
 @dataclass(frozen=True, slots=True)
 class InstalledEntry:
-    """An entry point of one of the groups above. Finding it does not import its package.
+    """An entry point in one of the groups above. Finding it does not import its package.
 
     Attributes:
         group: The entry-point group.
@@ -106,7 +106,7 @@ def installed(group: str) -> tuple[InstalledEntry, ...]:
 
 
 def find(group: str, name: str) -> InstalledEntry | None:
-    """Return the entry point with a name, or None if no installed package declares it.
+    """Return the entry point with the given name, or None if no installed package declares it.
 
     Raises:
         ConfigError: Several installed packages declare the name.
@@ -126,7 +126,7 @@ def duplicated_names(group: str) -> frozenset[str]:
 
 
 def one_line(error: BaseException) -> str:
-    """Return an exception as one line of at most 200 characters, without a full stop at its end."""
+    """Return an exception as one line of at most 200 characters, without a final full stop."""
     text = " ".join(f"{type(error).__name__}: {error}".split()).rstrip(".: ")
     return text if len(text) <= 200 else text[:197] + "..."
 

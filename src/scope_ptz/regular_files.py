@@ -16,11 +16,11 @@ def check_regular_file(path: Path) -> None:
     """Raise an error if a path is a pipe, a socket or a device.
 
     Raises:
-        NotARegularFileError: It is.
+        NotARegularFileError: The path is a pipe, a socket or a device.
         OSError: The path is missing or cannot be accessed.
     """
     mode = path.stat().st_mode
-    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # opening a folder is an error of its own
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # opening a folder raises an error anyway
         raise NotARegularFileError(errno.EINVAL, "it is not a regular file")
 
 

@@ -1,4 +1,4 @@
-"""Settings from environment variables named ``SCOPE_...``. No other module reads the environment."""
+"""Settings from environment variables named ``SCOPE_...``. No other module reads these variables."""
 
 from __future__ import annotations
 
@@ -139,5 +139,5 @@ def agent_environment(names: tuple[str, ...], *, python_path: bool) -> dict[str,
     missing = [name for name in names if name not in os.environ]
     if missing:
         raise ConfigError(f"--agent-env names {missing[0]}, which is not set. Set the variable, or remove the option.")
-    wanted = {*names, *_AGENT_VARIABLES, *(["PYTHONPATH"] if python_path else [])}
-    return {name: value for name, value in os.environ.items() if name in wanted or name.startswith("LC_")}
+    passed_names = {*names, *_AGENT_VARIABLES, *(["PYTHONPATH"] if python_path else [])}
+    return {name: value for name, value in os.environ.items() if name in passed_names or name.startswith("LC_")}

@@ -23,7 +23,7 @@ class ActorBodies:
         self._bodies: dict[tuple[str, int], Built] = {}
 
     def body(self, actor: ActorPath, phase: float) -> Built:
-        """Return the actor's body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``. Build it on first use."""
+        """Return the actor's body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES`` steps. Build it on first use."""
         index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
         key = (actor.id, index)
         if key not in self._bodies:

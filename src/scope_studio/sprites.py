@@ -1,4 +1,4 @@
-"""Render the sprites of a moving actor. A sprite shows only its body and the shadow that it casts on flat ground."""
+"""Render the sprites of a moving actor. A sprite shows only the actor's body and its shadow on flat ground."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def render_frames(
 ) -> None:
     """Render one sprite for each frame.
 
-    A frame is a dict with ``time_s``, ``phase``, ``position_m`` and ``projection``. Frame k is written as ``k.png`` (RGBA) and
-    ``k.npz`` (distances). Existing frames are skipped.
+    A frame is a dict with ``time_s``, ``phase``, ``position_m`` and ``projection``. Frame 0 is written as ``000.png`` (RGBA)
+    and ``000.npz`` (distances). Existing frames are skipped.
     """
     actor = next(a for a in stage.actors if a.id == actor_id)
     with _shadow_plane() as ground:

@@ -1,7 +1,7 @@
-"""The worker process inside Blender, which reads requests from stdin and writes replies. Both are JSON lines.
+"""The worker process inside Blender. It reads requests from stdin and writes replies, both as JSON lines.
 
 Run this file by its path, either with a Python that has ``bpy`` or as ``blender --background --python worker.py``. Every reply
-starts with ``MARK``, so that the main program can distinguish replies from output of Blender, which goes to stderr.
+starts with ``MARK``, because Blender prints to stdout while it starts. Its later output goes to stderr.
 """
 
 from __future__ import annotations

@@ -122,7 +122,7 @@ class CameraLink:
             try:
                 send(client)
             except ServerRefusedError as error:
-                if error.status != 404:  # the server no longer waits for this reply
+                if error.status != 404:  # 404: the server no longer waits for this reply
                     self._fail(str(error))
             except AddOnError as error:
                 self._fail(str(error))

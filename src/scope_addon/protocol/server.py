@@ -65,7 +65,7 @@ class ServerProcess:
             threading.Thread(target=self._read_output, name="scope-server", daemon=True),
             threading.Thread(target=self._read_errors, name="scope-server-errors", daemon=True),
         ]
-        for thread in reversed(self._threads):  # the first one waits for the second
+        for thread in reversed(self._threads):  # _read_output joins the errors thread, which must therefore start first
             thread.start()
 
     @property
@@ -74,7 +74,7 @@ class ServerProcess:
         return self._process.poll() is None
 
     def stop(self) -> None:
-        """Stop the server by closing its input. It therefore also stops if Blender crashes."""
+        """Stop the server by closing its input, which also closes if Blender crashes."""
         self.problem = self.problem or "stopped"
         if self._process.stdin is not None:
             with suppress(OSError):

@@ -66,12 +66,12 @@ class ServerClient:
         self, method: str, path: str, body: bytes | None = None, media_type: str = "application/octet-stream"
     ) -> bytes:
         """Send a request, and return the body of the reply. Raises the same errors as ``request``."""
-        fresh = self._connection is None
+        is_new_connection = self._connection is None
         try:
             return self._send(method, path, body, media_type)
         except (http.client.RemoteDisconnected, BrokenPipeError, ConnectionResetError) as error:
             self.close()
-            if fresh:
+            if is_new_connection:
                 raise self._unreachable(error) from error
         except (OSError, http.client.HTTPException) as error:
             self.close()

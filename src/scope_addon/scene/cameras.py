@@ -15,11 +15,11 @@ from ..protocol.errors import AddOnError
 from ..protocol.view import View, bearing_tilt_deg, parse_view
 
 PRESET, DESCRIPTION, VIEWPOINT, VIEW_CAMERA = "scope_preset", "scope_description", "scope_viewpoint", "scope_view_camera"
-"""Custom properties: of presets that were saved through SCOPE, and of the camera that SCOPE moves."""
+"""Names of the custom properties of presets saved through SCOPE, and of the camera that SCOPE moves."""
 
 COLLECTION = "SCOPE presets"
 OTHER_PROJECTION_HFOV_DEG = 60.0  # used for orthographic and panoramic cameras, which SCOPE shows in perspective
-VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that is further away from its camera gets its own viewpoint
+VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that is farther than this from its camera gets its own viewpoint
 
 
 def describe(scene: Any) -> dict[str, Any]:

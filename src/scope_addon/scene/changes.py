@@ -1,4 +1,4 @@
-"""Detect changes of the scene, so that pictures of an unchanged scene can be reused."""
+"""Detect changes to the scene, so that pictures of an unchanged scene can be reused."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def record_change() -> None:
 
 @contextmanager
 def own_change() -> Iterator[None]:
-    """Return a context in which changes of the scene are not counted, because SCOPE makes them."""
+    """Do not count changes to the scene while the context is active, because SCOPE makes them."""
     _state["own"] += 1
     try:
         yield

@@ -23,7 +23,7 @@ DESCRIBE_INTERVAL_S = 1.0
 
 
 class Executor:
-    """Executor of the requests of one connection.
+    """Carries out the requests of one connection.
 
     Args:
         link: The connection to the server.

@@ -17,11 +17,11 @@ _RENDER_SETTINGS = (
     "filepath", "resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y", "use_border",
     "use_file_extension", "use_multiview", "use_overwrite", "use_placeholder", "use_sequencer",
 )  # fmt: skip
-_IMAGE_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth", "compression")  # media_type exists since Blender 5.0
+_IMAGE_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth", "compression")  # media_type is new in Blender 5.0
 
 
 def take(scene: Any, camera: Any, size: tuple[int, int], source: str) -> Callable[[], bytes]:
-    """Take a picture. Return a function that encodes it as a PNG file, which can be called in a thread.
+    """Take a picture. Return a function that encodes it as a PNG file and can run in another thread.
 
     Args:
         scene: The scene.
@@ -105,7 +105,7 @@ def _render(scene: Any, size: tuple[int, int]) -> Callable[[], bytes]:
 
 @contextmanager
 def _render_settings(scene: Any, size: tuple[int, int], path: Path) -> Iterator[None]:
-    """Return a context in which the scene renders a PNG file of the given size. On exit, the user's settings are restored."""
+    """Set the scene to render a PNG file of the given size while the context is active, then restore the user's settings."""
     render, image = scene.render, scene.render.image_settings
     before = {name: getattr(render, name) for name in _RENDER_SETTINGS}
     image_before = {name: getattr(image, name) for name in _IMAGE_SETTINGS if hasattr(image, name)}

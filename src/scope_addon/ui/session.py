@@ -26,12 +26,12 @@ from . import picture_view, properties
 CONNECTED_INTERVAL_S, STARTING_INTERVAL_S = 0.02, 0.1
 """Interval of the timer in seconds: while connected, and while the server starts."""
 
-MAX_STEPS = 60  # older steps of a run are no longer shown
+MAX_STEPS = 60  # the sidebar shows only the latest steps of a run
 START_TIMEOUT_S = 60.0
 
 
 class Session:
-    """One use of the add-on, from Connect to Disconnect.
+    """The state of the add-on, and the actions behind its buttons.
 
     All methods must be called on the main thread, and return immediately. ``tick`` must be called repeatedly.
     """

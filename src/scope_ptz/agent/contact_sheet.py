@@ -17,7 +17,7 @@ def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Im
 
     Args:
         title: The heading.
-        pictures: Captions and images, at least one. All images must have the same size.
+        pictures: Pairs of a caption and an image; at least one. All images must have the same size.
 
     Returns:
         The sheet, 1600 pixels wide.

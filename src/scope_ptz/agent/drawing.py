@@ -127,7 +127,7 @@ class Canvas:
     def tag(
         self, x: float, y: float, text: str, size: float, *, fill: str, text_colour: str, padding: float = 7, anchor: str = "l"
     ) -> float:
-        """Draw text on a rounded background and return its width.
+        """Draw text on a rounded background, and return the width of the background.
 
         Args:
             x: Position of the left end, right end or middle, depending on ``anchor``.
@@ -147,7 +147,7 @@ class Canvas:
         return width
 
     def arrow(self, x: float, y: float, colour: str) -> float:
-        """Draw a small arrow that points right, with its shaft at ``y``, and return its width."""
+        """Draw a small arrow that points right, with its shaft at ``y``, and return the arrow's width."""
         width = 16.0
         points = [(x + width - 6, y - 4.5), (x + width, y), (x + width - 6, y + 4.5)]
         self._draw.line([(x * SCALE, y * SCALE), ((x + width - 1) * SCALE, y * SCALE)], fill=colour, width=2 * SCALE)

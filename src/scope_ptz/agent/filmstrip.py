@@ -155,7 +155,7 @@ def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = No
 
 
 def _omit_middle(panels: list[Panel]) -> tuple[list[Panel], int]:
-    """Return at most ``MAX_PANELS`` panels, and the number of omitted ones. In a longer run, the middle is omitted."""
+    """Return at most ``MAX_PANELS`` panels, and the number of omitted ones. Panels are omitted from the middle of the run."""
     if len(panels) <= MAX_PANELS:
         return panels, 0
     first = MAX_PANELS // 2 - 1
@@ -163,7 +163,7 @@ def _omit_middle(panels: list[Panel]) -> tuple[list[Panel], int]:
 
 
 def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
-    """Arrange tiles in rows. Each panorama has a separate row; the tiles between panoramas fill rows evenly."""
+    """Arrange tiles in rows. Each panorama has its own row; the tiles between panoramas are distributed evenly over rows."""
     rows: list[list[_Tile]] = []
     group: list[_Tile] = []
     for tile in [*tiles, None]:
@@ -239,7 +239,7 @@ def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, 
 
 
 def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float) -> None:
-    """Draw a caption such as ``2  pan right 15° -> 4 cones``, on a second line if necessary."""
+    """Draw a caption such as ``2  pan right 15° -> 4 cones``, wrapped to a second line if necessary."""
     number_width = (
         canvas.tag(x, y, str(panel.number), 17, fill=CYAN, text_colour=BACKGROUND, padding=7) + 12 if panel.number else 0.0
     )

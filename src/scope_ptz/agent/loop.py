@@ -153,7 +153,7 @@ class _Episode:
         agent, info = self.agent, self.camera.info
         presets = tuple(p.name for p in await self.camera.presets())
         self.start = self.calls.pose = await self.camera.pose()
-        # The first frame names the scene and the viewpoint, and shows that the camera delivers frames before anything moves.
+        # The first frame states the scene and the viewpoint, and taking it ensures that the camera works before anything moves.
         frame = await self.camera.frame()
         self.emit(
             Started(
@@ -202,7 +202,7 @@ class _Episode:
                 self.calls.events.update(failures_of(error))
                 self.usage += usage_of_failures(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
-            except Exception as error:  # any failure of a planner is an outcome of the run
+            except Exception as error:  # any failure of a planner becomes an outcome of the run
                 return RunEnd("planner_error", f"The planner failed: {error_text(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
                 return RunEnd(decision.kind, decision.text)

@@ -63,7 +63,7 @@ class RunLabels(_Record):
 
     Attributes:
         perception_note: A sentence about the perception backend, shown with the answer.
-        seed: Seed of the run's random choices.
+        seed: Seed for the run's random choices.
         home_viewpoint: The requested viewpoint of the camera, if it is not the scene's home viewpoint.
     """
 

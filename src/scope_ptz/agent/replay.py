@@ -22,7 +22,7 @@ from scope_ptz.planner.base import CallTools, Decision, Planner, State
 _PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Points)
 
 REPRODUCIBLE_OUTCOMES = ("answered", "clarification", "refused", "step_limit")
-"""Outcomes that a replay must reach again. Other outcomes, such as an exhausted budget or a failure, have external causes."""
+"""Outcomes that a replay must reproduce. Other outcomes, such as an exhausted budget or a failure, have external causes."""
 
 _FILE_NAME_FIELDS = ("frames", "file")  # not compared, because a replay stores no pictures
 _TOLERANCE = 0.011  # largest difference between numbers that are considered equal; results are rounded to hundredths or finer

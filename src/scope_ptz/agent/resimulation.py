@@ -1,6 +1,6 @@
 """Repeat the calls of a recorded run with a simulated camera, and compare the records.
 
-``agent.replay`` compares results within their rounding. This module is stricter: poses, scene times, perception replies, results
+``agent.replay`` compares rounded results. This module is stricter: poses, scene times, perception replies, results
 and errors must equal the recorded ones, and numbers may differ only by ``NUMBER_TOLERANCE``. Measured times, retries and picture
 names are not compared.
 """

@@ -1,4 +1,4 @@
-"""Image stores for runs: in a folder, in memory, or without storage.
+"""Image stores for runs: a folder, memory, or a placeholder that stores nothing.
 
 This module creates all file names. Text from users becomes part of a path only in the form that ``slug`` returns.
 """

@@ -207,7 +207,7 @@ class TimedPerception(Perception):
         self._replies: list[PerceptionReply] = []
 
     def drain(self) -> tuple[PerceptionReply, ...]:
-        """Return the replies since the last call of this method, oldest first."""
+        """Return the replies since the last call to this method, oldest first."""
         replies, self._replies = tuple(self._replies), []
         return replies
 

@@ -1,7 +1,7 @@
 """Find contradictions inside a trace: records that cannot all come from one run of the agent loop.
 
-These checks need no camera and no scene. ``agent.resimulation`` repeats the calls and so detects
-forged traces that are internally consistent.
+These checks need no camera and no scene. ``agent.resimulation`` repeats the calls, and therefore also detects forged traces that
+are internally consistent.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scope_ptz.agent.trace import Trace
 from scope_ptz.planner.base import CallTools, Finish, Usage
 
 POSE_TOLERANCE = 1e-6
-"""Tolerance for poses that must be equal, in degrees and as a zoom factor."""
+"""Maximum difference between equal poses (degrees, or magnification) and between equal scene times (seconds)."""
 CLOCK_SLACK_S = 0.05
 """Seconds by which a sum of measured times may exceed the total time, because the clock is read several times."""
 INTERRUPTED_OUTCOMES = frozenset({"budget", "cancelled", "camera_error"})
@@ -32,7 +32,7 @@ def record_faults(records: Sequence[Started | Decided | Called | Ended]) -> Iter
 
 
 def trace_faults(trace: Trace) -> Iterator[str]:
-    """Yield the contradictions in a trace of a simulated camera, as sentences without a final full stop."""
+    """Yield the contradictions in a trace recorded with a simulated camera, as sentences without a final full stop."""
     yield from _step_faults(trace)
     if trace.ended is not None:
         yield from _end_faults(trace, trace.ended)
@@ -113,11 +113,11 @@ def is_same_pose(one: RecordedPose, other: RecordedPose) -> bool:
 def _equals_rounded_pose(stated: dict[str, object], pose: RecordedPose) -> bool:
     """Return whether a pose in a result, which is rounded to hundredths, equals the camera's pose."""
     values = [(stated.get(name), getattr(pose, name)) for name in RecordedPose.model_fields]
-    return all(isinstance(a, int | float) and _angle_difference_deg(float(a), b) <= 0.011 for a, b in values)
+    return all(isinstance(a, int | float) and _difference(float(a), b) <= 0.011 for a, b in values)
 
 
-def _angle_difference_deg(one: float, other: float) -> float:
-    """Return the absolute difference between two angles in degrees, or between two zoom factors. Full turns are ignored."""
+def _difference(one: float, other: float) -> float:
+    """Return the absolute difference between two pan, tilt or zoom values. A difference of 360 counts as 0, as for pan."""
     return min(abs(one - other), abs(abs(one - other) - 360.0))
 
 

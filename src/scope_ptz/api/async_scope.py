@@ -50,8 +50,8 @@ _R = TypeVar("_R", bound=Result)
 class AsyncScope:
     """A session for asynchronous code: a camera, a planner and a perception backend that stay open for several runs.
 
-    ``scope_ptz.open_async`` creates one. It has the same methods as ``Scope``, with the same arguments. Methods that wait for the
-    camera or a model are coroutines.
+    ``scope_ptz.open_async`` creates a session. Its methods and their arguments are the same as those of ``Scope``, but methods that
+    wait for the camera or a model are coroutines.
 
     Example:
         >>> import asyncio, scope_ptz
@@ -301,7 +301,7 @@ class AsyncScope:
         with self._busy():
             context = ToolContext(parts.camera, parts.perception, self._images)
             result = await run_tool(context, name, arguments)
-            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
+            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a bug in the tool
             return result
         raise _cancelled_call()
 

@@ -223,9 +223,9 @@ def evaluate(
         pictures: Whether to render and log frames. Ground truth does not need frames and is faster without them.
         fresh: Start a new evaluation even if ``out`` has a log of the same evaluation.
         planner_url: Address of the planner's model server.
-        planner_model: The server's name for the planner.
+        planner_model: Name of the planner's model on its server.
         perception_url: Address of the vision model's server.
-        perception_model: The server's name for the vision model.
+        perception_model: Name of the vision model on its server.
         timeout_s: Seconds after which a request to a model server fails, including its retries.
 
     Returns:

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from PIL import Image
 
 SchemaForm = Literal["chat", "responses", "anthropic", "mcp"]
-"""The name of an API in whose format schemas can be returned, as described in ``Scope.tool_schemas``."""
+"""An API format for tool schemas, as described in ``Scope.tool_schemas``."""
 
 Arguments = Mapping[str, Any] | str | None
-"""The arguments of a call: a mapping, or the JSON text from a model. None and an empty text mean no arguments."""
+"""The arguments of a call: a mapping, or the JSON text from a model. None and an empty string mean no arguments."""
 
 REPORTED_ERRORS: tuple[type[ScopeError], ...] = (ToolCallError, UnknownNameError, PerceptionError, KeepOutError)
 """Errors to which a model can react, for example with other arguments. ``dispatch`` returns them as text for the model."""
@@ -67,7 +67,7 @@ def schemas_in_form(form: SchemaForm) -> list[dict[str, Any]]:
     """
     if form not in get_args(SchemaForm):
         raise InputError(f"There is no schema form {form!r}. Use one of: {', '.join(get_args(SchemaForm))}.")
-    # Clients of MCP validate against the constraints. Model servers may compile schemas to grammars, and refuse some keywords.
+    # MCP clients use the constraints for validation. Model servers may compile schemas to grammars, and reject some keywords.
     tools = schemas() if form == "mcp" else simplify_schemas(schemas())
     return tools if form == "chat" else [_in_form(form, **tool["function"]) for tool in tools]
 

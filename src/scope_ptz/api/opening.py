@@ -61,7 +61,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         planner: Name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
         perception: Name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
         pair: A pair as "PLANNER+PERCEPTION", or the name of one model that does both.
-        viewpoint: The viewpoint in the scene at which the camera stands; that of the home preset by default.
+        viewpoint: The camera's viewpoint in the scene; by default, the viewpoint of the home preset.
         preset: The preset to start at. It determines the viewpoint, so pass only one of the two.
         time_s: Scene time at the start, in seconds; the scene's own start time by default.
         seed: Seed for every random choice.
@@ -72,11 +72,11 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
         time_budget_s: Seconds of wall-clock time after which a run ends; no limit by default.
         token_budget: Number of planner tokens after which a run ends; no limit by default.
         planner_url: Address of the planner's model server.
-        planner_model: The server's name for the planner.
+        planner_model: Name of the planner's model on its server.
         planner_key_file: File that contains the API key of the planner's server.
         planner_options: Additional options of the planner, such as ``{"temperature": 0.2}``.
         perception_url: Address of the vision model's server.
-        perception_model: The server's name for the vision model.
+        perception_model: Name of the vision model on its server.
         perception_key_file: File that contains the API key of the vision model's server.
         perception_options: Additional options of the perception backend.
         reader: Name of an additional backend that reads text.

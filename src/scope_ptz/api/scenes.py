@@ -136,7 +136,7 @@ def models(role: Role | None = None) -> dict[str, Model]:
 def tool_schemas() -> list[dict[str, Any]]:
     """Return the schemas of the nine tools in the OpenAI function format, as planners receive them.
 
-    To call the tools from your own model, use ``Scope.tool_schemas``, which supports the formats of several APIs.
+    To offer the tools to your own model, use ``Scope.tool_schemas``, which supports the formats of several APIs.
 
     Returns:
         One schema per tool.

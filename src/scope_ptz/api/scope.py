@@ -40,7 +40,7 @@ class Scope:
     """A session: a camera, a planner and a perception backend that stay open for several runs. ``scope_ptz.open`` creates one.
 
     ``ask`` and ``stream`` pass an instruction to the planner, together with the earlier instructions of the session and their
-    answers. The nine tools are also methods of the session, which move the camera and call perception without the planner.
+    answers. The nine tools are also methods of the session. They move the camera and call perception without the planner.
 
     A session works in scripts and in notebooks. Ctrl-C cancels the run in progress, and its trace is still complete. Only one run
     or tool call can be in progress at a time; open several sessions to work with several cameras.
@@ -452,8 +452,8 @@ class Scope:
         """Run a tool call that a model made, and return its outcome for the model.
 
         A call that cannot be carried out raises no exception: the outcome tells the model the reason, such as an unknown tool,
-        arguments that are not valid JSON, an unknown preset, or a failure of perception. Calls that arrive at the same time, as
-        agent frameworks send them, run one after the other.
+        arguments that are not valid JSON, an unknown preset, or a failure of perception. Concurrent calls, which some agent
+        frameworks make, run one after the other.
 
         Args:
             name: Name of the tool, as the model sent it.

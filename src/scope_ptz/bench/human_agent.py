@@ -16,7 +16,7 @@ from scope_ptz.errors import InputError, PerceptionError
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
 
-HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several of these in one line are one move
+HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several of these on one line are one move
   preset NAME   home   presets   picture                go to a preset or home, list presets, take a picture
   count WHAT    count all WHAT                          count in the current view, or in the full scene
   ask QUESTION  ask all QUESTION                        ask about the current view, or about the full scene
@@ -122,7 +122,7 @@ class HumanPlanner(Planner):
     """A planner that shows the view and the latest results to a person, and returns the calls that the person types.
 
     Attributes:
-        exit_error: The error that states how the person left the task unfinished; None if the person did not.
+        exit_error: The error that states how the person left the task; None if the person finished it.
     """
 
     sees = True

@@ -35,7 +35,7 @@ MakeToolContext = Callable[[Camera], ToolContext]
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera that does not render: its frames are blank, but contain their origin."""
+    """A simulated camera that does not render. Its frames are blank, but record where and when they were taken."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)

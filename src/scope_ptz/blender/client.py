@@ -20,7 +20,7 @@ REPLY_PREFIX = "@scope "  # prefix of reply lines in the worker's output
 START_TIMEOUT_S = 120.0
 QUIT_TIMEOUT_S = 10.0
 Progress = Callable[[int, int], None]
-"""Receives the number of finished steps and the total."""
+"""A callback that receives the number of finished steps and the total."""
 
 
 class BlenderWorker:

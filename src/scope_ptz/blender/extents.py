@@ -166,11 +166,11 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
     local = rays @ axes.T
     flat = (local[:, :2] / local[:, 2:]).astype(np.float32)
     outline = cv2.convexHull(flat)
-    slack = 1e-4 * float(np.ptp(flat, axis=0).max())
+    tolerance = 1e-4 * float(np.ptp(flat, axis=0).max())
     simple = outline
     while len(simple) > HULL_POINTS:
-        slack *= 2
-        simple = cv2.approxPolyDP(outline, slack, closed=True)
+        tolerance *= 2
+        simple = cv2.approxPolyDP(outline, tolerance, closed=True)
     plane = simple.reshape(-1, 2).astype(np.float64)
     pan, tilt = pan_tilt_deg(np.column_stack([plane, np.ones(len(plane))]) @ axes)
     return [(round(float(p), 3), round(float(t), 3)) for p, t in zip(pan, tilt, strict=True)]

@@ -94,21 +94,21 @@ class _PathSamples:
 
     @classmethod
     def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _PathSamples:
-        way = np.array(actor.waypoints)
-        times = np.linspace(way[0, 0], way[-1, 0], SAMPLES)
-        positions = np.stack([np.interp(times, way[:, 0], way[:, k]) for k in (1, 2, 3)], axis=-1)
-        leg = np.clip(np.searchsorted(way[:, 0], times, side="right") - 1, 0, len(way) - 2)
-        step = np.diff(way[:, 1:], axis=0)[leg]
+        waypoints = np.array(actor.waypoints)
+        times = np.linspace(waypoints[0, 0], waypoints[-1, 0], SAMPLES)
+        positions = np.stack([np.interp(times, waypoints[:, 0], waypoints[:, k]) for k in (1, 2, 3)], axis=-1)
+        leg = np.clip(np.searchsorted(waypoints[:, 0], times, side="right") - 1, 0, len(waypoints) - 2)
+        step = np.diff(waypoints[:, 1:], axis=0)[leg]
         bearings = np.degrees(np.arctan2(step[:, 0], step[:, 1]))
         offset = positions - np.array(viewpoint.position_m)
         bearings_from_viewpoint, elevations = pan_tilt_deg(offset)
         return cls(times, positions, bearings, bearings - bearings_from_viewpoint, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Return the indices of the samples that differ visibly from the previous one, at least one for each leg of the path.
+        """Return the samples that differ visibly from the previous one, at least one for each leg of the path.
 
-        Each value lists other samples that share the picture: the start of the leg for the leg's first chosen sample, and the end
-        of the leg for the last one.
+        Keys are sample indices. Each value lists other samples that share the picture: the start of the leg for the leg's first
+        chosen sample, and the end of the leg for the last one.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):

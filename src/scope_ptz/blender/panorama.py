@@ -19,7 +19,7 @@ from scope_ptz.simulator.layers import read_colour
 
 STRIP_ROWS = 384
 OVERLAP_ROWS = 8
-SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0  # strips above and below need fewer samples
+SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0  # strips entirely above or below these need fewer samples
 
 Picture = NDArray[np.uint8]
 

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 
 class Progress(Protocol):
-    """A function that is called after every step with the part, the finished steps, all steps, and the elapsed seconds."""
+    """A function called after every step with the part, the number of finished steps, the total, and the elapsed time."""
 
     def __call__(self, part: str, done: int, total: int, seconds: float) -> None: ...
 

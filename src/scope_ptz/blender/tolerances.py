@@ -8,7 +8,7 @@ from statistics import mean
 from scope_ptz.blender.verify import PoseReport
 
 WIDE_SSIM_MEAN, WIDE_SSIM_MIN = 0.93, 0.88
-"""Minimum similarity of whole views at the widest zoom: of the mean, and of each view."""
+"""Minimum similarity of whole views at the widest zoom: on average, and for each view."""
 
 TILE_SSIM_MIN, TILE_SHARPNESS_MIN = 0.90, 0.60
 """Minimum similarity and sharpness of zoomed-in views, in the part that tiles cover."""

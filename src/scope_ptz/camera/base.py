@@ -142,7 +142,7 @@ class Camera(ABC):
         raise CameraError(f"The driver of {self.info.name} cannot set the iris.")
 
     async def frames(self, *, rate_hz: float = 25.0) -> AsyncGenerator[Frame]:
-        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer misses frames and gets the newest.
+        """Yield frames as they are taken, at most ``rate_hz`` per second. A slow consumer skips frames and always gets the newest.
 
         Wrap the generator in ``contextlib.aclosing``, so that the stream is released even if the consumer stops early.
         """

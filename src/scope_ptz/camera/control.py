@@ -123,7 +123,7 @@ class ControlLock:
 
 
 def _read_holder(holder_path: Path) -> Holder | None:
-    """Read the holder's file next to a lock file. Return None if it is missing or damaged."""
+    """Read the file that names the holder of a lock. Return None if it is missing or damaged."""
     try:
         content = json.loads(holder_path.read_text(encoding="utf-8"))
         return Holder(str(content["name"]), str(content["process"]), str(content["since"]))

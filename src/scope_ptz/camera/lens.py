@@ -8,10 +8,10 @@ from typing import Literal, get_args
 from scope_ptz.errors import CameraError, InputError
 
 FocusAction = Literal["auto", "manual", "once", "near", "far"]
-"""Focus continuously, hold the focus, focus once and hold it (one-push), or step nearer or farther and hold it."""
+"""A focus action: focus continuously, hold the focus, focus once and hold it (one-push), or step nearer or farther and hold it."""
 
 IrisAction = Literal["auto", "manual", "open", "close"]
-"""Let the camera control the iris, hold the iris, or step it open or closed and hold it."""
+"""An iris action: let the camera control the iris, hold the iris, or step it open or closed and hold it."""
 
 FOCUS_ACTIONS: tuple[FocusAction, ...] = get_args(FocusAction)
 IRIS_ACTIONS: tuple[IrisAction, ...] = get_args(IrisAction)

@@ -1,4 +1,4 @@
-"""Camera specs: texts that select a camera, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
+"""Camera specs: strings that select a camera, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
 
 from __future__ import annotations
 

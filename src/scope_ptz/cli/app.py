@@ -1,4 +1,4 @@
-"""The commands of ``scope`` other than ``scope bench``. Their bodies import lazily, so that ``scope --help`` starts fast."""
+"""The commands of ``scope``, except those in lazily loaded groups. Imports are inside the commands, so that help starts fast."""
 
 from __future__ import annotations
 
@@ -250,7 +250,7 @@ def profile(
     frames: Annotated[int, typer.Option("--frames", min=1, help="Number of frames to send to the perception backend.")] = 6,
     scene: Annotated[str, typer.Option("--scene", help="Scene to take the frames from.")] = DEFAULT_SCENE,
     prompts: Annotated[
-        bool, typer.Option("--prompts", help="Also measure how small edits of prompt and instruction change the tool choice.")
+        bool, typer.Option("--prompts", help="Also measure how small edits to the prompt and instruction change the tool choice.")
     ] = False,
     as_json: JsonOption = False,
 ) -> int:

@@ -7,7 +7,7 @@ A command that fails prints one line on stderr. Invalid input never causes a tra
 2    invalid input or configuration, or a missing or damaged pack or trace
 3    the planner needs clarification
 4    the planner refused the instruction
-130  cancelled (Ctrl-C, or the signals TERM and HUP)
+130  cancelled (Ctrl-C, SIGTERM or SIGHUP)
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, T
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
 _TERMINATION_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-"""Signals that request termination. HUP does not exist on Windows."""
+"""Signals that request termination. SIGHUP does not exist on Windows."""
 
 _FORCE_EXIT_PRESSES = 3  # number of Ctrl-C presses after which the program ends without clean-up
-EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
+EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 invalid input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
 _CODE_BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
 _ASCII = {"›": ">", "°": " deg", "·": "-", "“": '"', "”": '"', "‘": "'", "’": "'", "…": "...", "×": "x", "–": "-", "—": "-"}
@@ -95,7 +95,7 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
 
 
 def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
-    """Run a coroutine function, and cancel it on the first Ctrl-C or signal TERM or HUP.
+    """Run a coroutine function, and cancel it on the first Ctrl-C, SIGTERM or SIGHUP.
 
     After the cancellation, the function can stop the camera and record how the run ended. A second Ctrl-C is ignored, and a third
     ends the program immediately.
@@ -138,9 +138,9 @@ def run_async(work: Callable[[], Awaitable[None]]) -> None:
 
 @contextmanager
 def handle_interrupts(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
-    """Replace the handlers for Ctrl-C and the signals TERM and HUP within a block.
+    """Replace the handlers for SIGINT (Ctrl-C), SIGTERM and SIGHUP within a block.
 
-    A signal that is already ignored, such as HUP under ``nohup``, stays ignored. Outside the main thread, no handlers are replaced.
+    A signal that is already ignored, such as SIGHUP under ``nohup``, stays ignored. Outside the main thread, no handler is changed.
     """
     main = threading.current_thread() is threading.main_thread()
     current_handlers = {number: signal.getsignal(number) for number in _TERMINATION_SIGNALS if main}

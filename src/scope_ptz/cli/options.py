@@ -348,15 +348,15 @@ class ServerFlags:
     ] = None
     idle_preset: Annotated[str, typer.Option("--idle-preset", help="Preset to which unused cameras return (default: home).")] = ""
     until_eof: Annotated[
-        bool, typer.Option("--until-eof", help="End when the standard input is closed, for programs that start the server.")
+        bool, typer.Option("--until-eof", help="Exit when standard input is closed, for programs that start the server.")
     ] = False
 
 
 def command(function: Callable[..., int | None]) -> Callable[..., None]:
     """Convert a function with option groups to a function that Typer can register.
 
-    Each parameter annotated with a group is expanded to one keyword parameter per field of the group. The returned number becomes
-    the exit code. SCOPE's errors are converted to one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the
+    Each parameter annotated with a group is expanded to one keyword parameter per field of the group. The function's return value
+    becomes the exit code. SCOPE's errors are converted to one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the
     parameter ``as_json`` is set, errors are also printed as JSON.
     """
     hints = get_type_hints(function, include_extras=True)

@@ -20,8 +20,8 @@ class LeanGroup(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         command = super().get_command(ctx, cmd_name)
         if command is not None and not isinstance(command, LeanGroup) and "get_params" not in vars(command):
-            params_of = command.get_params
-            vars(command)["get_params"] = lambda context: _skip_conversions(params_of(context))
+            original = command.get_params
+            vars(command)["get_params"] = lambda context: _skip_conversions(original(context))
         return command
 
 
@@ -42,13 +42,13 @@ class _Conversion:
 
     def __call__(self, ctx: Any, value: Any) -> Any:
         parameter = self._parameter
-        if not self._is_final(value):
+        if not self._is_converted(value):
             return self._convert(ctx, value)
         if value is None and not self._single:
             value = ()
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
 
-    def _is_final(self, value: Any) -> bool:
+    def _is_converted(self, value: Any) -> bool:
         if value is None:
             return not self._parameter.required
         if not self._single:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
 
 REAL_TIME_S = 0.5  # the paper's criterion in seconds per inference, for a control loop of about 2 Hz
-_EXTRA_PAN_DEG = 7.0  # pan offset between frames at the same preset, which is used if there are more frames than presets
+_EXTRA_PAN_DEG = 7.0  # pan offset between frames at the same preset, used if there are more frames than presets
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Format values as short texts that are safe to print."""
+"""Format values as short strings that are safe to print."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when pr
 
 
 def sanitize(text: str) -> str:
-    """Replace control characters in a text, so that text from models and scenes cannot control the terminal."""
+    """Replace control characters in text, so that output from models and scenes cannot control the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
 def shorten(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
-    """Truncate a text to ``limit`` characters, and append its full length if it was longer."""
+    """Truncate text to ``limit`` characters, and append its full length if it was longer."""
     return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
 
 

@@ -24,7 +24,7 @@ async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """Return the endpoint and the models that it lists. If there is only a list below ``/v1``, return the endpoint with that URL.
+    """Return the endpoint and the models that it lists. If only its ``/v1`` URL has a list, return the endpoint with that URL.
 
     Raises:
         ServerFailure: Neither URL has a model list.

@@ -88,7 +88,7 @@ class ReplyAssembler:
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
             raise self._malformed_reply("'tool_calls' is not a list")
-        if not calls and message.get("function_call"):  # the older interface for function calls
+        if not calls and message.get("function_call"):  # the predecessor of ``tool_calls``
             calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
         self._reasoning.append(reasoning)
@@ -99,7 +99,7 @@ class ReplyAssembler:
     def _content(self, content: Any) -> str:
         if content is None or isinstance(content, str):
             return content or ""
-        if isinstance(content, list):  # content parts, as in requests
+        if isinstance(content, list):  # a list of content parts, as in requests
             return "".join(_text_of(part.get("text")) for part in content if isinstance(part, dict))
         raise self._malformed_reply("'content' is not text")
 

@@ -50,7 +50,7 @@ Finding = tuple[Verdict, str]
 
 
 async def run_check(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
-    """Run a check. A ``ScopeError`` becomes a failed check; other errors are raised."""
+    """Run a check. A ``ScopeError`` becomes a failed check; other exceptions propagate."""
     began, kind = perf_counter(), ""
     try:
         verdict, detail = await check()

@@ -111,7 +111,7 @@ def validate_url(url: str) -> str:
 def _split(url: str) -> SplitResult | None:
     try:
         parts = urlsplit(url)
-        _ = parts.port  # an invalid port raises only when it is read
+        _ = parts.port  # an invalid port raises ValueError only when it is read
     except ValueError:
         return None
     return parts

@@ -33,7 +33,7 @@ RETRYABLE = frozenset(
 """Failure kinds after which a call is retried. With a wrong key, path, request or content type, a retry would fail again."""
 
 FIRST_PAUSE_S = 0.5  # upper bound of the random pause before the first retry; doubles with each further retry
-MAX_PAUSE_S = 8.0  # maximum of that bound
+MAX_PAUSE_S = 8.0  # maximum value of that bound
 MAX_RETRY_AFTER_S = 30.0
 """Maximum pause in seconds that a server may request. If it requests a longer pause, the call fails."""
 
@@ -121,7 +121,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """Return the pause in seconds before the next attempt; None if there is to be none."""
+        """Return the pause in seconds before the next attempt; None if the call must not be retried."""
         if failure.kind not in RETRYABLE or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(MAX_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))

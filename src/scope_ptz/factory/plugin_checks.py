@@ -27,7 +27,7 @@ class PluginCheck:
 
     Attributes:
         plugin: The plug-in.
-        verdict: "partly" means that the plug-in was loaded but could not be tested, for example without an address.
+        verdict: "partly" means that the plug-in was loaded but could not be tested, for example because no address is known.
         detail: A one-line explanation for the user.
     """
 

@@ -9,7 +9,7 @@ Importing this package registers the environments. It needs the ``gym`` extra: `
 """
 
 try:
-    import gymnasium as _gymnasium  # noqa: F401 - a clear message is better than one from a module below
+    import gymnasium as _gymnasium  # noqa: F401 - gives a clearer message than the imports below
 except ImportError as _error:
     raise ImportError('scope_ptz.gym needs Gymnasium. Install it with: pip install "scope-ptz[gym]"') from _error
 

@@ -100,7 +100,7 @@ class RandomLooks(_DetectionPolicy):
 
 
 class Sweep(_DetectionPolicy):
-    """Looks in a fixed raster from the left stop to the right and back, one row of tilts after another."""
+    """Scans a fixed raster row by row, alternately from left to right and from right to left."""
 
     def begin(self, seed: int) -> None:
         super().begin(seed)

@@ -11,7 +11,7 @@ ENVIRONMENTS: Mapping[str, str] = {
     "scope_ptz/TaskContinuous-v0": "scope_ptz.gym.task_env:MoveTaskEnv",
     "scope_ptz/Search-v0": "scope_ptz.gym.search_env:SearchEnv",
 }
-"""The id of each environment and its class. The version increases when the same actions give other observations or rewards.
+"""The id of each environment and its class. The version increases when the same actions give different observations or rewards.
 
 The environments limit their own steps, because the benchmark's verdict depends on the limit. They therefore need no ``TimeLimit``.
 """

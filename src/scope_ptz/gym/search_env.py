@@ -21,7 +21,7 @@ from scope_ptz.gym.world import World
 from scope_ptz.perception.base import Perception
 
 FRAME_SIZE = (640, 360)
-"""Default width and height of a frame in pixels. It determines which objects are visible."""
+"""Default width and height of a frame in pixels. The size determines which objects are visible."""
 MAX_LOOKS = 30
 LOOK_COST = 0.01
 
@@ -30,8 +30,8 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     """``scope_ptz/Search-v0``: turn and zoom until a named object is near the centre of the view, then submit.
 
     A look is a frame that the agent receives. The initial frame is the first look. An action either moves the camera and takes the
-    next look, or submits the current view. A submission succeeds if an object that matches the target's name is visible, as
-    the simulator defines it, in the middle third of the frame.
+    next look, or submits the current view. A submission succeeds if the ground truth contains a visible object
+    with the target's name in the middle third of the frame.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 2}  # type: ignore[misc]
@@ -55,9 +55,9 @@ class SearchEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         Args:
             scene: The scene, or several; each episode samples one of them, and the viewpoint of one of its presets.
             targets: Names of objects from which the target is sampled; by default, the names of all objects in the scene.
-            target_zoom: The target is visible at this magnification when the camera points at it. Larger numbers give smaller
-                targets.
-            perception: A perception backend, by its name in ``--perception`` or as an object, that searches every frame for the
+            target_zoom: The target is visible at this magnification when the camera points at it. Larger numbers allow
+                smaller targets.
+            perception: A perception backend (an object, or a name as in ``--perception``) that searches every frame for the
                 target and adds ``detection`` to the observations. The default is no perception.
             frames: Whether observations contain frames. Without them, nothing is rendered, and training on detections is faster.
             frame_size: Width and height of the frames in pixels.

@@ -41,7 +41,7 @@ class World:
         scene: The scene of the episode.
         camera: The camera. Tools may move it.
         perception: The perception backend of the episode.
-        pose: The camera's pose after the last move of this world.
+        pose: The camera's pose after the last move made through this object.
 
     Args:
         perception: Name of a perception backend, as in ``--perception``, or a backend that the caller closes.
@@ -128,7 +128,7 @@ class World:
         return FrameGeometry(*self._camera_size, info.optics, info.limits)
 
     def picture(self, pose: Pose, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
-        """Render the current view at a pose as (H, W, 3) RGB, by default in the agent's frame size."""
+        """Render the view at a pose as (H, W, 3) RGB, by default in the agent's frame size."""
         info = self.camera.info
         geometry = FrameGeometry(*(size or self._frame_size), info.optics, info.limits)
         return picture(self.scene, self.camera.viewpoint, geometry.view(pose), self.time_s)

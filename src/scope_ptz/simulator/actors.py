@@ -144,11 +144,13 @@ def _appearance(viewpoint: Viewpoint, actor_in_view: ActorInView) -> Appearance:
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
     # Aim the view so that the sprite's ground point lies in the actor's current direction at the new scale.
-    foot = rendered.points(sprite_offset_m)
+    ground_point = rendered.points(sprite_offset_m)
     pan, tilt = sprite.pan_deg, sprite.tilt_deg
     target_pan, target_tilt = (float(a) for a in pan_tilt_deg(offset_m))
     for _ in range(6):
-        current_pan, current_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
+        current_pan, current_tilt = pan_tilt_deg(
+            Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(ground_point)
+        )
         pan += (target_pan - float(current_pan) + 180.0) % 360.0 - 180.0
         tilt += target_tilt - float(current_tilt)
     return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), offset_m, scale)

@@ -1,6 +1,6 @@
-"""Coarse bounds of the static world, which quickly show where nothing can hide an actor.
+"""Coarse bounds on the static world, which quickly show where nothing can hide an actor.
 
-Most of an actor is usually in front of everything else, so each pixel needs the exact test only in the remaining parts.
+Most of an actor is usually in front of everything else, so only the pixels in the remaining parts need the exact test.
 """
 
 from __future__ import annotations

@@ -168,15 +168,15 @@ class _Layer:
 
     @classmethod
     def of(cls, viewpoint: Viewpoint, actor: ActorInView, weighted: WeightedSprite, now: Aspect) -> _Layer:
-        sprite, then_m, now_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
-        scale = float(np.linalg.norm(then_m) / np.linalg.norm(now_m))
+        sprite, stored_m, current_m = weighted.sprite, weighted.aspect.offset_m, actor.offset_m
+        scale = float(np.linalg.norm(stored_m) / np.linalg.norm(current_m))
         focal_px = sprite.width / 2 / math.tan(math.radians(sprite.hfov_deg / 2))
         # In the image plane of a camera aimed at the actor's ground point, the sprite is scaled and warped about that point.
         plane = np.eye(3)
         plane[:2, :2] = np.linalg.inv(scale * warp_matrix(actor.actor, weighted.aspect, now))
-        axes_now, axes_then = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (now_m, then_m))
+        current_axes, stored_axes = (camera_axes(*map(float, pan_tilt_deg(m))) for m in (current_m, stored_m))
         pixels = np.array([[focal_px, 0.0, sprite.width / 2], [0.0, -focal_px, sprite.height / 2], [0.0, 0.0, 1.0]])
-        to_sprite = pixels @ camera_axes(sprite.pan_deg, sprite.tilt_deg) @ axes_then.T @ plane @ axes_now
+        to_sprite = pixels @ camera_axes(sprite.pan_deg, sprite.tilt_deg) @ stored_axes.T @ plane @ current_axes
         box = viewpoint.sprites.box(actor.sheet, sprite)
         return cls(actor.sheet, sprite, weighted.weight, scale, focal_px * scale, to_sprite, box)
 

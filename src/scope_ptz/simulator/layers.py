@@ -138,7 +138,7 @@ def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
 
 @contextmanager
 def _open_picture(path: Path) -> Iterator[Image.Image]:
-    """Open the picture in a file without decoding its pixels. Errors inside the context are reported as a damaged file."""
+    """Open the picture in a file without decoding its pixels. Decoding errors inside the context raise ``PackError``."""
     try:
         with path.open("rb") as file:
             yield Image.open(file)

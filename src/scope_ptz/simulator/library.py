@@ -16,8 +16,8 @@ OPEN_VIEWPOINTS = 2
 class Library:
     """Scenes by name, such as ``highway-works``, or ``highway-works-v7`` for a variation.
 
-    Variations share their scene's layers. Calling the library with a name raises ``UnknownNameError`` if the scene does not exist,
-    and ``PackError`` if its files are damaged.
+    Calling the library with a name returns the scene, or raises ``UnknownNameError`` if it does not exist and ``PackError`` if its
+    files are damaged. Variations share their scene's layers.
 
     Args:
         search: Additional scene folders, searched before the built-in ones.

@@ -169,7 +169,7 @@ class Scene:
 
     @cached_property
     def families(self) -> Mapping[str, frozenset[int]]:
-        """For each id, the numbers of the whole object that the id belongs to: the parent and all of its parts."""
+        """For each id, the instance numbers of the whole object that it belongs to: the parent and all of its parts."""
         parents = {i.id: i.parent for i in self.file.instances}
 
         def root(name: str) -> str:

@@ -19,7 +19,7 @@ PAUSE_S = 0.002
 
 TILES_PER_RELEASE = 8  # after this many tiles, the memory of decoded pictures is returned to the operating system
 
-DENSITY_STEPS = 64  # zoom steps, from the widest to the closest, at which the required scales of tiles are determined
+DENSITY_STEPS = 64  # number of zoom steps, from the widest to the closest, at which the required scales of tiles are determined
 
 
 class Prefetch:

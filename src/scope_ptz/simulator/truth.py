@@ -26,7 +26,7 @@ MIN_VISIBLE_FRACTION = 0.3
 """At least this fraction of a visible instance's silhouette is neither hidden nor cut off by the frame."""
 
 MIN_CAP_HEIGHT_PX = 14.0
-"""Capitals of a legible text are at least this high in the frame."""
+"""Capitals of a legible text are at least this many pixels high in the frame."""
 
 MAX_READING_ANGLE_DEG = 55.0
 """The line of sight to a legible text is at most this many degrees from the text's normal."""
@@ -96,7 +96,7 @@ class TextSighting:
 
 @dataclass(frozen=True, slots=True)
 class ViewTruth:
-    """The instances and texts in a view, nearest first. Answers may only use ``visible`` instances and ``legible`` texts."""
+    """The instances and texts in a view, nearest first. Answers may use only ``visible`` instances and ``legible`` texts."""
 
     sightings: tuple[Sighting, ...]
     texts: tuple[TextSighting, ...]

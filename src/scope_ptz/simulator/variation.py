@@ -1,4 +1,4 @@
-"""Variations of a scene: other positions of moving objects and other presets, derived deterministically from a number.
+"""Variations of a scene: different positions of moving objects and different presets, derived deterministically from a number.
 
 The baked layers are unchanged. The same code composites moving objects into pictures and into the ground truth, so
 pictures and ground truth agree in every variation.
@@ -34,7 +34,7 @@ _DIRECTIONS = ("north", "north-east", "east", "south-east", "south", "south-west
 
 @dataclass(frozen=True, slots=True)
 class HeldObject:
-    """A moving object that stays at its position at one scene time."""
+    """A moving object that stands still where it would be at the scene time ``time_s``."""
 
     actor: SceneActor
     time_s: float
@@ -74,7 +74,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
 
 
 def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
-    """Group the actors that move together, such as a dog and its owner: those with the same waypoint times."""
+    """Group the actors that move together, such as a dog and its owner: those with the same period and waypoint times."""
     groups: dict[tuple[float, ...], list[SceneActor]] = {}
     for actor in actors:
         groups.setdefault((actor.period_s, *(round(w[0], 3) for w in actor.waypoints)), []).append(actor)
@@ -103,8 +103,8 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 def _period(actor: SceneActor, rng: random.Random) -> float:
     """Return a random period, at least as long as the original one. Actors that never leave the scene keep their period."""
     absence_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
-    longer = rng.choice(_PERIOD_FACTORS)
-    return actor.period_s if absence_s < 0.1 else round(actor.period_s * longer, 3)
+    factor = rng.choice(_PERIOD_FACTORS)
+    return actor.period_s if absence_s < 0.1 else round(actor.period_s * factor, 3)
 
 
 def _hold_group(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObject]:

@@ -195,7 +195,7 @@ class Viewpoint:
 
     @cached_property
     def clearance(self) -> Clearance:
-        """Coarse bounds of the static world, from the depth layer."""
+        """Coarse bounds on the static world, from the depth layer."""
         slot = self.depth_atlas.ensure(0)
         codes = self.depth_atlas.sheet[slot.y : slot.y + slot.height, slot.x : slot.x + slot.width]
         return Clearance(codes, self.depth_metres, self.manifest.band)

@@ -1,4 +1,4 @@
-"""Feedback on runs and on single calls."""
+"""Feedback on runs and on individual calls."""
 
 from __future__ import annotations
 

@@ -20,12 +20,12 @@ def has_words(instruction: str, answer: str, words: str) -> int:
         words: The words, separated by spaces. The last one may be incomplete.
     """
     text = _fold_accents(f"{instruction}\n{answer}")
-    *whole, beginning = words.split(" ")
+    *complete, prefix = words.split(" ")
     # A substring search rules out most texts. It is ten times as fast as splitting the texts into words.
-    if beginning not in text or not all(word in text for word in whole):
+    if prefix not in text or not all(word in text for word in complete):
         return 0
     found = set(re.findall(r"[^\W_]+", text))
-    return int(found.issuperset(whole) and any(word.startswith(beginning) for word in found))
+    return int(found.issuperset(complete) and any(word.startswith(prefix) for word in found))
 
 
 def _fold_accents(text: str) -> str:

@@ -148,14 +148,14 @@ def _conditions(connection: Connection, run_filter: RunFilter) -> list[ColumnEle
     return conditions
 
 
-def _contains(connection: Connection, given: str) -> ColumnElement[bool]:
-    """Return the condition that a run contains all words of a text. The last word may be incomplete."""
-    words = words_of(given)
+def _contains(connection: Connection, query: str) -> ColumnElement[bool]:
+    """Return the condition that a run contains all words in ``query``. The last word may be incomplete."""
+    words = words_of(query)
     if not words:
-        return false()  # the text contains no words
+        return false()
     phrase = " ".join(f'"{word}"' for word in words[:-1]) + f' "{words[-1]}"*'
-    some = text(f"SELECT count(*) FROM (SELECT 1 FROM runs_text WHERE runs_text MATCH :words LIMIT {_COMMON_WORD_RUNS})")  # noqa: S608
-    if connection.execute(some, {"words": phrase}).scalar_one() < _COMMON_WORD_RUNS:
+    limited_count = text(f"SELECT count(*) FROM (SELECT 1 FROM runs_text WHERE runs_text MATCH :words LIMIT {_COMMON_WORD_RUNS})")  # noqa: S608
+    if connection.execute(limited_count, {"words": phrase}).scalar_one() < _COMMON_WORD_RUNS:
         found = "runs.number IN (SELECT rowid FROM runs_text WHERE runs_text MATCH :words)"
         return cast("ColumnElement[bool]", text(found).bindparams(words=phrase))
     return func.has_words(RUNS.c.instruction, RUNS.c.answer, " ".join(words)) == 1

@@ -9,7 +9,7 @@ The packages and modules, in the order in which a dataset passes through them:
 - ``gold`` inserts known faults into passing runs, to test the judges and the rules that assign error modes.
 - ``audit_questions`` writes questions with pictures for people and models, and ``picture_audit`` compares their answers with the
   expected ones. ``task_sheet`` shows a person a single task.
-- ``dataset`` builds the unseen split and writes the dataset card.
+- ``dataset`` builds the published dataset and writes the dataset card.
 
 Callers pass a perception backend as an argument, so this package does not depend on any backend.
 """

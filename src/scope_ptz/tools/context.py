@@ -49,7 +49,7 @@ def move_result(camera: Camera, action: str, arrival: Arrival, preset: str | Non
 
 
 def pose_text(arrival: Arrival) -> str:
-    """Return the end of a sentence that describes the camera's pose and the limits that stopped it."""
+    """Return the camera's pose, and the limits that stopped the move, as the last clause of a sentence."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
     if arrival.limited_by:

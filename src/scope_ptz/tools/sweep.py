@@ -39,7 +39,7 @@ def plan_sweep(info: CameraInfo) -> list[Block]:
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # Frames cover less height towards their sides: this is half the height at a column's edge, minus 1 degree for tilted frames.
+    # Frames cover less height towards their sides, so use half the height at a column's edge, minus 1 degree for tilted frames.
     half_height_at_edge = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + half_height_at_edge, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - half_height_at_edge)

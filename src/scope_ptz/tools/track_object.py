@@ -36,7 +36,7 @@ This leaves room for motion, and enough pixels to recognise the target.
 
 MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
 MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
-"""Maximum speeds at which a target may deviate from its expected direction, before and after its motion is known.
+"""Maximum rates of deviation from a target's expected direction, in degrees per second, before and after its motion is known.
 
 A match that deviates faster is assumed to be a different object.
 """

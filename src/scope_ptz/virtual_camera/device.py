@@ -170,7 +170,7 @@ class VirtualDevice:
         Args:
             velocity: The velocities, which are capped at the top speed of each axis.
             timeout_s: Seconds of motor time after which the device stops on its own; None for never.
-            sent_s: The time at which the client sent the command in Unix seconds, if known.
+            sent_s: The time at which the client sent the command, in Unix seconds; None if unknown.
 
         Returns:
             False if the command was dropped.
@@ -203,7 +203,7 @@ class VirtualDevice:
         Args:
             pan_tilt: Whether to stop pan and tilt.
             zoom: Whether to stop zoom.
-            sent_s: The time at which the client sent the command in Unix seconds, if known.
+            sent_s: The time at which the client sent the command, in Unix seconds; None if unknown.
         """
         if sent_s is not None:
             self._last_stop_sent_s = max(self._last_stop_sent_s, sent_s)

@@ -87,8 +87,7 @@ class DigestAuthenticator:
             authorization: The value of the header; None if there is none.
             method: The method of the request, such as ``GET`` or ``DESCRIBE``.
             uri: The request target (for HTTP, the path and query), which the URI in the header must match. None accepts any URI,
-                which
-                RTSP requires: for a single track, clients authenticate with the URI of the whole stream.
+                as RTSP requires: for a single track, clients authenticate with the URI of the whole stream.
         """
         fields = _parse(authorization or "")
         algorithm = _ALGORITHMS.get(fields.get("algorithm", "MD5").upper())

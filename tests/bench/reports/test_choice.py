@@ -135,7 +135,7 @@ def test_the_first_screen_names_the_fast_and_the_small_pair(report: EvaluationRe
     (chart,) = small_report.sections[0].charts
     assert "Baselines: grammar + ground-truth 100.0%" in chart.alt and "2 Hz (0.5 s)" in chart.svg
     slow = build(evaluation_with("qwen3-4b", (1, 2), seconds=3.0))
-    assert "The 2 Hz bar (0.5 s) is left of the picture" in slow.sections[0].charts[0].title
+    assert "The 2 Hz bar (0.5 s) is off the left edge of the chart" in slow.sections[0].charts[0].title
     page, text = render_html(report), render_markdown(report)
     for document in (page, text):
         assert document.index("Which pair to choose") < document.index("Summary") < document.index("Macro average")

@@ -104,7 +104,7 @@ class RemoteCamera(Camera):
 
     @asynccontextmanager
     async def control(self, holder: str) -> AsyncIterator[None]:
-        """Control the camera within a context. Only one holder in the session can have control at a time."""
+        """Control the camera within a context. Raises ``ControlHeldError`` if someone else has control."""
         state = await self._connection.request("POST", "~/control")
         if not state["mine"]:
             await self._connection.request("DELETE", "~/control")

@@ -150,7 +150,7 @@ class RemoteSession(AsyncScope):
                 kept_out = reply.get("code") == "kept_out"  # servers before 0.2.0 send no code
                 raise (KeepOutError if kept_out else _ERRORS_BY_FAULT.get(str(reply["fault"]), CameraError))(reply["error"])
             result = TOOLS[name].result_type().model_validate(reply["result"])
-            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
+            assert isinstance(result, result_type), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a bug in the tool
             if (file := getattr(result, "file", None)) is not None:
                 # The server stores each call as a separate run, so picture names are unique only in combination with the run id.
                 result = result.model_copy(update={"file": f"{reply['run']}/{file}"})

@@ -28,7 +28,7 @@ ISOLATION_NOTES: dict[Isolation, str] = {
 class AgentChannel(ABC):
     """Carries the messages of one run. A channel cannot be reused for another run.
 
-    A channel validates messages. It raises failures of the agent and the connection as ``PlannerError`` with a kind from
+    A channel validates messages. If the agent or the connection fails, it raises ``PlannerError`` with a kind from
     ``bench.agents.faults``. It has no time limits: a caller that stops waiting cancels ``receive`` and then closes the channel.
     """
 

@@ -1,7 +1,7 @@
 """Run a program with limited resources, and kill it with all processes that it started. Uses only the standard library.
 
 Usage: ``python keeper.py '{"command": [...], ...}'``, with the fields of ``KeeperOptions``. The keeper is a process between the
-host and an agent. The agent inherits its stdin and stdout. The keeper kills the agent and every process that the agent started when
+host and an agent, which inherits the keeper's stdin and stdout. The keeper kills the agent and all of the agent's processes when
 
 - the agent's first process ends,
 - the host closes the control pipe or dies (after a grace period), or

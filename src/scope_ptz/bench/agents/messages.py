@@ -43,7 +43,7 @@ Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_CHARS)]
 
 
 def _check_values(arguments: dict[str, Any]) -> dict[str, Any]:
-    """Check that all numbers in arguments are finite and fit into 64 bits, and that arguments are not nested too deeply."""
+    """Check that all numbers in the arguments are finite and fit into 64 bits, and that the nesting is not too deep."""
     pending: list[tuple[Any, int]] = [(arguments, 1)]
     while pending:
         value, depth = pending.pop()

@@ -45,7 +45,7 @@ KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
 """Seconds after which the keeper itself is killed."""
 CHUNK_BYTES = 65_536
 _NO_GROUP = 2**31 - 1
-"""Id of a process group that does not exist. Group 0 would be the group of this process."""
+"""Process group id that no group has. Id 0 would mean the group of this process."""
 _PIPE_ERRORS = (anyio.EndOfStream, anyio.ClosedResourceError, anyio.BrokenResourceError)
 
 
@@ -142,7 +142,7 @@ class PipeChannel(AgentChannel):
                 raise await self._failure() from None
 
     async def close(self, reason: str) -> None:
-        """Stop the agent with all its processes. An agent that does not exit by itself within ``GRACE_S`` is killed."""
+        """Stop the agent and all its processes. An agent that does not exit by itself within ``GRACE_S`` is killed."""
         with anyio.CancelScope(shield=True):
             if self._report is None:
                 with suppress(*_PIPE_ERRORS), anyio.move_on_after(WRITE_S):
@@ -191,7 +191,7 @@ class PipeChannel(AgentChannel):
         if code < 0:
             name = signal.Signals(-code).name if -code in {*signal.Signals} else str(-code)
             return agent_failure(
-                "agent-exited", f"The agent's process was ended by the signal {name} before the agent replied{detail}"
+                "agent-exited", f"The agent's process was terminated by signal {name} before the agent replied{detail}"
             )
         return agent_failure("agent-exited", f"The agent's process ended with exit code {code} before the agent replied{detail}")
 

@@ -90,7 +90,7 @@ class Session:
         return await answer
 
     def view(self) -> bytes | None:
-        """Return the newest frame as JPEG data, or None unless the agent's class has ``sees = True``."""
+        """Return the newest frame as JPEG data. If the agent's class does not have ``sees = True``, return None."""
         if self._sees and not self._view_is_newest and not self._ended:
             self._send({"type": "view"})
             message = self._views.get() or {}
@@ -137,7 +137,7 @@ class Session:
             self._task.cancel()
 
     def _schedule_flush(self) -> None:
-        """Schedule sending the queued calls for when the agent has made all calls that it awaits together. Steps do not overlap."""
+        """Schedule a flush for after the agent has made all calls that it awaits together. Steps do not overlap."""
         if self._queued and not self._sent and not self._is_flush_scheduled:
             self._is_flush_scheduled = True
             loop = asyncio.get_running_loop()

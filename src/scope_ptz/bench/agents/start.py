@@ -68,7 +68,7 @@ class LocalAgent:
 
 
 def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()) -> LocalAgent:
-    """Return an agent that is ready to start. None of its code is run yet.
+    """Return an agent that is ready to start, without running any of its code.
 
     Args:
         agent: ``module:Class``; ignored if the options contain a command.

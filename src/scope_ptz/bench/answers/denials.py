@@ -37,7 +37,7 @@ def says_yes(text: AnswerText) -> bool:
 
 
 def denies_entirely(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether a clause denies the subject everywhere ("at the gate" is a restriction) and in full (so is "red ones")."""
+    """Return whether a clause denies the subject without restricting it to a place ("at the gate") or a kind ("red ones")."""
     mentions = text.mentions({"subject": subject}) if subject else []
     numbers = find_numbers(text, subject)
     denials = {m.start for m in mentions if m.denied and not m.contrast}

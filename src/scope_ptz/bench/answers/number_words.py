@@ -44,7 +44,7 @@ def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
         text = words[at].text
         if at > start and re.search(r"[^\s-]", words[at].gap):
             break
-        # A word for 0 to 19 can begin a number, or follow a multiple of ten, but not "ten" itself.
+        # A word for 0 to 19 can begin a number, or follow a multiple of ten other than ten itself.
         if text in UNITS and (part % 10 == 0 and (part >= 20 or part == 0 or part % 100 == 0)):
             part += UNITS[text]
         elif text in TENS and part % 100 == 0:

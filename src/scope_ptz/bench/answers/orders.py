@@ -24,7 +24,7 @@ _NAMING_WORDS = frozenset({
     "the", "a", "at", "preset", "view", "by", "it", "is", "answer", "i", "would", "say", "that", "definitely", "clearly",
     "one", "to", "versus", "against",
 })  # fmt: skip
-"""Additional words that may occur in an answer that only names a thing ("the gate preset")."""
+"""Words that may occur besides the name in an answer that only names a thing ("the gate preset")."""
 
 _OPPOSITE = {"forward": "backward", "backward": "forward"}
 

@@ -84,7 +84,7 @@ _ABSENCE = re.compile(r"\b(?:no|none|not|nothing|neither|without|absent|missing|
 """Words that state an absence. An absence can be the reason for a refusal."""
 
 _NOT_SEEN = re.compile(r"(?:find|locate|detect|spot|see) (?:it|them|that|this|one|any)$|at all$")
-"""Endings of statements that the thing was not seen."""
+"""Endings of statements which say that the thing was not seen."""
 _KINDS_REQUIRING_SIGHT = frozenset({"choice", "text", "ordering", "relation", "description"})
 """Kinds of expected answers that can only be given if the thing is seen."""
 _SPECULATION = re.compile(

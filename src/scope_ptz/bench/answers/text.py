@@ -241,7 +241,7 @@ def answer_text(text: str) -> AnswerText:
 
     Questions, withdrawn statements, guesses and clauses that decline to answer are excluded.
     """
-    cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" is white
+    cleaned = re.sub(r"\s*\(with [^()]*\)", "", replace_crosses(clean(text)))  # "white (with black letters)" means white
     cleaned = remove_withdrawn(cleaned)
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     stating_words, declined, hedged = list[Word](), False, False

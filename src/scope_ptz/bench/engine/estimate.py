@@ -70,7 +70,7 @@ def estimate(
 ) -> Estimate:
     """Estimate the calls, duration, tokens and cost of an evaluation.
 
-    Calls are estimated from the reference programs. Duration and tokens are extrapolated from earlier runs by the number of calls.
+    Calls are estimated from the reference programs. Duration and tokens are scaled from earlier runs by planner calls.
 
     Args:
         entries: The entries to run.

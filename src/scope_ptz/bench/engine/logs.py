@@ -98,7 +98,7 @@ def read_header(path: Path) -> EvalLog:
 
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
-    """Return, for each run in a log by task and epoch, whether it completed without an error. Raises ``TraceError``."""
+    """Return whether each run in a log completed without an error, by task and epoch. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 
 

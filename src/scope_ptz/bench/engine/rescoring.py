@@ -94,7 +94,7 @@ async def rescore(
 
 
 def set_deciding_judge(log: Path, judge: str) -> None:
-    """Record the deciding judge, whose verdicts count for the runs that only a judge can score, in a log.
+    """Record in a log which judge decides the runs that only a judge can score.
 
     Raises:
         TraceError: The log does not exist or is damaged.

@@ -81,7 +81,7 @@ def _with_fault(ended: Ended | None, reason: str) -> str:
 
 
 class _TrueCounts:
-    """A function that looks up the stored true count for an observation."""
+    """A callable that looks up the stored true count for an observation."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
         self._counts = [

@@ -127,7 +127,7 @@ def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
 
 
 def file_name(task: str) -> str:
-    """Return a safe file name for the page about a task. The name is unique and always the same."""
+    """Return a safe file name for the page about a task. The name is unique and depends only on the task id."""
     readable = re.sub(r"[^a-z0-9]+", "-", task.lower()).strip("-")[:60]
     return f"{readable or 'task'}-{hashlib.sha256(task.encode()).hexdigest()[:10]}.html"
 

@@ -112,7 +112,7 @@ def render_html(report: EvaluationReport, environment: Environment | None = None
 
 
 def render_markdown(report: EvaluationReport) -> str:
-    """Render the report as Markdown, which shows the chart files in ``charts/``."""
+    """Render the report as Markdown that embeds the chart files in ``charts/``."""
     parts = ["# SCOPE benchmark report"]
     parts += [f"> **{escape(report.notice)}**"] if report.notice else []
     parts += ["> " + escape(line) for line in (*report.contradictions, *report.problems)]

@@ -101,7 +101,7 @@ def expects_reply(task: Task) -> bool:
 def constant_replies(tasks: Sequence[Task]) -> tuple[ConstantReply, ...]:
     """Return the constant replies to try: generic replies, and the most frequent correct answers.
 
-    Answers that are correct for only one task are excluded, because they are not better guesses than others.
+    Answers that are correct for only one task are excluded, because they are no better guesses than others.
     """
     counts, kinds = Counter[str](), dict[str, set[str]]()
     for task in tasks:
@@ -187,7 +187,7 @@ def find_accepting_tasks(tasks: Sequence[Task], replies: Sequence[ConstantReply]
 
 
 def find_passed_tasks(tasks: Sequence[Task], accepted: TasksByReply, *, looks: bool) -> TasksByReply:
-    """Return, for each reply, the tasks whose checks it all passes.
+    """Return, for each reply, the tasks for which it passes all checks.
 
     Args:
         tasks: The tasks.

@@ -33,7 +33,7 @@ _MAX_COUNTS = 8
 
 
 def text_from_tools(episode: Episode) -> str:
-    """Return everything that the tools reported as a single text."""
+    """Return everything that the tools reported, joined into one text."""
     parts = list[str]()
     for call in episode.calls:
         if call.succeeded and call.result is not None:

@@ -74,7 +74,7 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
 
 
 def infrastructure_failure(task: Task, episode: Episode) -> str | None:
-    """Return the infrastructure failure because of which a run cannot be scored; None if there was none.
+    """Return the infrastructure failure that prevents a run from being scored; None if there was none.
 
     Infrastructure failures are interruptions and failures of the camera or a model server. Faults of an external agent are not
     infrastructure failures.

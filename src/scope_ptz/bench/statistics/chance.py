@@ -22,7 +22,7 @@ import numpy as np
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, proportion
 
 MAX_CHANCE = 0.999
-"""Categories with a higher chance level are excluded from chance-corrected accuracy, because they cannot exceed chance."""
+"""Categories with a higher chance level are excluded from chance-corrected accuracy, which divides by 1 minus the chance level."""
 
 
 @dataclass(frozen=True, slots=True)

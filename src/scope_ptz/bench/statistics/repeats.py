@@ -9,7 +9,7 @@ from math import comb
 def pass_all(runs: int, passed: int, k: int) -> float | None:
     """Return pass^k for one task: C(c, k) / C(n, k) if c of n runs passed (Yao et al. 2024).
 
-    It is an unbiased estimate of the probability that all of k runs pass.
+    It is an unbiased estimate of the probability that all k runs pass.
 
     Args:
         runs: Number of runs.

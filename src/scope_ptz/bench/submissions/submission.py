@@ -1,4 +1,4 @@
-"""Write submissions for a public leaderboard: a header and one JSON line per trial, without keys and addresses.
+"""Write submissions for a public leaderboard: a header and one JSON line per trial, without keys or addresses.
 
 Format 1 contains only the trials. Format 2 also contains the traces, so that the checks can be run again and the calls repeated.
 The schema of a line is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the line models

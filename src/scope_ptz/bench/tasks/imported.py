@@ -24,7 +24,7 @@ expected call was made; "none": the calls are not checked.
 
 
 class ImportedTask(BaseModel):
-    """A task imported from a file in another format. A judge scores its answer, and a check compares its expected calls.
+    """A task imported from a file in another format. A judge scores its answer, and a check verifies its expected calls.
 
     Attributes:
         imported: Version of this format.

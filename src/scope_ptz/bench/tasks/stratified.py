@@ -139,7 +139,7 @@ def _margins(group: _Group) -> list[_Margin]:
 
 
 def _repetition_count(unit: _Unit, answers: Counter[str]) -> int:
-    """Return how often the sample already contains the answers of a unit. In a pair, the answer ABSENT is ignored."""
+    """Return how often the sample already contains the unit's most frequent answer. In a pair, the answer ABSENT is ignored."""
     keys = [task.answer for task in unit if task.answer and not (len(unit) > 1 and task.answer == ABSENT)]
     return max((answers[key] for key in keys), default=0)
 

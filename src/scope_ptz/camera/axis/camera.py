@@ -171,7 +171,7 @@ class AxisCamera(NetworkCamera):
             self._zoom_driven = bool(zoom)
 
     async def _send_stop(self) -> None:
-        """Send the stop commands for all axes. A device may refuse some of them, but not all."""
+        """Send the stop commands for all axes. Raise an error only if the device refuses all of them."""
         self._zoom_driven, refused = False, []
         for request in requests.stop(self._client.channel):
             try:

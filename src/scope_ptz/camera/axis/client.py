@@ -1,4 +1,4 @@
-"""A VAPIX client. It sends requests, returns replies, and holds control in the device's control queue."""
+"""A VAPIX client, which sends requests, returns replies, and manages its place in the device's control queue."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class QueuePlace:
     """A client's position in the control queue.
 
     Attributes:
-        place: Position in the queue: 1 has control, 2 and above are waiting, and 0 is not in the queue.
+        place: Position in the queue: 1 if the client has control, 2 or more if it is waiting, 0 if it is not in the queue.
         seconds: Seconds of control left, or seconds until control; -1 if unknown.
         poll_s: Seconds within which the client must renew its place.
     """

@@ -126,7 +126,7 @@ class BlenderWindowCamera(Camera):
         self._slot.end()
 
     def _current_connection(self) -> AddOnConnection:
-        """Return the connection. If its scene has changed, adopt the new one.
+        """Return the connection. If its scene has changed, adopt the new scene.
 
         The pose is kept if the viewpoint still exists and the optics have not changed.
         """

@@ -140,7 +140,7 @@ def window_scene(description: SceneDescription) -> WindowScene:
 
 
 def _combine(description: SceneDescription, viewpoint_cameras: list[SceneCamera]) -> FileCameras:
-    """Return optics and limits by the rules for .blend files. Numbers replace the camera names, which may be free text."""
+    """Return the optics and limits, as for a .blend file. The cameras are numbered, because their names may be free text."""
     cameras = [{**camera.model_dump(), "name": f"camera-{number}"} for number, camera in enumerate(viewpoint_cameras)]
     active = next(number for number, camera in enumerate(viewpoint_cameras) if camera.name == description.active)
     return file_cameras(

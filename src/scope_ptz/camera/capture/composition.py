@@ -179,10 +179,10 @@ class Composer:
         rows, columns = (_coarse_indices(length) for length in source_px.shape[:2])
         coarse = source_px[rows[:, None], columns[None, :]] + np.float32(0.5)
         pixels = self._pixels(index)
-        share = _look_up(pixels.weight, coarse / WEIGHT_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
+        share = _sample(pixels.weight, coarse / WEIGHT_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
         if not share.any() or not inside.any():
             return None
-        low = _look_up(pixels.low, coarse / LOW_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE)
+        low = _sample(pixels.low, coarse / LOW_SCALE - np.float32(0.5), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE)
         return _Layer(pixels.image, source_px, inside, low, share, frame.focal_px)
 
     def _pixels(self, index: int) -> FramePicture:
@@ -294,7 +294,7 @@ def _trust_maps(layers: Sequence[_Layer], density: float) -> tuple[list[Floats],
 
 
 def _smooth(grey: Floats, focal_px: float, coarsest_px: float, density: float, cells: float) -> Floats:
-    """Smooth a grey picture to ``cells`` cells of the coarsest frame, so that differences in sharpness do not look like motion."""
+    """Smooth a grey picture over ``cells`` cells of the coarsest frame, to keep sharpness differences from looking like motion."""
     target, current = (LOW_SCALE * density / focal / COARSE_PX for focal in (coarsest_px, focal_px))
     sigma = math.sqrt(max(0.0, (cells * target) ** 2 - current**2))
     return grey if sigma < 0.3 else np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
@@ -305,7 +305,7 @@ def _take_along(stack: Floats, index: NDArray[np.int64]) -> Floats:
 
 
 def _moving_areas(differences: Floats, limit: float) -> Mask:
-    """Return the mask of moving areas: connected areas above a third of the limit that exceed the limit somewhere."""
+    """Return the mask of moving areas: connected areas that exceed a third of the limit throughout and the limit somewhere."""
     _, labels = cv2.connectedComponents((differences > limit / 3).astype(np.uint8))
     above = np.unique(labels[differences > limit])
     return np.isin(labels, above[above > 0])
@@ -319,7 +319,7 @@ def _soften(mask: Mask) -> Floats:
     return np.asarray(cv2.GaussianBlur(grown, (5, 5), 0))
 
 
-def _look_up(picture: Floats, source_px: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
+def _sample(picture: Floats, source_px: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
     """Sample a picture at pixel coordinates (H, W, 2)."""
     return np.asarray(cv2.remap(picture, source_px, None, kind, borderMode=border))
 

@@ -52,7 +52,7 @@ class PairMatches:
 
 
 def find_features(image: NDArray[np.uint8], hidden: NDArray[np.bool_] | None = None) -> Features:
-    """Return the features of a frame, (H, W, 3) RGB, outside its hidden pixels, given as a mask (H, W)."""
+    """Return the features of a frame, (H, W, 3) RGB, outside the hidden pixels. ``hidden`` is a mask (H, W)."""
     sift = cv2.SIFT_create(nfeatures=MAX_FEATURES)  # type: ignore[attr-defined]
     mask = None if hidden is None else np.where(hidden, 0, 255).astype(np.uint8)
     points, descriptors = sift.detectAndCompute(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), mask)
@@ -112,7 +112,7 @@ def world_directions(view: Perspective, points_px: Floats) -> Floats:
 
 
 def _match(views: Sequence[Perspective], features: Callable[[int], Features], i: int, j: int) -> PairMatches | None:
-    """Return the matches between two frames that agree on one rotation; None if there are too few."""
+    """Match two frames, and return the matches that agree on one rotation; None if there are too few."""
     features_1, features_2 = features(i), features(j)
     rays_1, rays_2 = world_directions(views[i], features_1.points), world_directions(views[j], features_2.points)
     visible_1, visible_2 = _visible_indices(views[j], rays_1), _visible_indices(views[i], rays_2)

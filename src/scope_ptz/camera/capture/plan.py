@@ -22,7 +22,7 @@ WHOLE_CIRCLE_DEG = 340.0
 """Minimum pan range in degrees to sweep as a full circle. The frames at its two ends overlap."""
 
 EXTREME_REACH = 0.7
-"""Fraction of the outer half of the frames in the highest and lowest rows in which neighbouring frames overlap as planned.
+"""Extent of the planned overlap in the highest and lowest rows, as a fraction of the distance from a frame's centre to its edge.
 
 Full overlap up to the edge would require many more frames in these rows.
 """

@@ -1,4 +1,4 @@
-"""The progress callback of the phases of a capture."""
+"""The type of progress callbacks for captures."""
 
 from __future__ import annotations
 

@@ -195,7 +195,7 @@ def _tiles(
 def _manifest(
     viewpoint_folder: Path, name: str, panorama: Panorama, base: Picture, seen: NDArray[np.bool_], tiles: list[Tile]
 ) -> Manifest:  # fmt: skip
-    """Write the panorama and empty layers in place of ground truth, and return the manifest."""
+    """Write the panorama and empty ground-truth layers, and return the manifest."""
     write_colour(viewpoint_folder / "base.avif", base, BASE_QUALITY)
     empty = np.zeros((32, 64), np.uint16)
     write_ids(viewpoint_folder / "ids.webp", empty)

@@ -148,7 +148,7 @@ class CaptureSession:
         """Store a frame.
 
         Raises:
-            CameraError: The frame is not a perspective view, has a different size from the capture's, or cannot be encoded.
+            CameraError: The frame is not a perspective view, does not have the capture's frame size, or cannot be encoded.
             OutputError: The frame cannot be written.
         """
         size = (self.settings.frame_width, self.settings.frame_height)

@@ -36,9 +36,10 @@ class KeepOutError(CameraError):
 
 
 class GuardedCamera(CameraWrapper):
-    """A camera that obeys its site's rules: it does not aim at keep-out regions, and its frames hide them and the masks.
+    """A camera that obeys its site's rules.
 
-    A move to a forbidden pose ends at the nearest permitted pose, and its ``Arrival`` names the rule.
+    It does not aim at keep-out regions. These regions and the masks are black in its frames. A move to a forbidden pose
+    ends at the nearest permitted pose, and its ``Arrival`` names the rule.
 
     Args:
         camera: The wrapped camera.
@@ -74,18 +75,18 @@ class GuardedCamera(CameraWrapper):
         if self._within_dead_zone(current, target):
             self._record("skipped", target=target, reason="dead zone")
             return Arrival(current, clamped, limited_by or f"the dead zone of {self._rules.dead_zone_deg:g} degrees")
-        await self._wait_for_turn()
+        await self._wait_for_interval()
         self._record("move", target=target, requested=pose)
         arrival = await self._carry_out(self.inner.move(target))
         return Arrival(arrival.pose, merge_axes(clamped, arrival.clamped), limited_by or arrival.limited_by)
 
     async def go_to_preset(self, name: str) -> Arrival:
-        await self._wait_for_turn()
+        await self._wait_for_interval()
         self._record("preset", name=name)
         return await self._correct(await self._carry_out(self.inner.go_to_preset(name)))
 
     async def go_home(self) -> Arrival:
-        await self._wait_for_turn()
+        await self._wait_for_interval()
         self._record("home")
         return await self._correct(await self._carry_out(self.inner.go_home()))
 
@@ -110,11 +111,11 @@ class GuardedCamera(CameraWrapper):
         current = await self.inner.pose()
         requested = cap_velocity(Velocity(pan_dps, tilt_dps, zoom_rate), self.inner.info.capabilities.top_speed)
         for factor in _SPEED_FACTORS:
-            velocity = self._free_axes(current, scale_velocity(requested, factor))
-            free_s = self._free_time_s(current, velocity, timeout_s)
-            if velocity != Velocity() and free_s > 0.0:
-                self._record("drive", velocity=velocity, timeout_s=round(free_s, 3))
-                await self.inner.drive(velocity.pan_dps, velocity.tilt_dps, velocity.zoom_rate, timeout_s=free_s)
+            velocity = self._without_limited_axes(current, scale_velocity(requested, factor))
+            permitted_s = self._permitted_time_s(current, velocity, timeout_s)
+            if velocity != Velocity() and permitted_s > 0.0:
+                self._record("drive", velocity=velocity, timeout_s=round(permitted_s, 3))
+                await self.inner.drive(velocity.pan_dps, velocity.tilt_dps, velocity.zoom_rate, timeout_s=permitted_s)
                 return
         self._record("drive", velocity=Velocity(), timeout_s=0.0)
         await self.inner.stop()
@@ -130,7 +131,7 @@ class GuardedCamera(CameraWrapper):
         permitted, clamped, _ = self.nearest_permitted(target)
         if clamped or self._within_dead_zone(current, permitted):
             return await self.move(target)
-        await self._wait_for_turn()
+        await self._wait_for_interval()
         self._record("centre", x=x, y=y, zoom_factor=zoom_factor, target=target)
         return await self._correct(await self._carry_out(self.inner.centre_on(x, y, zoom_factor=zoom_factor)))
 
@@ -221,13 +222,13 @@ class GuardedCamera(CameraWrapper):
         turned_deg = max(abs(wrap_pan_deg(target.pan_deg - current.pan_deg)), abs(target.tilt_deg - current.tilt_deg))
         return 0.0 < turned_deg < zone_deg and math.isclose(current.zoom, target.zoom, rel_tol=1e-3)
 
-    async def _wait_for_turn(self) -> None:
+    async def _wait_for_interval(self) -> None:
         remaining_s = self._last_move_s + self._rules.min_interval_s - elapsed_s(self.clock)
         if remaining_s > 0:
             await self.clock.sleep(remaining_s)
 
-    def _free_axes(self, current: Pose, velocity: Velocity) -> Velocity:
-        """Return the velocity with zero for each axis that would pass a soft limit before it could stop."""
+    def _without_limited_axes(self, current: Pose, velocity: Velocity) -> Velocity:
+        """Return the velocity, with zero for each axis that would pass a soft limit before it could stop."""
         stopped = self._axes_beyond_limits(pose_after(current, velocity, STOPPING_S + _STEP_S))
         return Velocity(
             0.0 if "pan" in stopped else velocity.pan_dps,
@@ -239,7 +240,7 @@ class GuardedCamera(CameraWrapper):
         """Return the axes on which a pose is beyond a soft limit, except those that the device itself stops."""
         return set(self._limits.clamp(pose)[1]) - set(self.inner.info.limits.clamp(pose)[1])
 
-    def _free_time_s(self, current: Pose, velocity: Velocity, timeout_s: float) -> float:
+    def _permitted_time_s(self, current: Pose, velocity: Velocity, timeout_s: float) -> float:
         """Return how long the camera can be driven without passing a limit or entering a keep-out region, in seconds."""
         if not self._rules.keep_out and self._limits == self.inner.info.limits:
             return timeout_s

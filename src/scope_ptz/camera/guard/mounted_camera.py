@@ -1,4 +1,4 @@
-"""A wrapper for cameras mounted upside down or on a leaning base, which converts their poses and pictures to upright ones."""
+"""A camera wrapper that corrects poses and pictures for an upside-down mounting or a leaning base."""
 
 from __future__ import annotations
 

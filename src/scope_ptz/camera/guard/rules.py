@@ -103,7 +103,7 @@ class CameraRules(_Rules):
 
     Attributes:
         soft_limits: Limits that narrow the device's own limits.
-        keep_out: Regions at which the camera is not aimed and which are black in every frame.
+        keep_out: Regions that the camera does not aim at and that are black in every frame.
         masks: Rectangles that are black in every frame, for example to hide a text overlay.
         dead_zone_deg: Turns smaller than this are skipped, which reduces wear on the motors. Zooming is never skipped.
         min_interval_s: Minimum time in seconds between two moves. A move requested earlier has to wait.
@@ -133,7 +133,7 @@ class Mounting(_Rules):
 
 
 def nearest_outside(pose: Pose, regions: tuple[Region, ...], limits: Limits) -> Pose | None:
-    """Return the nearest permitted pose to a pose inside a region.
+    """Return the permitted pose nearest to a pose inside a region.
 
     The result is on an edge of the region, within the limits, and in no other region; None if there is no such pose. A pose outside
     all regions is returned unchanged.

@@ -181,7 +181,7 @@ async def _measure_response(camera: Camera, base: Pose, progress: Progress) -> _
         pair, turned = await _turn_and_match(camera, base, centre, reported, pan_deg, tilt_deg)
         turn_result = registration.rotation(pair, focal)
         rough.append(turn_result.angle_deg / (abs(turned) or 1.0))
-    # Choose the second turns so that the pictures overlap well however far the camera actually turns per commanded degree.
+    # Choose the large turns so that the pictures overlap well, however far the camera actually turns per commanded degree.
     pan_deg = min(LARGE_TURN * stated_deg / max(rough[0], 0.05), 3 * LARGE_TURN * stated_deg)
     tilt_deg = vertical_turn_deg(camera.info.limits, base, min(LARGE_TURN * stated_deg * 0.5 / max(rough[1], 0.05), 60.0))
     pairs = [
@@ -281,8 +281,8 @@ def _find_contradictions(
     for name, words, response in (("pan", ("right", "left"), pan), ("tilt", ("up", "down"), tilt)):
         if response.inverted:
             sentences.append(
-                f"{name.capitalize()} is inverted: when commanded to turn {words[0]}, the view turns {words[1]}. "
-                f"Correct the direction in the camera's settings, and check whether it is mounted upside down."
+                f"{name.capitalize()} is inverted: the camera was commanded to turn {words[0]}, but the view turned {words[1]}. "
+                f"Correct the direction in the camera's settings, and check whether the camera is mounted upside down."
             )
         elif f"{name} range" not in assumed and abs(response.scale - 1) > ANGLE_TOLERANCE:
             sentences.append(f"The camera {name}s {response.scale:.3f} degrees for each degree that it reports.")

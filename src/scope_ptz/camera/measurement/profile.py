@@ -35,7 +35,7 @@ class MeasuredField(_Record):
 class CalibrationRecord(_Record):
     """A calibration, with the pan and tilt ranges to which its scales refer.
 
-    ``replaces`` names the values that the driver only assumed, and which the measurements therefore replace.
+    ``replaces`` names the values that the measurements replace, because the driver only assumed them.
     """
 
     measured_at: str

@@ -97,7 +97,7 @@ class NetworkCamera(Camera):
         return None
 
     async def _axes_at_limits(self, reached: Pose, target: Pose) -> tuple[Axis, ...]:
-        """Return the axes that stopped at a limit which is not in ``info``.
+        """Return the axes that stopped at a limit that ``info`` does not include.
 
         Raises:
             PositionNotReachedError: No limit explains the camera's position.

@@ -80,7 +80,7 @@ class DevicePictures(ABC):
             await anyio.sleep(0.1)
 
     async def settling_picture(self, pose: Pose) -> NDArray[np.uint8]:
-        """Take a small picture of a camera that reports no motion, retaking it while it lags behind the motors.
+        """Take a small picture while the camera reports no motion, and retake it while it lags behind the motors.
 
         Raises:
             PictureError: The picture is damaged or frozen.

@@ -73,7 +73,7 @@ class DriveWatch:
             self._condition.notify_all()
 
     def stop_now(self) -> None:
-        """Make the thread send a stop immediately, without waiting for it."""
+        """Make the thread send a stop immediately. This call does not wait for the thread."""
         with self._condition:
             if self._deadline_s is not None:
                 self._deadline_s = monotonic()

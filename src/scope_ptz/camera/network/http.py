@@ -96,7 +96,7 @@ class DeviceHttp:
         return self._verify if isinstance(self._verify, ssl.SSLContext) else None
 
     def description(self) -> dict[str, object]:
-        """Return the values from which another process can create an equivalent client, including the password."""
+        """Return the values, including the password, from which another process can create an equivalent client."""
         address, account = self.address, self.credentials
         certificate = self._verify.certificate if isinstance(self._verify, PinnedContext) else None
         return {

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from scope_ptz.camera.network.streams import LiveStream
 
 FROZEN_PATIENCE_S = 2.0
-"""Maximum time in seconds for which the picture may lag behind the motors, for example because the encoder freezes it in a move."""
+"""Maximum time in seconds that the picture may lag behind the motors, for example because the encoder freezes during a move."""
 
 SILENT_S = 1.5
 """Seconds without a frame after which a stream counts as interrupted."""

@@ -74,8 +74,8 @@ async def wait_until_stationary(
 ) -> Pose:
     """Wait until the camera is stationary, and return its position.
 
-    At the target, a single reading without motion is enough. If the camera is not at the target, or there is none, it must remain
-    stationary for ``start_s`` seconds, or for two readings if there is no target and the camera has moved.
+    At the target, a single reading without motion is enough. Otherwise, the camera must remain stationary for ``start_s`` seconds,
+    or for two polling intervals if it has moved and there is no target.
 
     Args:
         read_pose: A function that reads the position.

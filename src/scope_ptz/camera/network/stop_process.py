@@ -75,8 +75,8 @@ class StopProcess:
             process.wait()
 
     def _start(self) -> subprocess.Popen[bytes]:
-        # The order contains the password. It is sent through the pipe, because other users can read command lines.
-        order = {
+        # The request contains the password. It is sent through the pipe, because other users can read command lines.
+        request = {
             "device": self._http.description(),
             "function": [self._stop.__module__, self._stop.__qualname__],
             "details": dict(self._details),
@@ -91,7 +91,7 @@ class StopProcess:
             env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
         )
         self._process = process
-        self._send(json.dumps(order).encode() + b"\n")
+        self._send(json.dumps(request).encode() + b"\n")
         return process
 
     def _send(self, line: bytes) -> None:
@@ -104,7 +104,7 @@ class StopProcess:
 
 
 def main() -> None:
-    """Read an order, wait until the parent process ends, and stop the camera if it may be moving."""
+    """Read a stop request, wait until the parent process ends, and stop the camera if it may be moving."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
@@ -116,17 +116,17 @@ def main() -> None:
         carry_out(json.loads(line))
 
 
-def carry_out(order: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
+def carry_out(request: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
     """Stop a camera, retrying until the command reaches it. Return False if it does not within ``give_up_s`` seconds."""
     from scope_ptz.camera.network.http import DeviceHttp
 
-    module, name = order["function"]
+    module, name = request["function"]
     stop: StopFunction = getattr(importlib.import_module(module), name)
-    http = DeviceHttp.from_description(order["device"])
+    http = DeviceHttp.from_description(request["device"])
     end_time_s, pause_s = time.monotonic() + give_up_s, 0.25
     while True:
         try:
-            stop(http, order["details"])
+            stop(http, request["details"])
         except CameraError:
             if time.monotonic() + pause_s > end_time_s:
                 return False

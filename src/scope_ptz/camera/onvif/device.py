@@ -148,7 +148,7 @@ def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") 
     """Return the profile to use for PTZ control and the profile to use for pictures.
 
     Only a profile with a PTZ configuration can control the camera, and on some devices only the substream's profile has one. By
-    default, pictures are taken from the smallest profile with the same video source that is wide enough.
+    default, pictures are taken from the smallest sufficiently wide profile with the same video source.
 
     Raises:
         CameraError: There is no suitable profile.

@@ -168,7 +168,7 @@ class OnvifLens:
 
 
 async def open_lens(client: OnvifClient, source: str) -> OnvifLens:
-    """Read a device's lens options, which are empty if it has no working imaging service."""
+    """Read a device's lens options and return its lens. The options are empty if it has no working imaging service."""
 
     async def read_options(operation: str) -> Any:
         try:

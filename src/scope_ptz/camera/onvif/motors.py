@@ -135,7 +135,7 @@ def _interpolate(fraction: float, ends: Ends) -> float:
 def _speed(
     value: float, top: float, space: ReportedSpace, axis_units: tuple[float, float] = (0.0, 1.0), *, axis: str = "x"
 ) -> float:  # fmt: skip
-    """Convert a velocity to a generic space, whose ends are the top speeds.
+    """Convert a velocity to a coordinate in a generic space, whose ends are the top speeds.
 
     The sign is inverted if the axis's units run in the opposite direction.
     """

@@ -117,7 +117,7 @@ async def open_pictures(
     rtsp_port: int | None,
     latency_s: float,
 ) -> OnvifPictures:
-    """Read the URLs of a device's pictures. URLs that point to another host are rewritten to the configured one.
+    """Read a device's picture URLs and return its pictures. URLs with another host are rewritten to the configured host.
 
     Args:
         client: The connection.

@@ -34,7 +34,7 @@ class OnvifPresets:
         self._client, self._profile = client, profile
 
     async def tokens(self) -> dict[str, str]:
-        """Return the tokens by preset name, in the device's order. If presets share a name, the token is appended to later ones."""
+        """Return the tokens by preset name, in the device's order. If presets share a name, later names include the token."""
         presets = await self._client.call("ptz", "GetPresets", ProfileToken=self._profile)
         tokens: dict[str, str] = {}
         for preset in list(presets or ())[:MAX_PRESETS]:

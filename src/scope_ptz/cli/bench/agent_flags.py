@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 AGENT_PANEL = "External agent"
 DEFAULT_MEMORY_MB, DEFAULT_STEP_S, DEFAULT_RUN_S = 4_096, 300.0, 1_800.0
-"""Default limits on external agents, copied from ``AgentOptions``, whose module only evaluations import."""
+"""Default limits on external agents. They are copied from ``AgentOptions``, so that help pages need not import its module."""
 
 
 @dataclass(frozen=True, kw_only=True)

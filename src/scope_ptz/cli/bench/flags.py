@@ -135,7 +135,7 @@ class SingleRunFlags(EvaluationFlags):
         typer.Option(
             "--progress",
             metavar="FOLDER",
-            help="Folder for files with the progress, for programs that follow the evaluation.",
+            help="Folder for progress files, for programs that follow the evaluation.",
             rich_help_panel=RUN_PANEL,
         ),
     ] = None

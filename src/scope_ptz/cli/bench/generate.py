@@ -29,7 +29,7 @@ def generate(
     model: Annotated[str, typer.Option(help="Name of the model on its server (default: the only one it lists).")] = "",
     key_file: Annotated[Path | None, typer.Option("--key-file", help="File with the server's key.")] = None,
     number: Annotated[
-        int, typer.Option("--n", min=1, help="Number of tasks, distributed over the categories like the published ones.")
+        int, typer.Option("--n", min=1, help="Number of tasks, distributed over the categories as in the published splits.")
     ] = 20,
     want: Annotated[
         list[str] | None, typer.Option("--want", metavar="CATEGORY=N", help="Number of tasks of a category, instead of --n.")
@@ -106,8 +106,8 @@ def _requested_counts(want: list[str], number: int) -> dict[Category, int]:
         return {name: n for name, n in counts.items() if n}
     counts_by_category: dict[Category, int] = {}
     for entry in want:
-        given, _, count = entry.partition("=")
-        category = next((name for name in QUOTAS if name == given), None)
+        category_name, _, count = entry.partition("=")
+        category = next((name for name in QUOTAS if name == category_name), None)
         if category is None or not count.isdecimal() or not int(count):
             raise InputError(
                 f"--want must have the form CATEGORY=N, for example counting=5; got '{entry}'. "

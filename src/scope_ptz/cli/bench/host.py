@@ -45,7 +45,7 @@ def host(
     tasks: Annotated[str, typer.Option("--tasks", help=f"Task file (JSONL), or split ({SPLITS}).")],
     key: Annotated[Path, typer.Option("--key", help="Private key that signs the results; see `scope bench keygen`.")],
     out: Annotated[
-        Path, typer.Option("--out", help="Folder of the host: tokens, journals, logs and submissions. It is resumed if it exists.")
+        Path, typer.Option("--out", help="Folder of the host: tokens, journals, logs and submissions. An existing one is resumed.")
     ],
     participant: Annotated[
         list[str] | None,
@@ -76,10 +76,10 @@ def host(
     max_steps: Annotated[int, typer.Option("--max-steps", min=1, help="Maximum number of steps of a run.")] = 60,
     step_time: Annotated[float, typer.Option("--step-time", min=1, help="Seconds that an agent may take for a step.")] = 300.0,
     task_time: Annotated[float, typer.Option("--task-time", min=1, help="Seconds that an agent may take for a task.")] = 1800.0,
-    until_done: Annotated[bool, typer.Option("--until-done", help="End when every participant has finished.")] = False,
+    until_done: Annotated[bool, typer.Option("--until-done", help="Exit when every participant has finished.")] = False,
     close: Annotated[
         bool,
-        typer.Option("--close", help="Do not listen. Count all tasks that have not ended as failed, sign the results, and end."),
+        typer.Option("--close", help="Do not listen. Count all unfinished tasks as failed, sign the results, and exit."),
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -138,7 +138,7 @@ async def _serve(opened: Host, access: Access, port: int, runs: int, until_done:
             put_json({"url": url, "participants": names, "runs": runs})
         else:
             put(f"Evaluating {', '.join(names)} on {runs} runs at {url}/api/v1/messages, and over MCP at {url}/mcp.")
-            put("Press Ctrl-C to stop. The same command resumes.")
+            put("Press Ctrl-C to stop. Running the same command again resumes.")
         sys.stdout.flush()
         finishing = asyncio.ensure_future(opened.finish(start=False))
         try:

@@ -157,7 +157,7 @@ class _LabelSession:
                 case "b":
                     return self._back(trial)
                 case "?":
-                    _put_modes()
+                    _print_modes()
                 case verb:
                     new_label = self._label(verb, command["mode"], (command["note"] or "").strip())
                     if new_label is not None:
@@ -170,7 +170,7 @@ class _LabelSession:
 
         if verb == "i" and mode is None:
             put("Give an error mode, for example i6:")
-            _put_modes()
+            _print_modes()
             return None
         if verb == "i":
             return Label(by=self.by, verdict="incorrect", error_mode=list(ErrorMode)[int(mode or 0) - 1], note=note)
@@ -192,7 +192,7 @@ class _LabelSession:
         return -1
 
 
-def _put_modes() -> None:
+def _print_modes() -> None:
     from scope_ptz.bench.judging.rubrics import mode_lines
 
     for line in mode_lines():

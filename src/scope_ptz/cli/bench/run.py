@@ -68,7 +68,7 @@ def run(
 
 
 def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) -> EvaluationResult:
-    """Run the evaluation, and show its progress in the terminal and, if ``files`` is given, in files in this folder."""
+    """Run the evaluation and show its progress in the terminal. If ``files`` is given, also write progress files to that folder."""
     from contextlib import closing
 
     from scope_ptz.cli.bench.progress import LiveProgress

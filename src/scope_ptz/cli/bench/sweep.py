@@ -31,7 +31,7 @@ PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the pair-name column
 class SweepServerFlags(ModelFlags):
     """Options for model servers that apply to all pairs.
 
-    The options of ``ModelFlags`` that name models are removed, because the models are named by the pairs.
+    The options of ``ModelFlags`` that name models are removed, because the pairs name the models.
     """
 
     planner: ClassVar[None] = None  # type: ignore[misc]

@@ -86,7 +86,7 @@ def calibrate(
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Measure a camera from its pictures: direction and scale of pan and tilt, field of view at each zoom, latency, settling time.
+    """Measure a camera from its pictures: pan and tilt direction and scale, field of view at each zoom, latency and settling time.
 
     The camera moves for a minute or two. The exit code is 1 if its pictures contradict the values that it reports.
     """
@@ -123,12 +123,12 @@ def _print_plan(camera: str, zooms: int, *, as_json: bool) -> None:
         plans.append(await plan_camera_calibration(camera, zooms=zooms))
 
     run_async(work)
-    plan, where = plans[0], plans[0].base.as_dict()
+    plan, start = plans[0], plans[0].base.as_dict()
     if as_json:
-        put_json({**asdict(plan), "base": where})
+        put_json({**asdict(plan), "base": start})
         return
     vertical = f"{abs(plan.tilt_deg):.0f} degrees {'up' if plan.tilt_deg > 0 else 'down'}"
-    put(f"A calibration of {plan.camera} would move it to {pose_text(where)}. From there, it would")
+    put(f"A calibration of {plan.camera} would move it to {pose_text(start)}. From there, it would")
     put(f"- turn by up to {plan.pan_deg:.0f} degrees to each side, and {vertical},")
     put(f"- zoom to {', '.join(f'{zoom:.2f}x' for zoom in plan.zooms)},")
     put("- and return to its initial pose. If the view shows too little detail, it would try up to three other directions.")

@@ -67,7 +67,7 @@ def serve(
         bool,
         typer.Option(
             "--prefetch/--no-prefetch",
-            help="Read all pictures at the start, which avoids stalls but needs more memory (default: on).",
+            help="Read all pictures at startup, which avoids stalls but needs more memory (default: on).",
         ),
     ] = True,
     https: Annotated[
@@ -171,16 +171,16 @@ def _print(
         for account in accounts:
             secret = f"password {account.password}" if account in generated else "password from SCOPE_VIRTUAL_CAMERA_PASSWORD"
             put(f"Account {account.name} ({account.role.name.lower()}), {secret}")
-        unsafe = "--insecure " if options.https else ""
-        sign_in = unsafe + (f"--digest --user {accounts[0].name} " if accounts else "")
-        in_url = f"{accounts[0].name}:PASSWORD@" if accounts else ""
+        insecure = "--insecure " if options.https else ""
+        sign_in = insecure + (f"--digest --user {accounts[0].name} " if accounts else "")
+        credentials = f"{accounts[0].name}:PASSWORD@" if accounts else ""
         url = cameras[0].url
         put("")
         put("Try:")
         put(f"  curl {sign_in}-o picture.jpg {url}/axis-cgi/jpg/image.cgi")
         put(f"  curl {sign_in}'{url}/axis-cgi/com/ptz.cgi?rpan=20'")
-        put(f"  ffplay {url.replace('://', f'://{in_url}')}/axis-cgi/mjpg/video.cgi")
-        put(f"  ffplay {(cameras[0].rtsp_url or '').replace('rtsp://', f'rtsp://{in_url}')}")
+        put(f"  ffplay {url.replace('://', f'://{credentials}')}/axis-cgi/mjpg/video.cgi")
+        put(f"  ffplay {(cameras[0].rtsp_url or '').replace('rtsp://', f'rtsp://{credentials}')}")
         if options.truth:
             put(f"  curl {sign_in}{url}/virtual/truth")
         put("")

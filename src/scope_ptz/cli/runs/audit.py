@@ -1,4 +1,4 @@
-"""``scope runs audit``: list the commands in audit logs, with who issued them and the moves that they caused."""
+"""``scope runs audit``: list the commands in audit logs, who issued them, and the moves that they caused."""
 
 from __future__ import annotations
 

@@ -159,7 +159,7 @@ async def plan_capture(camera: str, options: CaptureOptions) -> CapturePlan:
 
     async with await open_camera(camera, actor=_actor()) as opened:
         settings = capture_settings(opened.camera, options)
-        presets = _presets_in_reach(opened)
+        presets = _reachable_presets(opened)
         if presets is None:
             presets = [preset.name for preset in await opened.camera.presets()]
         zoom = close_up_zoom(settings)
@@ -183,7 +183,7 @@ async def _take(camera: str, work: Path, options: CaptureOptions, progress: Prog
         settings = capture_settings(opened.camera, options)
         session = CaptureSession(work, settings, datetime.now(UTC).isoformat(timespec="seconds"))
         if not session.is_complete:
-            await take_frames(opened.camera, session, progress, holder=actor, presets=_presets_in_reach(opened))
+            await take_frames(opened.camera, session, progress, holder=actor, presets=_reachable_presets(opened))
     return session
 
 
@@ -198,8 +198,8 @@ def _actor() -> str:
     return f"scope camera capture: {user_name()}"
 
 
-def _presets_in_reach(opened: OpenCamera) -> list[str] | None:
-    """Return the presets at the camera's viewpoint; None if the camera has no other viewpoints."""
+def _reachable_presets(opened: OpenCamera) -> list[str] | None:
+    """Return the presets at the camera's viewpoint; None, which means all presets, for a camera without a scene."""
     if opened.scene is None:
         return None
     file = opened.scene.file

@@ -88,11 +88,11 @@ async def open_network_camera(spec: CameraSpec, *, actor: str = "scope", for_mea
         for_measurement: Whether the camera is opened to be probed or calibrated. If so, stored measurements are ignored, and the
             driver may assume values that are not known yet.
 
-        Raises:
-            InputError: The spec or an option is invalid.
-            ConfigError: There is no password for the account.
-            ControlHeldError: Another program has control. The message names the holder if known.
-            CameraError: The camera cannot be reached, or rejects the credentials.
+    Raises:
+        InputError: The spec or an option is invalid.
+        ConfigError: There is no password for the account.
+        ControlHeldError: Another program has control. The message names the holder if known.
+        CameraError: The camera cannot be reached, or rejects the credentials.
     """
     from scope_ptz.camera.control import ControlLock
     from scope_ptz.camera.network.address import parse_address

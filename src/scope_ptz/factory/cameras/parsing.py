@@ -96,7 +96,7 @@ def frame_size(spec: CameraSpec) -> tuple[int, int]:
 
 
 def _has_credentials(scheme: str, address: str) -> bool:
-    """Return whether an address looks like ``user:password@host``. Scenes and Blender files, whose names may too, are exempt."""
+    """Return whether an address looks like ``user:password@host``. Scene and Blender file names may look similar and are exempt."""
     if scheme in BUILT_IN_SCHEMES and scheme not in NETWORK_SCHEMES and not address.startswith("//"):
         return False
     before, at, _ = address.rpartition("@")

@@ -166,7 +166,7 @@ _ABSENCE_BEGINNINGS = (
     "I cannot tell: there is no ",
     "I cannot tell: there are no ",
 )
-"""How answers begin that state that something is absent."""
+"""The beginnings of answers that report something as absent."""
 
 
 def _quote_list(phrases: Sequence[str]) -> str:

@@ -7,7 +7,8 @@ tolerance of a twentieth of the frame.
 - *near, next to, facing*: at most 4 m apart in the world, and neither is a part of the other.
 - *on, in, at, of*: a part of the other thing, or smaller, within its footprint and resting on or in it.
 - *on the left*: the centre lies in the left 40% of the frame; *in the left half*: in the left 50%; *in a corner*: in the 40% bands
-of both sides; *in the middle*: in the middle 40% across, without the top and bottom tenth.
+of both sides; *in the middle*: in the middle 40% horizontally, but not in the top or
+bottom tenth.
 - *in the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
 """
 

@@ -32,7 +32,7 @@ MAX_TIME_ERROR_S = 1.0
 """Maximum error of the exposure time that a driver reports, in seconds. The error is usually some tens of milliseconds."""
 
 MAX_TURN_DEG, MAX_ZOOM_DIFFERENCE = 2.0, 0.1
-"""Maximum angle difference in degrees, and maximum relative zoom difference, between a frame's pose and that at its exposure."""
+"""Maximum angle difference (degrees) and relative zoom difference between a frame's pose and the pose at its exposure."""
 
 
 class ServedPose(BaseModel):
@@ -66,7 +66,7 @@ class ServedOrigin(BaseModel):
 
 
 class TruthSource(Protocol):
-    """A source that supplies the origins of frames that lack one."""
+    """A source that supplies origins for frames that have none."""
 
     async def origin(self, frame: Frame) -> ServedOrigin:
         """Return a frame's origin, or raise ``PerceptionError``."""

@@ -125,7 +125,7 @@ TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal"
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
-"""Lower-case attribute values that mean that a thing lacks the attribute."""
+"""Lower-case attribute values of things that lack the attribute."""
 
 
 def canonical_form(word: str) -> str:
@@ -235,7 +235,7 @@ def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
 
 
 def all_true(answers: Iterable[bool | None]) -> bool | None:
-    """Return True if all answers are yes, False if any is no, and None if that is unknown."""
+    """Return True if all answers are True, False if any is False, and None otherwise."""
     result = list(answers)
     return False if False in result else None if None in result else True
 

@@ -90,7 +90,7 @@ def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
 
 
 def split_after_noun(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Split words into those up to the noun and those after the noun (a predicate, as in "gate open")."""
+    """Split words after the noun. The words after it form a predicate, as in "gate open"."""
     spans = nouns_in(words, view.nouns)
     if not spans:
         return (tuple(words[:-1]), tuple(words[-1:])) if len(words) > 1 else (tuple(words), ())
@@ -167,7 +167,7 @@ def _is_object(view: View, thing: Thing) -> bool:
 
 
 def _modifiers_hold(view: View, thing: Thing, others: Sequence[str]) -> bool:
-    """Return whether the other words in a phrase hold for a thing."""
+    """Return whether the words of a phrase other than its noun hold for a thing."""
     if not others:
         return True
     return (

@@ -26,7 +26,7 @@ _JUDGEMENT = re.compile(
 _OPINIONS = frozenset(
     {"wrong", "odd", "fancy", "amiss", "suspect", "weird", "nice", "interesting", "lost", "missing", "drunk", "hurt"}
 )
-"""Words for qualities that no picture states, although they are not only adjectives."""
+"""Words for qualities that no scene states. Words that can only be adjectives need not be listed."""
 
 
 def asks_for_judgement(question: str) -> bool:

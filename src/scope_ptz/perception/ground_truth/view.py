@@ -27,7 +27,7 @@ class Thing:
     """A visible instance.
 
     Attributes:
-        sighting: Where and how large the instance appears in the frame.
+        sighting: Position and size of the instance in the frame.
         low_m: Lowest corner of the instance's box in the world.
         high_m: Highest corner of that box.
         concepts: The instance's concept and all kinds that it belongs to.
@@ -101,7 +101,7 @@ class View:
         return {thing.id: thing for thing in self.things}
 
     def belongs(self, part: str, whole: str) -> bool:
-        """Return whether ``part`` is the instance ``whole`` or belongs to it, directly or not."""
+        """Return whether ``part`` is the instance ``whole`` or belongs to it, directly or indirectly."""
         current: str | None = part
         while current is not None:
             if current == whole:
@@ -237,9 +237,9 @@ def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Flo
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
     position = path_position(instance, time_s)
-    foot = np.zeros(3) if position is None else position.position_m
+    ground_point = np.zeros(3) if position is None else position.position_m
     width, depth, height = instance.size_m
-    return foot - np.array([width / 2, depth / 2, 0.0]), foot + np.array([width / 2, depth / 2, height])
+    return ground_point - np.array([width / 2, depth / 2, 0.0]), ground_point + np.array([width / 2, depth / 2, height])
 
 
 def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:

@@ -208,7 +208,7 @@ def _collect_locations(value: Any, depth: int = 0) -> Iterator[RawLocation]:
             return
         locations_by_item = [list(_collect_locations(inner, depth + 1)) for inner in value]
         for inner, locations in zip(value, locations_by_item, strict=True):
-            # If its siblings have coordinates, an object without any is malformed. It is kept without numbers, so that
+            # An object without coordinates is malformed if its siblings have some. It is kept without numbers, so that
             # ``locations_in_frame`` reports it as unusable.
             malformed = [RawLocation(())] if not locations and isinstance(inner, dict) and any(locations_by_item) else []
             yield from locations or malformed

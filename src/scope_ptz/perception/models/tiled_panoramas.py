@@ -20,10 +20,10 @@ MAX_CONCURRENT_TILES = 4
 """Maximum number of tiles that are processed concurrently."""
 
 SAME_POINT = 0.15
-"""Limit on the distance between two points in different tiles that mark the same object.
+"""Maximum distance between two points in different tiles that mark the same object.
 
-Horizontally, they may be a fifth of this number of panorama heights apart; vertically, this fraction of the height,
-divided by the panorama's ratio of width to height.
+The points may differ by ``SAME_POINT / 5`` of the panorama's height horizontally, and by ``SAME_POINT / (width / height)`` of its
+height vertically.
 """
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around

@@ -43,9 +43,9 @@ logger = logging.getLogger(__name__)
 Phase = Literal["stopped", "preparing", "offered", "turn", "working", "finished", "failed"]
 """The phases of an evaluation.
 
-"stopped": no worker is running. "preparing": the worker has not yet offered the next run. "offered": a run is waiting for a hello.
-"turn": it is the agent's turn. "working": the engine is processing the agent's message. "finished": every run has ended. "failed":
-the worker failed repeatedly.
+"stopped": no worker is running. "preparing": the worker has not yet offered the next run. "offered": a run is waiting for
+``hello``. "turn": it is the agent's turn. "working": the engine is processing the agent's message. "finished": every run has
+ended. "failed": the worker failed repeatedly.
 """
 MAX_RESTARTS = 3
 """A worker that has ended this many times without progress is not restarted."""
@@ -69,7 +69,7 @@ class Progress:
     """An evaluation's progress, as shown to its participant.
 
     Attributes:
-        phase: "ready" for the next hello, "your_turn", "wait", or "finished".
+        phase: "ready" for the next ``hello``, "your_turn", "wait", or "finished".
         runs: Number of runs; None until the worker has reported it.
         begun: Number of runs that have begun.
         last: The host's last message in the current run, for an agent that lost its connection.
@@ -146,7 +146,7 @@ class HostedEvaluation:
             NotYourTurnError: There is no run in progress, or an earlier message is still being processed.
             NotReadyError: The next run was not ready in time, or the worker has failed repeatedly.
         """
-        hello = _hello_of(line)
+        hello = _parse_hello(line)
         if hello is None:
             return await self._continue(line)
         if hello.protocol != PROTOCOL:
@@ -187,7 +187,7 @@ class HostedEvaluation:
             raise NotReadyError(BROKEN)
 
     async def _deliver(self, line: bytes) -> asyncio.Future[HostMessage]:
-        """Record a message, pass it to the worker, and return a future for the answer. The caller must hold the condition."""
+        """Record a message, pass it to the worker, and return a future for the answer. The caller must hold ``_changed``."""
         assert self._link is not None  # noqa: S101 - the worker offered the run
         text = line[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")
         self.journal.record(self._run, text)
@@ -292,8 +292,8 @@ class HostedEvaluation:
         self._task, self.phase = None, "preparing"
 
 
-def _hello_of(line: bytes) -> Hello | None:
-    """Parse a message as a hello. Return None if it is anything else."""
+def _parse_hello(line: bytes) -> Hello | None:
+    """Parse a message as ``hello``. Return None if it is any other message."""
     try:
         message = parse_agent_message(line)
     except PlannerError:

@@ -29,7 +29,7 @@ PARTICIPANTS_FILE = "participants.json"
 SEED_BYTES = 32
 NAME_DIGEST_CHARS = 8
 POLL_S = 0.5
-"""Seconds between checks whether all evaluations are finished."""
+"""Seconds between checks for evaluations that have finished."""
 
 
 class _State(BaseModel):
@@ -53,7 +53,7 @@ class Host:
     """Evaluates the participants in one folder.
 
     Args:
-        folder: The host's folder, with the secret seed, tokens, journals, logs and submissions. It is resumed if it exists.
+        folder: The host's folder, with the secret seed, tokens, journals, logs and submissions. An existing one is resumed.
         settings: The evaluation settings.
         key: Private key file for signing submissions.
         open_link: Function that starts a worker.
@@ -111,7 +111,7 @@ class Host:
         return self._evaluations[participant]
 
     async def finish(self, *, start: bool) -> None:
-        """Wait until every registered participant's evaluation is finished.
+        """Wait until every registered participant's evaluation has finished or failed.
 
         Args:
             start: Whether to start all evaluations instead of waiting for the participants to begin.

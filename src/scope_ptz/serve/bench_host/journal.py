@@ -1,7 +1,7 @@
 """A participant's journal: every message from the agent, written to disk before the engine receives it.
 
-After a host was killed, it resumes from the journal. For a run in progress, the recorded messages are sent to the engine again, and
-the agent continues where it stopped. No task is attempted twice.
+A host that was killed resumes from the journal when it is restarted. For a run in progress, the recorded messages are sent to the
+engine again, and the agent continues where it stopped. No task is attempted twice.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Received(_Entry):
 
 
 class Ended(_Entry):
-    """A run ended for the agent."""
+    """The agent's part in a run has ended."""
 
     type: Literal["ended"] = "ended"
     run: str
@@ -77,7 +77,7 @@ class Journal:
 
     @property
     def ended(self) -> int:
-        """Number of runs that have ended for the agent."""
+        """Number of runs in which the agent's part has ended."""
         return len(self._ended)
 
     def messages(self, run: str) -> tuple[str, ...]:
@@ -85,7 +85,7 @@ class Journal:
         return tuple(self._received.get(run, ()))
 
     def has_ended(self, run: str) -> bool:
-        """Return whether a run has ended for the agent."""
+        """Return whether the agent's part in a run has ended."""
         return run in self._ended
 
     def record(self, run: str, line: str) -> None:
@@ -94,7 +94,7 @@ class Journal:
         self._received.setdefault(run, []).append(line)
 
     def record_end(self, run: str) -> None:
-        """Record that a run has ended for the agent."""
+        """Record that the agent's part in a run has ended."""
         if run not in self._ended:
             self._write(Ended(run=run))
             self._ended.add(run)

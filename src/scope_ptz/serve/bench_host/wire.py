@@ -115,7 +115,7 @@ class MessageToAgent(_Part):
 
 
 class RunEnded(_Part):
-    """A run has ended for its agent."""
+    """The agent's part in a run has ended."""
 
     type: Literal["over"] = "over"
     run: str

@@ -36,7 +36,7 @@ _ERRORS = responses(404, 409, 503)
 
 
 class AddOnModel(BaseModel):
-    """A connection. ``connection`` is its id, which is part of the path in all further requests."""
+    """A connection to an add-on. ``connection`` is its id, which is part of the path in all further requests."""
 
     connection: str
 
@@ -154,18 +154,18 @@ def _one_line(text: str) -> str:
 async def _events(connection: AddOnConnection, closing: asyncio.Event) -> AsyncIterator[str]:
     yield ": connected\n\n"
     async with aclosing(connection.requests()) as requests:
-        following = asyncio.ensure_future(anext(requests, None))
-        ending = asyncio.ensure_future(closing.wait())
+        next_request = asyncio.ensure_future(anext(requests, None))
+        shutdown = asyncio.ensure_future(closing.wait())
         try:
             while True:
-                await asyncio.wait({following, ending}, return_when=asyncio.FIRST_COMPLETED)
+                await asyncio.wait({next_request, shutdown}, return_when=asyncio.FIRST_COMPLETED)
                 if closing.is_set() or connection.lost:
                     return
-                request = following.result()
+                request = next_request.result()
                 yield ": heartbeat\n\n" if request is None else f"event: request\ndata: {json.dumps(request)}\n\n"
-                following = asyncio.ensure_future(anext(requests, None))
+                next_request = asyncio.ensure_future(anext(requests, None))
         finally:
             connection.end()
-            for task in (following, ending):
+            for task in (next_request, shutdown):
                 task.cancel()
-            await asyncio.gather(following, ending, return_exceptions=True)
+            await asyncio.gather(next_request, shutdown, return_exceptions=True)

@@ -82,8 +82,8 @@ class EvaluationModel(BaseModel):
     """An evaluation.
 
     ``actor`` is the name of the client that started the evaluation, and ``resumed`` is the number of times that it was resumed.
-    ``message`` is the error message if the evaluation failed, and ``report_message`` that if writing the report failed; otherwise,
-    they are empty.
+    ``message`` is the error message if the evaluation failed. ``report_message`` is the error message if writing the report failed.
+    Otherwise, they are empty.
     """
 
     id: str

@@ -125,7 +125,7 @@ class _Watcher:
                 await self._send_state()
                 if picture is None:
                     continue
-                # Of the frames that arrive before the acknowledgement, only the newest is sent.
+                # Only the newest of the frames that arrive before the acknowledgement is sent.
                 if not self._acknowledged.is_set():
                     await asyncio.wait_for(self._acknowledged.wait(), ACK_TIMEOUT_S)
                     if picture is not self._station.live.newest:

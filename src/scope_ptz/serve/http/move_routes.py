@@ -97,7 +97,7 @@ async def home(station: StationDep, client: Operator) -> ArrivalModel:
 
 @router.post("/undo", responses=_ERRORS)
 async def undo(station: StationDep, client: Operator) -> ArrivalModel:
-    """Return to the view before the last command, which is a run, a tool call, a move or a drive."""
+    """Return to the view before the last command (a run, a tool call, a move or a drive)."""
     return ArrivalModel.of(await station.undo(client))
 
 

@@ -75,25 +75,25 @@ async def live_events(handle: RunHandle, after: int, closing: asyncio.Event) -> 
         closing: Set when the server shuts down, which ends the events.
     """
     async with aclosing(handle.events(after)) as events:
-        following = asyncio.ensure_future(anext(events, None))
-        ending = asyncio.ensure_future(closing.wait())
+        next_event = asyncio.ensure_future(anext(events, None))
+        shutdown = asyncio.ensure_future(closing.wait())
         try:
             while True:
-                done, _ = await asyncio.wait({following, ending}, timeout=HEARTBEAT_S, return_when=asyncio.FIRST_COMPLETED)
-                if following in done:
-                    event = following.result()
+                done, _ = await asyncio.wait({next_event, shutdown}, timeout=HEARTBEAT_S, return_when=asyncio.FIRST_COMPLETED)
+                if next_event in done:
+                    event = next_event.result()
                     if event is None:
                         return
                     yield sse(event.number, event.record)
-                    following = asyncio.ensure_future(anext(events, None))
-                elif ending in done:
+                    next_event = asyncio.ensure_future(anext(events, None))
+                elif shutdown in done:
                     return
                 else:
                     yield ": the run is in progress\n\n"
         finally:
-            for task in (following, ending):
+            for task in (next_event, shutdown):
                 task.cancel()
-            await asyncio.gather(following, ending, return_exceptions=True)
+            await asyncio.gather(next_event, shutdown, return_exceptions=True)
 
 
 async def stored_events(trace: Trace, after: int) -> AsyncIterator[str]:
@@ -119,7 +119,7 @@ def run_filter(*, since: datetime | None, until: datetime | None, rating: str | 
         **fields: Other fields of ``RunFilter``.
 
     Raises:
-        InputError: A time is outside the supported range, or the text is too long.
+        InputError: A time is outside the supported range, or the filter's text is too long.
     """
     ratings = {"good": 1, "bad": -1, None: None}
     try:
@@ -128,4 +128,4 @@ def run_filter(*, since: datetime | None, until: datetime | None, rating: str | 
                 time.timestamp()
         return RunFilter(since=since, until=until, rating=ratings[rating], **fields)  # type: ignore[arg-type]
     except (ValidationError, OverflowError, OSError, ValueError) as error:
-        raise InputError("A time in the filter is outside the supported range, or its text is too long.") from error
+        raise InputError("A time in the filter is outside the supported range, or the filter's text is too long.") from error

@@ -25,7 +25,7 @@ MAX_RESOURCE_BYTES = 760 * 1024
 
 PICTURE_WIDTH = 1280  # maximum width of a picture in a tool result, in pixels
 _QUALITIES = (85, 70, 55)  # JPEG qualities, tried in this order before the picture is made smaller
-_SHRINK = 0.8  # factor by which the width is reduced between attempts
+_SHRINK_FACTOR = 0.8  # factor by which the width is reduced between attempts
 
 UNTRUSTED_META = {"scope-ptz/untrusted": True}
 """Metadata for every picture, because text in a picture is not an instruction."""
@@ -44,7 +44,7 @@ def fitting_jpeg(image: NDArray[Any], max_bytes: int, width: int) -> bytes:
         for quality in _QUALITIES:
             if len(data := encode_jpeg(image, width, quality)) <= max_bytes or width <= 16:
                 return data
-        width = max(16, int(width * _SHRINK))
+        width = max(16, int(width * _SHRINK_FACTOR))
 
 
 def decode_picture(data: bytes) -> NDArray[Any]:

@@ -18,12 +18,12 @@ from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
 from scope_ptz.tools.registry import TOOLS
 
-PLANNER_ENDINGS = ("answered", "clarification", "refused")
+PLANNER_OUTCOMES = ("answered", "clarification", "refused")
 """Outcomes of runs that the planner itself ended."""
 
 
 MAX_STEPS = 64  # the report on a longer run contains only the last steps
-MAX_ARGUMENT_CHARS, MAX_REPORT_CHARS = 500, 1_000  # longer texts in a step are truncated
+MAX_ARGUMENT_CHARS, MAX_REPORT_CHARS = 500, 1_000  # longer text in a step is truncated
 
 
 class StepReport(BaseModel):
@@ -110,5 +110,5 @@ def _picture_names(calls: Sequence[Called]) -> list[str]:
 
 
 def perceives(tool: str) -> bool:
-    """Return whether texts in a tool's result may come from a picture. For an unknown tool, the result is True."""
+    """Return whether text in a tool's result may come from a picture. For an unknown tool, return True."""
     return tool not in TOOLS or TOOLS[tool].perceives

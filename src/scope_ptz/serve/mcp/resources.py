@@ -30,7 +30,7 @@ from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.rows import RunFilter
 
 LISTED_RUNS = 20
-"""Number of runs in the resource list, which contains the newest ones."""
+"""Maximum number of runs in the resource list. The newest ones are listed."""
 
 MAX_PICTURE_WIDTH = 8192  # in pixels, for panoramas
 

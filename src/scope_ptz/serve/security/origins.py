@@ -10,7 +10,7 @@ LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 def is_loopback(host: str) -> bool:
-    """Return whether a listening address can be reached from this machine only."""
+    """Return whether a listening address can be reached only from this machine."""
     try:
         return ip_address(host).is_loopback
     except ValueError:

@@ -47,7 +47,7 @@ class RateLimits:
 
     def __init__(self, rates: Mapping[Kind, Rate] | None = DEFAULT_RATES) -> None:
         self._rates = rates or {}
-        self._left: OrderedDict[tuple[str, Kind], tuple[float, float]] = OrderedDict()
+        self._remaining: OrderedDict[tuple[str, Kind], tuple[float, float]] = OrderedDict()
 
     def count(self, client: str, kind: Kind, name: str | None = None) -> None:
         """Count a request from a client, and refuse it if the client exceeds a limit.
@@ -69,11 +69,11 @@ class RateLimits:
 
     def _count(self, client: str, kind: Kind, rate: Rate) -> None:
         now_s = monotonic()
-        left, since_s = self._left.pop((client, kind), (float(rate.burst), now_s))
-        left = min(float(rate.burst), left + (now_s - since_s) * rate.per_s)
-        allowed = left >= 1.0
-        self._left[client, kind] = (left - 1.0 if allowed else left, now_s)
-        if len(self._left) > MAX_CLIENTS:
-            self._left.popitem(last=False)
+        remaining, since_s = self._remaining.pop((client, kind), (float(rate.burst), now_s))
+        remaining = min(float(rate.burst), remaining + (now_s - since_s) * rate.per_s)
+        allowed = remaining >= 1.0
+        self._remaining[client, kind] = (remaining - 1.0 if allowed else remaining, now_s)
+        if len(self._remaining) > MAX_CLIENTS:
+            self._remaining.popitem(last=False)
         if not allowed:
-            raise TooManyRequestsError(max(1.0, (1.0 - left) / rate.per_s))
+            raise TooManyRequestsError(max(1.0, (1.0 - remaining) / rate.per_s))

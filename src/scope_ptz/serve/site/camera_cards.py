@@ -23,7 +23,7 @@ Ability = Literal["move", "drive", "presets", "focus", "iris", "scene_time", "gr
 HealthState = Literal["connected", "ready", "failed"]
 
 CHECK_TIMEOUT_S = 20.0
-"""Time limit for a check in seconds. A camera that does not answer within it has failed."""
+"""Time limit for a check in seconds. A camera that does not answer within this time has failed."""
 
 CHECK_REUSE_S = 2.0
 """Seconds for which a check's result is reused, so that several pages can share one check."""
@@ -148,7 +148,7 @@ def _scene_abilities(scene: SceneFacts, *, has_camera_rules: bool) -> tuple[Abil
         ("move", True), ("drive", True), ("presets", True), ("scene_time", True),
         ("ground_truth", scene.has_truth), ("virtual_camera", not has_camera_rules),
     ]  # fmt: skip
-    return tuple(name for name, has in known if has)
+    return tuple(name for name, available in known if available)
 
 
 def _device_abilities(camera: Camera) -> tuple[Ability, ...]:
@@ -157,4 +157,4 @@ def _device_abilities(camera: Camera) -> tuple[Ability, ...]:
         ("move", True), ("drive", capabilities.drives), ("presets", capabilities.edits_presets),
         ("focus", bool(capabilities.focus)), ("iris", bool(capabilities.iris)), ("scene_time", scene_time(camera) is not None),
     ]  # fmt: skip
-    return tuple(name for name, has in known if has)
+    return tuple(name for name, available in known if available)

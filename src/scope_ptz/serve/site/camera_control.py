@@ -38,7 +38,7 @@ class CameraControl:
 
     A client that sends a command gets control if nobody has it. If another client has it (the holder), the client can ask for
     control, and the holder hands it over or keeps it. Control expires if the holder sends no commands, or if it closes its live
-    connection, so that a closed laptop or a closed browser does not block a camera. It cannot expire during a run.
+    connection, so that a closed laptop or a closed browser does not block a camera. Control cannot expire during a run.
 
     Args:
         camera: The camera's name.
@@ -51,7 +51,7 @@ class CameraControl:
         self._camera, self._busy, self._lease_s, self._absent_s = camera, busy, lease_s, absent_s
         self._holder: Client | None = None
         self._since = datetime.now(UTC)
-        self._used_s = 0.0
+        self._last_used_s = 0.0
         self._released = False
         self._connections: Counter[str] = Counter()
         self._absent_since_s: float | None = None
@@ -65,7 +65,7 @@ class CameraControl:
         """The client that has control; None if nobody has it."""
         now_s = monotonic()
         absent = self._absent_since_s is not None and now_s - self._absent_since_s > self._absent_s
-        expired = not self._busy() and (self._released or absent or now_s - self._used_s > self._lease_s)
+        expired = not self._busy() and (self._released or absent or now_s - self._last_used_s > self._lease_s)
         return None if expired else self._holder
 
     @property
@@ -80,7 +80,7 @@ class CameraControl:
 
     @contextmanager
     def live_connection(self, client: Client) -> Iterator[None]:
-        """Return a context in which a client has a live connection. Control expires soon after the holder's last one ends."""
+        """Return a context in which a client has a live connection. Control expires soon after the holder's last one closes."""
         self._connections[client.key] += 1
         if self._holder is not None and self._holder.key == client.key:
             self._absent_since_s = None
@@ -105,7 +105,7 @@ class CameraControl:
             raise NotInControlError(self._camera, holder.name)
         if holder is None:
             await self._hand_to(client, camera)
-        self._used_s, self._released, self._absent_since_s = monotonic(), False, None
+        self._last_used_s, self._released, self._absent_since_s = monotonic(), False, None
 
     async def ask(self, client: Client, camera: Camera) -> bool:
         """Take control if nobody has it; otherwise, ask the holder for it. Return whether the client now has control.
@@ -170,9 +170,9 @@ class CameraControl:
     async def _hand_to(self, client: Client, camera: Camera) -> None:
         await self._lock.aclose()
         self._holder = None
-        # The camera's own lock shows which client has control to other programs that use the same device.
+        # The camera's own lock shows other programs that use the same device which client has control.
         await self._lock.enter_async_context(camera.control(client.name))
-        self._holder, self._since, self._used_s, self._released = client, datetime.now(UTC), monotonic(), False
+        self._holder, self._since, self._last_used_s, self._released = client, datetime.now(UTC), monotonic(), False
         self._absent_since_s = None
         self._requests.pop(client.key, None)
         self.changes += 1

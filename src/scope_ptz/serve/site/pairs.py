@@ -28,7 +28,7 @@ HealthState = Literal["built_in", "ready", "unreachable", "not_configured"]
 class Models:
     """A pair's planner and perception backend, ready for use with one camera.
 
-    ``note`` is a sentence about the built-in perception that runs record; it is empty for a vision model.
+    ``note`` is a sentence about built-in perception, which is stored with each run; it is empty for a vision model.
     """
 
     planner: Planner

@@ -130,7 +130,7 @@ def site_cameras(names: Sequence[str], settings: ScopeSettings) -> dict[str, str
     """
     named = {name: name for name in named_cameras()}
     known = named | {name: f"sim:{name}" for name in list_scenes(scene_search(settings)) if name not in named}
-    if BLENDER_WINDOW in names:  # it works only with an add-on, so an empty list of names does not include it
+    if BLENDER_WINDOW in names:  # works only with an add-on, so it is served only if named
         known.setdefault(BLENDER_WINDOW, f"{BLENDER_WINDOW}:")
     for name in names:
         if name not in known:

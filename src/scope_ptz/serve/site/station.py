@@ -82,8 +82,8 @@ class Station:
         """The error from the last attempt to open the camera; None if that attempt succeeded."""
         self.visited: dict[str, Place] = {}
         """The position of each visited preset, by preset name. Not all cameras report their presets' poses."""
-        self._driven_s = -DRIVE_GROUP_S
-        self._commanded_s = monotonic()
+        self._last_drive_s = -DRIVE_GROUP_S
+        self._last_command_s = monotonic()
         self._returned = True
         self.running: RunHandle | None = None
         self.add_on = AddOnSlot()
@@ -147,7 +147,7 @@ class Station:
 
     @asynccontextmanager
     async def command(self, client: Client) -> AsyncIterator[Camera]:
-        """Return a context in which a client moves the camera. A later ``undo`` returns to the position before the context.
+        """Return a context in which a client moves the camera. A later ``undo`` returns to the position at entry.
 
         Raises:
             NotInControlError: Another client controls the camera.
@@ -162,7 +162,7 @@ class Station:
 
     def touch(self) -> None:
         """Record that the camera is in use."""
-        self._commanded_s, self._returned = monotonic(), False
+        self._last_command_s, self._returned = monotonic(), False
 
     async def remember(self) -> None:
         """Record the current position, so that ``undo`` can return to it."""
@@ -181,9 +181,9 @@ class Station:
             timeout_s: Seconds after which the camera stops.
         """
         camera = await self.require_control(client)
-        if monotonic() - self._driven_s > DRIVE_GROUP_S:
+        if monotonic() - self._last_drive_s > DRIVE_GROUP_S:
             await self.remember()
-        self._driven_s = monotonic()
+        self._last_drive_s = monotonic()
         await camera.drive(pan_dps, tilt_dps, zoom_rate, timeout_s=timeout_s)
 
     async def stop(self) -> None:
@@ -223,7 +223,7 @@ class Station:
         idle = self._idle
         while idle is not None:
             await anyio.sleep(min(1.0, idle.after_s / 2))
-            unused_s = monotonic() - self._commanded_s
+            unused_s = monotonic() - self._last_command_s
             if self._returned or self.running is not None or not self.is_open or unused_s < idle.after_s:
                 continue
             self._returned = True

@@ -13,7 +13,7 @@ from scope_ptz.simulator.mapping.tiles import Place, TileInView
 CELL_PX = 32  # side of a cell in pixels
 
 MARGIN_PX = 1.5
-"""A cell counts as inside or outside a tile only by this margin in pixels, because OpenCV rounds outlines when it fills them."""
+"""Minimum distance in pixels from a tile's edges to a cell that counts as inside or outside, because OpenCV rounds outlines."""
 
 Bools = NDArray[np.bool_]
 

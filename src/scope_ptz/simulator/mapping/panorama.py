@@ -43,9 +43,10 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
     """Return the pan of the image's centre and, for each node, its pan relative to the centre and its tilt, in degrees."""
     projection = grid.projection
     if isinstance(projection, Equirectangular):
-        fall = projection.bottom_tilt_deg - projection.top_tilt_deg
+        tilt_span_deg = projection.bottom_tilt_deg - projection.top_tilt_deg
         turn, tilt = np.meshgrid(
-            (grid.x / projection.width - 0.5) * projection.pan_span_deg, projection.top_tilt_deg + grid.y / projection.height * fall
+            (grid.x / projection.width - 0.5) * projection.pan_span_deg,
+            projection.top_tilt_deg + grid.y / projection.height * tilt_span_deg,
         )
         return projection.left_pan_deg + projection.pan_span_deg / 2, turn, tilt
     if isinstance(projection, Perspective):

@@ -120,13 +120,13 @@ class Tiles:
 def _shrink_polygons(corners: Floats) -> list[NDArray[np.int32] | None]:
     """Shrink quadrilaterals (n, 4, 2) about their centres, so that they stay inside the tiles after rounding."""
     middle = corners.mean(axis=1, keepdims=True)
-    sides, towards = np.roll(corners, -1, axis=1) - corners, middle - corners
-    across = np.abs(sides[..., 0] * towards[..., 1] - sides[..., 1] * towards[..., 0])
-    away = (across / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
-    inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(away, 1e-9))[:, None, None]
-    clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
-    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << POLYGON_SHIFT)).astype(np.int32)
-    return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
+    sides, to_middle = np.roll(corners, -1, axis=1) - corners, middle - corners
+    areas = np.abs(sides[..., 0] * to_middle[..., 1] - sides[..., 1] * to_middle[..., 0])
+    distances = (areas / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
+    inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(distances, 1e-9))[:, None, None]
+    in_range = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
+    rounded = np.rint((np.where(in_range[:, None, None], inset, 0.0) - 0.5) * (1 << POLYGON_SHIFT)).astype(np.int32)
+    return [polygon if is_in_range else None for polygon, is_in_range in zip(rounded, in_range.tolist(), strict=True)]
 
 
 def _edges(polygons: Sequence[NDArray[np.int32] | None], places: Sequence[Place]) -> Floats:

@@ -147,8 +147,8 @@ class NumberAtlas(Atlas):
         for top in range(0, slot.height, STRIP_PX):
             strip = picture[top : top + STRIP_PX]
             numbers = strip if self._decode is None else self._decode(strip)
-            beside = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
-            numbers = cv2.copyMakeBorder(numbers, 0, 0, border, border, beside)
+            side_border = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
+            numbers = cv2.copyMakeBorder(numbers, 0, 0, border, border, side_border)
             y = slot.y + top
             self._write(y, slot.x - border, numbers)
             if top == 0:

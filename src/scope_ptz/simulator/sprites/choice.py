@@ -14,7 +14,7 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import SceneActor, Sprite, Vec3
 
 SAME_HEADING_DEG = 15.0
-"""Maximum difference, in degrees, between an actor's heading and that in its sprite. Beyond it, the lighting is wrong."""
+"""Maximum difference, in degrees, between an actor's heading and its heading in a sprite. Beyond it, the lighting is wrong."""
 
 DEGREES_PER_OCTAVE = 6.0
 """A sprite rendered at half or twice the distance counts as if its viewing angle differed by this many degrees."""
@@ -148,8 +148,8 @@ def warp_matrix(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
     """
     width, length, height = actor.size_m
     sprite_box, current_box = (_project_box(aspect, length, width, height) for aspect in (stored, now))
-    stiff = STIFFNESS * float((sprite_box**2).sum()) * np.eye(2)
-    fitted = (current_box @ sprite_box.T + stiff) @ np.linalg.inv(sprite_box @ sprite_box.T + stiff)
+    regularization = STIFFNESS * float((sprite_box**2).sum()) * np.eye(2)
+    fitted = (current_box @ sprite_box.T + regularization) @ np.linalg.inv(sprite_box @ sprite_box.T + regularization)
     left, stretch, right = np.linalg.svd(fitted)
     return np.asarray(left @ np.diag(np.clip(stretch, 1 / MAX_STRETCH, MAX_STRETCH)) @ right)
 

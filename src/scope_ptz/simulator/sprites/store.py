@@ -197,6 +197,6 @@ def _premultiply(colour: NDArray[np.uint8], actor_pixels: NDArray[np.bool_]) -> 
         count += is_covered
     is_recoloured = count >= MIN_COVERED
     rows, columns = rows[is_recoloured], columns[is_recoloured]
-    inward = total[is_recoloured] / count[is_recoloured, None]
-    sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
+    nearby_colours = total[is_recoloured] / count[is_recoloured, None]
+    sheet[rows, columns, :3] = np.rint(nearby_colours * (alpha[rows, columns, None] / 255))
     return np.asarray(sheet)

@@ -152,7 +152,7 @@ class SentenceFrames:
         self.texts = texts
 
     def word(self, draft: TaskDraft, rng: random.Random, like: str | None = None) -> tuple[str, str] | None:
-        """Word a draft with one of the least used frames.
+        """Phrase a draft with one of the least used frames.
 
         Args:
             draft: The draft.

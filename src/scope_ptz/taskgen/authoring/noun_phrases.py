@@ -32,7 +32,7 @@ _COLOUR_SYNONYMS: dict[str, Wordings] = {
     "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
     "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
 }  # fmt: skip
-"""Plain colours, with other words for each."""
+"""Plain colours, with synonyms for each."""
 
 _PLAIN_COLOURS = {name: plain for plain, others in _COLOUR_SYNONYMS.items() for name in (plain, *others)}
 

@@ -237,10 +237,10 @@ def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedT
         things = truth.all_of(kind)
         if things is None or not 2 <= len(things) <= 9 or not is_complete_group(truth, kind):
             continue
-        for axis_name, which in (("leftmost", 0), ("rightmost", -1)):
+        for adjective, which in (("leftmost", 0), ("rightmost", -1)):
             end = find_outermost(truth, things, which)
             if end is not None and end.pixels >= min_pixels:
-                yield NamedThing(end, f"{axis_name} {everyday_name(category)}", kind, positional=True)
+                yield NamedThing(end, f"{adjective} {everyday_name(category)}", kind, positional=True)
         by_distance = sorted(things, key=lambda s: s.distance_m)
         if by_distance[1].distance_m > by_distance[0].distance_m * 1.2 and by_distance[0].pixels >= min_pixels:
             yield NamedThing(by_distance[0], f"nearest {everyday_name(category)}", kind, positional=True)

@@ -166,4 +166,4 @@ def _limit_per_type(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:
             ranks.append(seen[draft.answer_key])
             seen[draft.answer_key] += 1
         order = sorted(range(len(group)), key=ranks.__getitem__)
-        yield from (group[at] for at in order[:_MAX_PER_TYPE])
+        yield from (group[index] for index in order[:_MAX_PER_TYPE])

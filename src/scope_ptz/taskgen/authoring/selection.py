@@ -41,7 +41,7 @@ MAX_SAME_QUESTION = 2
 MAX_AT_ONE_POSITION: dict[Category, int] = {"descriptor": 3, "location": 3, "comparative": 5}
 """Maximum number of tasks whose correct answer has the same position among the question's options, not counting pairs.
 
-Across all categories, the correct answer has the same position in at most 3% of the tasks.
+Across all categories, no position holds the correct answer in more than 3% of the tasks.
 """
 
 _NO_LIMIT = 1000.0  # slack at which the limits on repeated questions, repeated answers and answer positions have no effect

@@ -56,7 +56,7 @@ def build_dataset(
         notify: Called with notes about progress and missing tasks.
 
     Returns:
-        True if every quota was met and every task was validated.
+        True if every quota was met and every split passed validation.
     """
     core = build(list(scenes.values()), seed, quotas, notify, can_answer)
     unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), can_answer, seed)

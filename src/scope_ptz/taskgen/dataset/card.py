@@ -20,7 +20,7 @@ GOLD, PROOF, AUDIT = "gold.jsonl.gz", "proof.json", "audit.json"
 _SPLIT_DESCRIPTIONS = {
     "core": "the tasks from which scores are computed",
     "lite": "a tenth of the core tasks, balanced over categories, scenes, difficulties and answers",
-    "lite1": "the first version of lite, not balanced over answers; logs of version 0.1.0 that state lite used these tasks",
+    "lite1": "the first version of lite, not balanced over answers; in logs of version 0.1.0, lite means these tasks",
     "paraphrase": "further wordings of core tasks",
     "reaction": "requests that require a clarifying question or a refusal",
     "unseen": "tasks in variations of the scenes, made by the same rules",
@@ -114,7 +114,7 @@ def _introduction_section(data: Dataset) -> Iterator[str]:
     yield (
         "- Everything is simulated: pictures by a path tracer without lens dirt or compression, with one lighting and weather per "
         "scene.\n"
-        "- Tasks with an uncertain answer are left out. This removes hard cases of real sites, such as crowds, half-hidden "
+        "- Tasks with an uncertain answer are left out. This removes hard cases at real sites, such as crowds, half-hidden "
         "objects, and objects on whose names or colours people disagree.\n"
         "- All instructions are in English. They come from varied sentence patterns of a single project.\n"
         "- Signs, vehicles and clothes are British and European.\n"
@@ -210,12 +210,13 @@ def _audit_section(data: Dataset) -> Iterator[str]:
         yield "No audit of this version has been made."
         return
     audit, by_id = data.audit, {task.id: task for task in data.splits["core"]}
-    right, of = audit.agreement_counts()
+    agreeing, answered = audit.agreement_counts()
     yield (
         "Readers saw only the instruction and the frames that the answer depends on. Tasks were sampled by category, scene and "
-        f"difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {right} of {of} answers agree "
-        f"with the expected value ({right / of:.1%}). Sampled tasks without an answer: {len(audit.rows) - of}."
-        if of
+        f"difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {agreeing} of {answered} "
+        f"answers agree with the expected value ({agreeing / answered:.1%}). Sampled tasks without an answer: "
+        f"{len(audit.rows) - answered}."
+        if answered
         else "No question was answered."
     )
     categories = sorted({row.category for row in audit.rows})

@@ -1,4 +1,4 @@
-"""Word correct and wrong answers for every type of expected answer. Validation uses them as the answers of runs."""
+"""Phrase correct and wrong answers for every type of expected answer. Validation uses them as the answers of runs."""
 
 from __future__ import annotations
 

@@ -203,8 +203,8 @@ def _solve_side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     side = place.truth.side(thing, 0 if draft.axis == "across" else 1)
     if side is None:
         raise DraftRejectedError(f"it is uncertain in which half the {singular_noun(kind)} is")
-    further = {"upper": ("top", "above"), "lower": ("bottom", "below")}
-    choice = Choice(value=names[side], options={name: further.get(name, ()) for name in names})
+    synonyms = {"upper": ("top", "above"), "lower": ("bottom", "below")}
+    choice = Choice(value=names[side], options={name: synonyms.get(name, ()) for name in names})
     evidence = evidence_view(place, choice, object_words(kind), [place.truth.item(thing, names[side])], whole=False)
     question = query_call(f"is the {singular_noun(kind)} in the {names[0]} or the {names[1]} half of the picture?", place)
     return _Solution(choice, (evidence,), (*place.calls, question), 1, ("frame", "sort:side"))

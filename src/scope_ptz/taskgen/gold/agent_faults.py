@@ -50,7 +50,7 @@ def replay(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting
 
 
 def _position_after(call: EpisodeCall, position: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
-    """Return the camera position after a call that begins at a different position from that in the original run."""
+    """Return the camera position after a call that starts from a different position than in the original run."""
     if not call.succeeded or call.name not in MOVING_TOOLS:
         return position
     if call.name == "go_to_preset":
@@ -129,9 +129,9 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         return None
     indices = list(range(len(episode.calls) - 1))
     rng.shuffle(indices)
-    for position in indices:
+    for index in indices:
         calls = list(episode.calls)
-        calls[position], calls[position + 1] = calls[position + 1], calls[position]
+        calls[index], calls[index + 1] = calls[index + 1], calls[index]
         if missing_in_order(task.behaviour.calls, calls) is not None:
             return replay(episode, calls, setting)
     return None

@@ -58,5 +58,5 @@ def matrix_lines(gold: Sequence[GoldRun]) -> Iterator[str]:
         )
     accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"
     yield f"{result.correct_modes} of {result.total} error modes are correct; {accepted}"
-    for task, fault, mode_in, reported in result.off_diagonal:
-        yield f"  {task}: {fault} ({mode_in}) was assigned the mode {reported}"
+    for task, fault, fault_mode, reported in result.off_diagonal:
+        yield f"  {task}: {fault} ({fault_mode}) was assigned the mode {reported}"

@@ -171,7 +171,7 @@ _DEVICE_DETAILS: Mapping[str, Any] = {
 
 
 def require_token(name: str, token: str | None, known: str, subcode: str) -> None:
-    """Check that a token is the only valid one.
+    """Check that a token equals the only valid one.
 
     Args:
         name: The type of object that the token identifies, used in the message.

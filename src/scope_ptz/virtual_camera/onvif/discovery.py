@@ -144,7 +144,7 @@ def _join(listener: socket.socket, interface: str) -> None:
 
 
 def _is_on_this_machine(client: Address) -> bool:
-    """Return whether a client is on this machine, in which case the route to its address starts at that address."""
+    """Return whether a client is on this machine: the route to a local address starts at that address."""
     try:
         return source_address(client) == client[0]
     except OSError:

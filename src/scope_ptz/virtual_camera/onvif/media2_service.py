@@ -1,4 +1,4 @@
-"""The ONVIF media2 service, which provides the same profiles as the media service, with the types of media2."""
+"""The ONVIF media2 service, which provides the same profiles as the media service but uses media2 types."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ STREAM_PATH = "/axis-media/media.amp"
 SNAPSHOT_PATH = "/axis-cgi/jpg/image.cgi"
 
 MULTICAST = {"Address": {"Type": "IPv4", "IPv4Address": "0.0.0.0"}, "Port": 0, "TTL": 1, "AutoStart": False}  # noqa: S104
-"""A placeholder multicast address, which the types require although there is no multicast stream."""
+"""A placeholder multicast address, which the message types require although there is no multicast stream."""
 
 
 @dataclass(frozen=True, slots=True)

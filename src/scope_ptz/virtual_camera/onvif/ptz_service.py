@@ -123,7 +123,7 @@ class PtzService:
         return {}
 
     def _sent_s(self, request: Request, *, latest: bool) -> float | None:
-        """Return the time at which a request was created in Unix seconds; None if the request does not include it.
+        """Return the time at which a request was created, in Unix seconds; None if the request does not include it.
 
         A time in the future is replaced with the current time. Otherwise, a stop from a client whose clock is fast would block
         other clients' moves.

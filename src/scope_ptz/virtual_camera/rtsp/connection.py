@@ -281,7 +281,7 @@ class RtspConnection:
         return Reply()
 
     async def _parameter(self, request: Request) -> Reply:
-        """Handle a request to get or set parameters. There are none, so only keep-alive requests, which name none, succeed."""
+        """Handle a request to get or set parameters. The camera has none, so only empty (keep-alive) requests succeed."""
         head = (self._session_header(self._session(request)),) if "session" in request.headers else ()
         if request.body:
             raise RefusedError(451)

@@ -38,7 +38,7 @@ _LIMITED_RANGE = 1
 
 @dataclass(frozen=True, slots=True)
 class ParameterSets:
-    """The sequence and picture parameter sets (SPS and PPS), which a decoder requires first, without start codes."""
+    """The sequence and picture parameter sets (SPS and PPS), without start codes. A decoder requires them before any picture."""
 
     sps: bytes
     pps: bytes

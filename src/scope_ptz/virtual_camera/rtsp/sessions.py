@@ -1,4 +1,4 @@
-"""A camera's RTSP sessions, with their owners, their timeouts and a maximum number."""
+"""A camera's RTSP sessions, which have owners and timeouts and are limited in number."""
 
 from __future__ import annotations
 

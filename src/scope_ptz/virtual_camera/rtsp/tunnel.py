@@ -45,7 +45,7 @@ class Tunnels:
         return self._readers[key]
 
     def close(self, reader: asyncio.StreamReader) -> None:
-        """Remove the tunnel with a reader, because its GET connection has ended. Unknown readers are ignored."""
+        """Remove a reader's tunnel after its GET connection has ended. Unknown readers are ignored."""
         self._readers = {key: other for key, other in self._readers.items() if other is not reader}
 
     async def receive(

@@ -168,7 +168,7 @@ def _window(
 
 
 def barn(*, width_m: float = 22.0, depth_m: float = 12.0, height_m: float = 5.2) -> Built:
-    """Build an open-fronted barn facing north, with timber above block walls, a rusty roof, and straw bales inside."""
+    """Build an open-fronted barn facing north, with boarded walls, a rusty roof, and straw bales inside."""
     wood = cladding_material("barn boards", (0.105, 0.080, 0.058), 0.15)
     rust = cladding_material("barn roof", (0.22, 0.125, 0.085), 0.25)
     w, d, h = width_m / 2, depth_m / 2, height_m

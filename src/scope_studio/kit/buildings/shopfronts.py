@@ -186,7 +186,7 @@ def _tiles(colour: str) -> bpy.types.Material:
 
 
 def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """Build the name board over a shop, at its height on the building. ``small`` is an optional small text at the right end."""
+    """Build the name board over a shop front, at its mounting height. ``small`` is an optional small text at the right end."""
     s = Solid(f"{name} sign")
     board = width_m - 2 * PILASTER_M - 0.04
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)

@@ -19,7 +19,7 @@ Rgb = tuple[float, float, float]
 
 
 def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
-    """Return the material of a distant lit window ("warm", "cool" or "dim"). It is brighter at the top and shows shadows."""
+    """Return the material of a distant, unevenly lit window ("warm", "cool" or "dim")."""
     name = f"lit window {tint} {strength:g}"
     existing = bpy.data.materials.get(name)
     if existing is not None:
@@ -44,7 +44,7 @@ def _panes(
     pane_height: float,
     pitch: float,
 ) -> None:
-    """Add rows of windows to the wall at ``y``, which faces +y. The fraction ``lit`` of them is lit, at random."""
+    """Add rows of windows to the wall at ``y``, which faces +y. A random fraction ``lit`` of them is lit."""
     dark = plain("evening glass", (0.020, 0.026, 0.036), 0.06)
     frame = plain("far frame", (0.10, 0.105, 0.11), 0.6)
     count = int((front_width - 1.0) / pitch)

@@ -234,7 +234,7 @@ def dark_pane() -> bpy.types.Material:
 
 
 def lit_pane() -> bpy.types.Material:
-    """Return the material of a lit window, with warm lamplight that is brightest below the middle."""
+    """Return the material of a lit window, with uneven warm lamplight."""
     existing = bpy.data.materials.get("lit pane")
     if existing is not None:
         return existing

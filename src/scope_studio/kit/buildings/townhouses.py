@@ -20,7 +20,7 @@ from scope_studio.kit.core.stage import Built
 Rgb = tuple[float, float, float]
 
 REVEAL_M = 0.17
-"""Depth in metres of the reveals of windows."""
+"""Depth in metres of the window reveals."""
 SLATE: Rgb = (0.085, 0.092, 0.105)
 CLAY: Rgb = (0.27, 0.105, 0.062)
 

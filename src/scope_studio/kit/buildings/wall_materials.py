@@ -64,7 +64,7 @@ def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Return the material of board-marked concrete, cast in layers 1.2 m high, with rain streaks and dirt near the ground."""
+    """Return the material of concrete cast in layers 1.2 m high, with rain streaks and dirt near the ground."""
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing
@@ -84,7 +84,7 @@ def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.34
 
 
 def stucco(name: str, colour: Rgb) -> bpy.types.Material:
-    """Return the material of painted render, with trowel marks, rain streaks under edges, and damp near the ground."""
+    """Return the material of painted render, with trowel marks, rain streaks, and damp near the ground."""
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing

@@ -1,4 +1,4 @@
-"""Materials of manufactured objects: painted metal, plastic, steel, reflective sheet, concrete, rubber, wood, canvas, lamps.
+"""Materials of manufactured objects: painted metal, plastic, steel, reflective sheeting, concrete, rubber, wood, canvas, lamps.
 
 Each function returns one material per colour, which is created on first use. Dirt and wear depend on object coordinates. Objects
 are modelled standing on z = 0, so that splashes appear near the ground. A random offset of the coordinates for each object makes
@@ -97,7 +97,7 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
 
 
 def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
-    """Return the material of retroreflective sheet: an even, slightly emissive colour with a faint cell pattern and dirt."""
+    """Return the material of retroreflective sheeting: an even, slightly emissive colour with a faint cell pattern and dirt."""
 
     def make(s: Shader) -> bpy.types.Material:
         cells = s.ramp(s.voronoi(s.object_coords(), 160.0, "DISTANCE_TO_EDGE"), 0.0, 0.12, 0.90, 1.0)

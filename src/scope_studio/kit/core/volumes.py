@@ -22,7 +22,7 @@ class Volume:
         self.faces: list[tuple[int, ...]] = []
 
     def rings(self, rows: Sequence[Sequence[Vec]]) -> None:
-        """Add a closed tube through rings, which must have equal numbers of points."""
+        """Add a tube through rings with equal numbers of points, closed at both ends."""
         base, n = len(self.points), len(rows[0])
         for row in rows:
             self.points += [tuple(p) for p in row]

@@ -166,7 +166,7 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
 
 
 def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
-    """Build a newspaper kiosk, 2.6 x 2.1 x 3.1 m, with angled front corners.
+    """Build a newspaper kiosk, 2.6 x 2.3 x 3.8 m, with an eight-sided roof and a striped awning.
 
     The counter and the newspaper racks face +y; the fascia is lettered on four sides.
     """
@@ -210,7 +210,7 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
 
 
 def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> Built:
-    """Build a newspaper headline board with a wire front on an A-frame, 0.62 x 0.95 m, facing +y."""
+    """Build a newspaper headline board on an A-frame, 0.66 x 1.0 m, facing +y."""
     s = Solid("headline board")
     with s.at(0, 0.18, 0.0, pitch=12.0):
         s.box((0.66, 0.03, 0.98), (0, 0, 0.52), paint("red", dirt=0.25), 0.01)

@@ -1,4 +1,4 @@
-"""Market produce: crates, the fruit, vegetables, bread and cheese that fill them, and price cards."""
+"""Market produce: crates, the fruit, vegetables, bread, cheese and fish that fill them, and price cards."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
 
 
 def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
-    """Return a function that adds a long vegetable or loaf in one of the colours, chosen at random."""
+    """Return a function that adds a long vegetable, loaf or fish in one of the colours, chosen at random."""
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
         k = rng.randrange(len(tints))

@@ -121,7 +121,7 @@ def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
 
 
 def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
-    """Build a headless mannequin on a stand, 1.55 m high. It wears a dress, or a coat if ``dress`` is false."""
+    """Build a headless mannequin on a stand, 1.5 m high. It wears a dress, or a coat if ``dress`` is false."""
     s = Solid(f"mannequin in {colour}")
     s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _goods_material("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
     v = Volume()

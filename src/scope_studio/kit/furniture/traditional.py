@@ -124,7 +124,7 @@ def planter(colours: Sequence[str], *, seed: int = 0, width_m: float = 1.1) -> B
 
 
 def parking_meter(title: str = "PAY HERE") -> Built:
-    """Build a pay-and-display machine, 1.7 m high, facing +y."""
+    """Build a pay-and-display machine, 1.7 m high, facing +y, with a "P" sign above it."""
     s = Solid("parking meter")
     body = paint("dark grey", dirt=0.2)
     s.box((0.30, 0.26, 1.45), (0, 0, 0.72), body, 0.02)

@@ -155,7 +155,7 @@ def _patches(
 
 
 def slab_material() -> bpy.types.Material:
-    """Return the material of weathered concrete paving with stains, and weeds in its joints, which are 5 m apart."""
+    """Return the material of weathered concrete paving with joints every 5 m, and dirt and weeds along its edges."""
     s = Shader("reserve concrete")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)

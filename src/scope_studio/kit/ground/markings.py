@@ -46,7 +46,7 @@ class Stencil:
 
 
 def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequence[Stencil] = ()) -> Value:
-    """Return a mask that is 1 where there is paint. Its edges are irregular by millimetres, and it has holes from wear."""
+    """Return a mask that is 1 where there is paint. Its edges waver by a few millimetres, and it has holes from wear."""
     place = _vector(s, u, v)
     ragged = s.ramp(s.noise(place, 9.0, detail=3.0), 0.3, 0.7, -0.014, 0.014)
     across = s.math("ADD", s.math("ABSOLUTE", u), ragged)

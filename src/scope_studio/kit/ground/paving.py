@@ -93,7 +93,7 @@ def flag_material(name: str = "pavement flags") -> bpy.types.Material:
 
 
 def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.types.Material:
-    """Return the material of granite setts, polished and darkened along the wheel tracks."""
+    """Return the material of worn granite setts, some of them in a warmer tone."""
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing

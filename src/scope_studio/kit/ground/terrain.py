@@ -64,7 +64,7 @@ def _smooth(value: float, low: float, high: float) -> float:
 
 
 def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]) -> bpy.types.Material:
-    """Return the material of the land: mown verges and worn ground near the road, and fields with hedgerows and woods beyond."""
+    """Return the material of the land: grass and worn ground near the road, and fields beyond."""
     s = Shader("land")
     p = s.position()
     x, y, _ = s.xyz(p)

@@ -22,7 +22,7 @@ Outline = Sequence[tuple[float, float]]
 
 
 def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
-    """Build a square of asphalt on z = 0 with sides of 2 ``half_m``, and with standing water along the ``gutters``."""
+    """Build a square of asphalt on z = 0, twice ``half_m`` wide, with standing water along the ``gutters``."""
     h = half_m
     sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])

@@ -29,7 +29,7 @@ WARM = (1.0, 0.80, 0.56)
 """Linear RGB colours of lamp light, by type of lamp."""
 
 DIMMED = ("paint ", "vehicle lamp", "sheet ")
-"""Name prefixes of slightly emissive materials, such as reflective sheet. Without dimming, they would look like lit lamps."""
+"""Name prefixes of slightly emissive materials, such as reflective sheeting. Without dimming, they would look like lit lamps."""
 
 
 class _WorldShader(Shader):
@@ -126,7 +126,7 @@ def lamplight(
 
 
 def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()) -> None:
-    """Finish the scene's materials: add evening haze, turn off unlit lamps, and exclude meshes from light sampling.
+    """Finish the scene's materials: add evening haze, dim materials that are not lamps, and exclude meshes from light sampling.
 
     Args:
         visibility_m: Distance in metres at which haze replaces 63% of an object's light.

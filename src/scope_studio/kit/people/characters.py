@@ -41,7 +41,7 @@ class _Appearance:
 
 
 def _random_appearance(random: Random, hair: str | None, woman_share: float) -> _Appearance:
-    """Return a random appearance: that of a woman with probability ``woman_share``. ``hair`` overrides the random hair colour."""
+    """Return a random appearance, a woman's with probability ``woman_share``. ``hair`` overrides the random hair colour."""
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
@@ -110,7 +110,7 @@ class _Outfit:
     """Clothes of a person. Only workers have a ``vest`` and a ``helmet``.
 
     ``top``, ``legs``, ``inner`` (a shirt under a jacket), ``glove``, ``vest`` and ``helmet`` are colours. ``style`` is the style of
-    the top, as in ``clothing.top``, and ``neck`` is its neck, as in ``figure.trunk``.
+    the top, as in ``clothing.top``, and ``neck`` is its neckline, as in ``figure.trunk``.
     """
 
     top: str
@@ -229,7 +229,7 @@ def worker(
     Args:
         helmet: Colour of the helmet, or None for no helmet.
         pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
-        holding: Name of a prop, a key of ``PROP_BUILDERS``, that replaces the default prop of the pose.
+        holding: Prop that replaces the default prop of the pose; a key of ``PROP_BUILDERS``.
         stance: A pose that replaces ``pose``.
     """
     random = Random(f"worker {seed}")
@@ -256,7 +256,7 @@ def pedestrian(
 ) -> Built:
     """Build a pedestrian in everyday clothes.
 
-    Colours are names. Those that are None are chosen at random from ``seed``. ``stance`` is a pose that replaces ``pose``.
+    Colours are names; None means a random colour, determined by ``seed``. ``stance`` is a pose that replaces ``pose``.
     """
     random = Random(f"pedestrian {seed}")
     appearance = _random_appearance(random, hair, 0.5)

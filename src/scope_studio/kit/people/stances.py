@@ -39,14 +39,14 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
 
 
 def with_umbrella(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a standing pose, or with a gait phase a walking pose, with the right hand at ``UMBRELLA_GRIP``."""
+    """Return a standing pose, or a walking pose if a gait phase is given, with the right hand at ``UMBRELLA_GRIP``."""
     random = Random(f"umbrella {seed}")
     base = standing(random) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, drop=-0.9)
 
 
 def leading(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Return a standing pose, or with a gait phase a walking pose, with the right hand at ``LEAD_GRIP``."""
+    """Return a standing pose, or a walking pose if a gait phase is given, with the right hand at ``LEAD_GRIP``."""
     base = standing(Random(f"lead {seed}")) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=LEAD_GRIP, drop=-0.9)
 

@@ -16,15 +16,15 @@ from scope_studio.kit.core.stage import Built
 WHEEL_M = 0.345
 """Radius of the wheels in metres."""
 REAR: Point = (0.0, -0.52, WHEEL_M)
-"""Hub of the rear wheel in metres."""
+"""Position of the rear hub in metres."""
 FRONT: Point = (0.0, 0.54, WHEEL_M)
-"""Hub of the front wheel in metres."""
+"""Position of the front hub in metres."""
 CRANK: Point = (0.0, -0.08, 0.29)
-"""Axle of the cranks in metres."""
+"""Position of the crank axle in metres."""
 CRANK_M = 0.165
 """Length of a crank in metres."""
 SADDLE: Point = (0.0, -0.27, 0.96)
-"""Top of the saddle in metres."""
+"""Position of the top of the saddle in metres."""
 GRIP: Point = (0.27, 0.24, 1.05)
 """Position of the right hand in metres. The left hand is its mirror image."""
 

@@ -14,7 +14,7 @@ DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark g
 
 
 def lettering_colour(colour: str) -> str:
-    """Return the colour of lettering that is easiest to read on a paint."""
+    """Return the lettering colour that is easiest to read on a paint colour."""
     return "white" if colour in DARK_PAINTS else "dark blue"
 
 

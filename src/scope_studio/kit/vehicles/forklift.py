@@ -76,7 +76,7 @@ def _wheels(s: Solid) -> None:
 
 
 def _mast(s: Solid, fork_m: float) -> None:
-    """Add the mast: rails, cross bars, lift chains, a carriage with a backrest, and two forks."""
+    """Add the mast: rails, cross bars, lift cylinders, a carriage with a backrest, and two forks."""
     dark, iron = paint("dark grey", dirt=0.35), steel(dark=True)
     lift = max(0.0, fork_m - 1.4)
     for x in (-0.36, 0.36):

@@ -108,7 +108,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
 
 
 def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False) -> None:
-    """Add a lorry wheel. It curves outwards with a projecting hub or, if ``twin``, inwards (for driven axles)."""
+    """Add a lorry wheel. Its disc bulges outwards with a projecting hub or, if ``twin``, inwards (for driven axles)."""
     outer, rim = parts.matrix.copy(), radius * 0.60
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)

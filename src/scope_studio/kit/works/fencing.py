@@ -53,7 +53,7 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
 def gate(is_open: bool = False) -> Built:
     """Build a double site gate, 6.2 m between posts and 2.2 m high.
 
-    If closed, the leaves are along x; with ``is_open``, they are turned back towards -y.
+    If closed, the leaves are along x; with ``is_open``, they are swung open towards -y.
     """
     s = Solid("site gate")
     leaf = 3.0

@@ -140,7 +140,7 @@ def pipe_stack(colour: str = "orange", *, length: float = 6.0) -> Built:
 
 
 def cement_bags() -> Built:
-    """Build paper bags of cement on a pallet, plump and slightly skewed, one layer short."""
+    """Build paper bags of cement on a pallet, plump and slightly skewed, with an incomplete top layer."""
     s = Solid("cement bags")
     _pallet(s)
     paper = cloth("light grey", 0.85)

@@ -41,7 +41,7 @@ def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_l
 
 
 def ladder(length_m: float = 5.0, lean_deg: float = 14.0) -> Built:
-    """Build an aluminium ladder with its rungs along x and its feet at the origin, leaning back towards -y."""
+    """Build a metal ladder with its rungs along x and its feet at the origin, leaning back towards -y."""
     s = Solid("ladder")
     metal = steel()
     with s.at(pitch=lean_deg):

@@ -20,7 +20,7 @@ PAINT_M = 0.004
 
 
 def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Material:
-    """Return the material of worn asphalt: oil stains, tyre marks, repair seams, cracks, and damp hollows that reflect the sky."""
+    """Return the material of worn asphalt with oil stains, cracks, and damp hollows that reflect the sky."""
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing
@@ -42,7 +42,7 @@ def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Mater
 
 
 def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Material:
-    """Return the material of concrete slabs with sealed joints, rust and oil stains, and dark arcs from turning tyres."""
+    """Return the material of concrete slabs with sealed joints, dark stains, tyre marks and damp hollows."""
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing

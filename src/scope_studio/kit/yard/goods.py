@@ -242,7 +242,7 @@ def wheelie_bin(colour: str = "green", *, is_open: bool = False, label: str | No
 
 
 def carton(*, seed: int = 0, is_open: bool = False) -> Built:
-    """Build a cardboard box, 0.5 m, taped shut or with its flaps up."""
+    """Build a cardboard box, about 0.5 m wide, taped shut or with its flaps up."""
     s = Solid("cardboard box")
     rng = random.Random(f"carton {seed}")
     skin = plain(f"loose carton {seed % 2}", ((0.36, 0.235, 0.125), (0.42, 0.29, 0.17))[seed % 2], 0.85)

@@ -20,7 +20,7 @@ FENCE_M = 3.0
 
 
 def yard_bollard(colour: str = "yellow") -> Built:
-    """Build a bollard, 1.0 m high: a steel tube set in concrete, with a black band and scratches near the ground."""
+    """Build a bollard, 1.0 m high: a steel tube set in concrete, with a black band and dirt near the ground."""
     s = Solid("bollard")
     skin = paint(colour, dirt=0.45)
     s.lathe([(0.084, -0.02), (0.084, 0.62)], skin, steps=24)

@@ -17,7 +17,7 @@ GATEHOUSE_M = (3.0, 2.4, 2.7)
 
 
 def gatehouse(name: str = "SECURITY") -> Built:
-    """Build a guard's cabin with windows on all sides. Its lit room has a desk, screens, a chair, a key cabinet and a clock."""
+    """Build a guard's cabin with windows on all sides. Its lit room has a desk, screens and a key cabinet."""
     s = Solid("gatehouse")
     width, depth, height = GATEHOUSE_M
     w, d = width / 2, depth / 2
@@ -166,9 +166,9 @@ def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
 
 
 def charge_point(state: str = "green", *, number: str = "") -> Built:
-    """Build an electric charge post, 1.4 m high, with a cable, its number, and a ring lamp.
+    """Build an electric charge post, 1.5 m high, with a cable, its number, and a status lamp.
 
-    The ring is "green" (free), "red" (busy) or "unlit".
+    The lamp is "green" (free), "red" (busy) or "unlit".
     """
     s = Solid("charging point")
     s.box((0.40, 0.34, 0.06), (0, 0, 0.03), concrete(light=False), 0.01)

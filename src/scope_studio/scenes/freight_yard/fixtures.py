@@ -1,4 +1,4 @@
-"""Freight yard: the gate and gatehouse, fences, shelters, charge points, and number plates of the bays."""
+"""Freight yard: the gate and gatehouse, fences, shelters, charge points, and bay number signs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Highway works: vehicles in the open lanes, at the works and in the freight yard, and the moving actors."""
+"""Highway works: vehicles in the open lanes, at the works and in the lorry park, and the moving actors."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ def call_id(step: int, index: int) -> str:
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """Convert the outcome of a call to a message for the planner whose metadata contains the outcome."""
+    """Convert the outcome of a call to a message for the planner, with the outcome in its metadata."""
     content: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
         content += _picture_content(outcome.picture)

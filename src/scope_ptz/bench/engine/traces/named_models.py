@@ -14,7 +14,7 @@ from scope_ptz.builtin_names import DETERMINISTIC, NOISY_SOURCE
 
 
 def models_of(stored_run: StoredRun) -> tuple[str, str]:
-    """Return the names of planner and perception in the first line of a trace; empty names if the line cannot be read."""
+    """Return the planner and perception names in the first line of a trace; empty names if the line cannot be read."""
     try:
         started = json.loads(stored_run.trace.partition("\n")[0])
         return str(started["planner"]), str(started["perception"])
@@ -26,7 +26,7 @@ def card_contradictions(models: Sequence[tuple[str, str]], card: RunCard) -> Ite
     """Yield a sentence for each role in which the card names a model but traces name a built-in component, or vice versa.
 
     Args:
-        models: The names of planner and perception in each trace.
+        models: The planner and perception names in each trace.
         card: The run card.
     """
     for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):

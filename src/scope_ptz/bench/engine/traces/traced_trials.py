@@ -134,7 +134,7 @@ def cached_trial(
 
 
 def _score_findings(trial: Trial, scores: Mapping[str, Any]) -> Iterator[LogFinding]:
-    """Yield a finding if the log's latest score that was computed by checks differs from the recomputed trial."""
+    """Yield a finding if the log's latest score by the checks differs from the recomputed trial."""
     score = next((s for s in reversed(list(scores.values())) if TRIAL in (s.get("metadata") or {})), None)
     if score is None or trial.scored_by == "judge":
         return

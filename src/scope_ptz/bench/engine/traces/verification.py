@@ -122,7 +122,7 @@ async def verify_run(run: RunToVerify, context: VerificationContext) -> RunVerif
 
 
 def _perception(trace: Trace, context: VerificationContext) -> tuple[Perception | None, str]:
-    """Return the perception backend for recomputing replies (None for a model), and the reason if the trace is not verifiable."""
+    """Return the perception backend for recomputing replies (None for a model), and the reason if the trace cannot be verified."""
     started = trace.started
     if not started.simulated:
         return None, "the run used a camera that is not simulated"

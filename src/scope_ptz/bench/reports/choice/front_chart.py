@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.collections import PathCollection
 
 MARKERS = "os^Dvph"
-"""Marker shapes for perception models, so that they differ not only in colour."""
+"""Marker shapes for perception models, so that they do not differ only in colour."""
 MIN_AREA, AREA_PER_GB = 60.0, 2.6
 """Marker area in square points: ``MIN_AREA`` plus ``AREA_PER_GB`` for each GB of memory."""
 SIZE_EXAMPLES_GB = (10, 40, 160)
@@ -154,7 +154,7 @@ def _title(complete: Sequence[tuple[int, Candidate]], has_bar: bool) -> str:
         parts.append("Dashed edge: timed under contention")
     if not has_bar:
         fastest = min(c.latency_s or 0.0 for _, c in complete)
-        parts.append(f"The 2 Hz bar (0.5 s) is left of the picture: the fastest turn takes {fastest:.1f} s")
+        parts.append(f"The 2 Hz bar (0.5 s) is off the left edge of the chart: the fastest turn takes {fastest:.1f} s")
     return ". ".join(parts)
 
 

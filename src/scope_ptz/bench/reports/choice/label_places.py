@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LABEL_HALF_PT = (7.0, 6.0)
-"""Half of the width and height of a two-digit label, in points."""
+"""Half the width and half the height of a two-digit label, in points."""
 DIRECTIONS, DISTANCES_PT = 16, (9.0, 15.0, 22.0, 30.0)
 """Label positions to try around a marker: the number of directions, and the distances from the marker's edge in points."""
 

@@ -1,4 +1,4 @@
-"""The section on difficulty: whether tasks in harder classes are solved less often, and classes by item statistics."""
+"""The section on difficulty: a check that harder classes are solved less often, and classes from item statistics."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ def _hybrid_table(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 TimedPair = tuple[ReportRun, ReportRun]
-"""The run of a pair with the most tasks, and the run from which its latency is taken, which may be the same."""
+"""A pair's run with the most scored trials, and the run from which its latency is taken. They may be the same."""
 
 
 def _planner_table(pairs: Sequence[TimedPair]) -> ReportTable:

@@ -1,4 +1,4 @@
-"""Answer parsed questions about a view. An answer is a short English sentence and a flag that states whether it is known."""
+"""Answer parsed questions about a view. Each answer is a short English sentence with a flag ``known``."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def answer_how_far(view: View, question: tree.HowFar) -> TruthAnswer:
 
 
 def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer:
-    """Answer which of two kinds is more or less frequent, or whether a stated comparison between their numbers is true."""
+    """Answer which of two kinds is more or less numerous, or whether a stated comparison between their numbers is true."""
     if not question.second.phrases:
         return unknown_answer("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
@@ -162,11 +162,11 @@ def answer_count_kinds(view: View, question: tree.CountKinds) -> TruthAnswer:
     """Answer how many different colours or kinds there are among things."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
-    many = "" if len(values) == 1 else "s"
+    suffix = "" if len(values) == 1 else "s"
     anything = question.what.phrases[0].words == ("thing",)
     of = "" if anything else f" of {noun_phrase(view, question.what)}"
     listed = f": {english.listing(list(values))}" if values else ""
-    return known_answer(f"I can see {len(values)} {'colour' if colour else 'kind'}{many}{of}{listed}")
+    return known_answer(f"I can see {len(values)} {'colour' if colour else 'kind'}{suffix}{of}{listed}")
 
 
 def _kind(thing: Thing, colour: bool) -> str | None:
@@ -174,7 +174,7 @@ def _kind(thing: Thing, colour: bool) -> str | None:
 
 
 def answer_most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
-    """Answer with the most or least frequent colour or kind."""
+    """Answer with the most or least common colour or kind."""
     matches = find(view, question.what)
     if not matches:
         return unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")

@@ -48,7 +48,7 @@ _PLATE_WORDS = {words for noun in ("plate", "plates") for words in (("number", n
 
 
 def _is_speed_limit(view: View, text: TextSighting) -> bool:
-    """Return whether a text is a speed limit: either the scene states so, or the text is a multiple of ten on a sign."""
+    """Return whether a text is a speed limit: either the scene says so, or the text is a multiple of ten on a sign."""
     owner = view.instances[text.text.parent]
     content = text.text.text.strip()
     if "signal" in owner.attributes:

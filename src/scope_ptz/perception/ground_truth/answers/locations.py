@@ -38,7 +38,7 @@ _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
 def answer_where(view: View, question: tree.Where) -> TruthAnswer:
-    """Answer a question about where the things that match a description are."""
+    """Answer where the things that match a description are."""
     matches = find(view, question.what)
     if not matches:
         return known_answer(none_in_view(view, question.what))
@@ -93,7 +93,7 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
         return known_answer(none_in_view(view, missing))
     description = add_tests(question.what, question.tests)
     matches = find(view, description)
-    bearer = _sign_in_question(question)
+    bearer = _text_bearer(question)
     bearers = [] if bearer is None else find(view.for_reading(), bearer)
     if bearers and (not matches or any("sign" in thing.concepts and thing.texts for thing in bearers)):
         return answer_read(view, tree.Read(bearer))
@@ -102,8 +102,8 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
     return answer_matches(view, question.tests, _sort_by_nearness(view, question.tests, matches))
 
 
-def _sign_in_question(question: tree.What) -> tree.Description | None:
-    """Return the sign that "what is on the sign?" refers to; None for other questions."""
+def _text_bearer(question: tree.What) -> tree.Description | None:
+    """Return the thing, such as a sign, that "what is on the sign?" refers to; None for other questions."""
     match question:
         case tree.What(
             what=tree.Description(phrases=(tree.Phrase(words=("thing",)),)), tests=(tree.Relation(kind="on", other=other),)
@@ -129,7 +129,7 @@ def _answer_listed(view: View, question: tree.What) -> TruthAnswer:
 
 
 def _answer_no_match(view: View, question: tree.What, description: tree.Description) -> TruthAnswer:
-    """Answer if nothing matches: with a fact that the scene states ("which lane is closed?"), otherwise that nothing matches."""
+    """Answer if nothing matches: with a fact that the scene states ("which lane is closed?"), or by saying that nothing matches."""
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
         return answer_fact_in_view(view, (*question.what.phrases[0].words, *state_words))
@@ -139,7 +139,7 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
 
 
 def _sort_by_nearness(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> list[Thing]:
-    """Sort things by their distance from the things that the relations refer to, if there are any."""
+    """Sort things by their distance from those that the relations in ``tests`` refer to. Without relations, keep the order."""
     anchors = [a for t in tests if isinstance(t, tree.Relation) for a in find(view, t.other)]
     return sorted(matches, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else matches
 

@@ -61,7 +61,7 @@ def answer_price(view: View, question: tree.Price) -> TruthAnswer:
     belonging = _panels(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
     has_tests = any(phrase.tests for phrase in question.what.phrases)
     candidates = belonging if has_tests and belonging else _panels(view)
-    # A card or a line that names the goods says more than any other text on the same stall or crate.
+    # A card or line that names the goods takes precedence over other texts on the same stall or crate.
     panels = [p for p in candidates if any(words <= p.words for words in goods)]
     prices = list(dict.fromkeys(price for panel in panels for price in _prices_on(panel, goods)))
     if not prices and not any(words <= _words(p.name) for p in panels for words in goods):
@@ -79,7 +79,7 @@ def answer_price(view: View, question: tree.Price) -> TruthAnswer:
 
 
 def _prices_on(panel: _Panel, goods: Sequence[frozenset[str]]) -> list[tuple[str, str]]:
-    """Return labels and prices on a panel. In a list of several goods, only lines that name the goods count."""
+    """Return the labels and prices for goods on a panel. Lines of a price list count only if they name the goods."""
     lines = [(line, prices[0]) for line in panel.legible if (prices := _PRICE.findall(line))]
     label = " ".join(line.lower() for line in panel.legible if not _PRICE.search(line))
     if len(lines) == 1 and lines[0][0].strip() == lines[0][1]:
@@ -118,7 +118,7 @@ def _illegible(panels: Sequence[_Panel], what: str) -> TruthAnswer | None:
 
 
 def _panels(view: View, includes: Callable[[str], bool] = lambda _: True) -> list[_Panel]:
-    """Return the texts in view by the thing that they are on, for the things whose id is included."""
+    """Return the texts in view, grouped by the thing that they are on. ``includes`` selects things by id."""
     parents = dict.fromkeys(t.text.parent for t in view.texts if includes(t.text.parent))
     return [_Panel(view.instances[parent].name, tuple(t for t in view.texts if t.text.parent == parent)) for parent in parents]
 

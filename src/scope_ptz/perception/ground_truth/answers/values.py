@@ -110,8 +110,8 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
         states = fact_words(thing) & {"moving", "stationary", "walking", "working", "upright", "sitting"}
         return min(states, default=None)
     if set(attribute) & _KEY_SYNONYMS["state"]:
-        polar = [f for f in sorted(fact_words(thing)) if any(are_opposites(f, x) for x in _STATES_WITH_OPPOSITE)]
-        return polar[0] if polar else None
+        opposable = [f for f in sorted(fact_words(thing)) if any(are_opposites(f, x) for x in _STATES_WITH_OPPOSITE)]
+        return opposable[0] if opposable else None
     return None
 
 
@@ -137,7 +137,7 @@ def activity_of(thing: Thing) -> str | None:
 
 
 _STATES_WITH_OPPOSITE = ("open", "closed", "lit", "unlit", "raised", "lowered", "empty", "full", "moving", "stationary")
-"""States that have an opposite, which answer a question about a thing's state."""
+"""States that have an opposite. They answer questions about a thing's state."""
 
 
 def _value_words(key: str, value: object) -> str:

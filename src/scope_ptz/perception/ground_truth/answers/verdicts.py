@@ -164,7 +164,7 @@ def _split_question(view: View, question: tree.YesNo) -> tuple[tree.Description,
 
 
 def _all_hold(answers: Sequence[bool | None]) -> bool | None:
-    """Return True if all answers are yes, False if any is no, and None if that is unknown."""
+    """Return True if all answers are True, False if any is False, and None otherwise."""
     return False if False in answers else None if None in answers else True
 
 
@@ -235,7 +235,7 @@ def _answer_no(
     """Answer no, and state the actual value if it is known. ``some`` is True if the question asks about any of the things."""
     total, union = len(things), len(subject.phrases) > 1
     if total > 1 and not union and len(tests) == 1 and isinstance(tests[0], tree.Not):
-        # Not "none of them does not wear a helmet".
+        # Avoid "none of them does not wear a helmet".
         return known_answer(
             f"no, {_all(total)} {noun_phrase(view, subject, many=True)} in view {predicate_words(view, [tests[0].test], total)}"
         )

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 from scope_ptz.errors import ToolCallError
 from scope_ptz.serve.http.models import Identifier, Instruction
 from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, PICTURE_WIDTH, image_content, stored_jpeg
-from scope_ptz.serve.mcp.reports import PLANNER_ENDINGS, RunReport, run_report
+from scope_ptz.serve.mcp.reports import PLANNER_OUTCOMES, RunReport, run_report
 from scope_ptz.serve.mcp.run_progress import follow
 from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parse_arguments, reply
 from scope_ptz.serve.mcp.tools.camera_tools import is_panorama, picture_link, run_link
@@ -194,7 +194,7 @@ async def _run_result(call: Call, run: str, *, picture: bool) -> CallToolResult:
     if picture and views:
         stored = await stored_picture(call.site, run, views[-1])
         content += [picture_link(run, views[-1]), image_content(await stored_jpeg(stored, MAX_PICTURE_BYTES, PICTURE_WIDTH))]
-    failed = not report.running and report.outcome not in (*PLANNER_ENDINGS, "cancelled", UNFINISHED)
+    failed = not report.running and report.outcome not in (*PLANNER_OUTCOMES, "cancelled", UNFINISHED)
     return reply(_text(report), report, *content, failed=failed)
 
 

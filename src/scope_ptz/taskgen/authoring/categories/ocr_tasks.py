@@ -169,7 +169,7 @@ def _text_draft(
     plate = str(target.thing.instance.attributes.get("plate", ""))
     is_plate, price = expected.accepted == (plate,), target.kind.category == "price card"
     forms = (_PLATES if is_plate else _PRICES if price else _WRITING)[bool(zoom)]
-    forms = tuple((direct.format(n=target.the), inside.format(n=target.the)) for direct, inside in forms)
+    forms = tuple((direct.format(n=target.the), clause.format(n=target.the)) for direct, clause in forms)
     question = f"what is the number plate of {target.the}?" if is_plate else f"what does {target.the} say?"
     # The evidence items are measured in the view in which the text is legible.
     items = [close.truth.text_item(t) for t in texts]

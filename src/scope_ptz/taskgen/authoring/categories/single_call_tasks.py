@@ -170,7 +170,7 @@ def _other_command_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[T
             Behaviour(final=final),
             ("preset",),
         )
-        picture_calls = tuple(
+        picture_instructions = tuple(
             f"{w} of the {name} view{e}"
             for w in ("Take a picture", "Save a still", "Capture an image", "Take a snapshot")
             for e in (".", ", please.", " as it is now.")
@@ -180,7 +180,7 @@ def _other_command_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[T
             "picture",
             f"picture:{name}",
             start,
-            picture_calls,
+            picture_instructions,
             (ProgramCall(tool="take_image"),),
             Behaviour(final=start.final, calls=(RequiredCall(tool="take_image"),), pictures=1),
             (),
