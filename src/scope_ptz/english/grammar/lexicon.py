@@ -75,7 +75,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], extra_nouns: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return the spans ``[start, end)`` of words that could be the noun of a phrase, longest first. All spans have the last end.
+    """Return the spans ``[start, end)`` of words that could be the noun of a phrase, longest first. All end at the last noun.
 
     Args:
         words: The words of the phrase.

@@ -33,7 +33,7 @@ _FUSED_WORDS = {
     "wouldnt": ("would", "not"), "werent": ("were", "not"), "mustnt": ("must", "not"), "aint": ("is", "not"),
 }  # fmt: skip
 _AFTER_ID = re.compile(r" (?:like|love|prefer|appreciate|be|rather|say)\b")
-"""A word after "id" that shows that it stands for "I'd"."""
+"""The words after "id" that show that it stands for "I'd"."""
 
 _BEFORE_IS = frozenset({
     "what", "who", "where", "there", "it", "that", "how", "here", "he", "she", "when", "why", "which", "everyone", "everybody",

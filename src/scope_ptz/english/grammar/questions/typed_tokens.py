@@ -13,7 +13,7 @@ from scope_ptz.english.grammar.questions.word_splitting import split
 
 
 class Token(str):
-    """A token. Its value is its words, and its type is from ``closed_class.txt`` or NUM, ORD, TEXT, or W for other words."""
+    """A token whose value is its words. Its type is one from ``closed_class.txt`` or NUM, ORD, TEXT, or W for other words."""
 
     __slots__ = ("type",)
     type: str
@@ -74,7 +74,7 @@ def tokenise(text: str) -> list[Token]:
 
 
 def _numeral_length(words: list[str], start: int) -> int:
-    """Return the number of words in a whole number of several words at ``start`` ("twenty five", "a dozen"), or 0."""
+    """Return the length of a whole number written as several words at ``start`` ("twenty five", "a dozen"), or 0."""
     phrase = words[start : start + _LONGEST_NUMERAL]
     number = read_number(phrase)
     is_numeral = number.kind == "NUM" and number.used > 1 and number.value == round(number.value) > 0

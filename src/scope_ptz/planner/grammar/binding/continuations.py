@@ -83,7 +83,7 @@ def _continues(instruction: str) -> bool:
 
 
 def _continued(instruction: str, conversation: Sequence[PastTurn], texts: Sequence[str], presets: tuple[str, ...]) -> str:
-    """Return what an instruction stands for. ``texts`` are what the earlier turns stand for."""
+    """Return what an instruction stands for. ``texts`` holds what the earlier turns stand for."""
     said = instruction.strip()
     asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
     if asked is not None and (amount := _AMOUNT.fullmatch(said)):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def compared_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Return the preset that the last turn with calls found to show the most or the fewest, or several with the same number.
+    """Return the preset that the last turn with calls found to show the most or the fewest, or several in a tie.
 
     None if that turn did not compare presets.
     """

@@ -32,7 +32,7 @@ _BEARER = re.compile(
 def plain_question(question: str) -> tuple[str, str]:
     """Return a question without the parts that perception does not need, and the thing to zoom in on first.
 
-    "If there is one" at the end is dropped, because every answer says when there is none. "When you zoom in on it" is dropped too,
+    "If there is one" at the end is dropped, because every answer says so if there is none. "When you zoom in on it" is dropped too,
     and the thing is returned. "Is it true that the cart is blue" becomes "Is the cart blue?".
 
     Returns:

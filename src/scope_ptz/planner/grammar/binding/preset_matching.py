@@ -16,7 +16,7 @@ _COMMAND_CLASSES = frozenset({
     "DEG", "PRON", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN", "TILT", "TELL", "CARRY", "LIMIT", "CAMERA", "BACK", "HOWMANY",
     "BE",
 })  # fmt: skip
-"""Classes of words that no preset name contains if the presets are unknown."""
+"""Classes of words that cannot be part of a preset name while the presets are unknown."""
 _MIN_ABBREVIATION_CHARS = 3
 
 

@@ -59,7 +59,7 @@ def is_answered_by_counts(question: str) -> bool:
 
 
 def which_has(question: str) -> Literal["more", "fewer"] | None:
-    """Return the comparison that "which has more?" asks for without saying of what; None for other questions."""
+    """Return the comparison in a question that names no objects, such as "which has more?"; None for other questions."""
     match = _WHICH_HAS.fullmatch(question.strip())
     return None if match is None else "more" if match[1].lower().startswith("mo") else "fewer"
 

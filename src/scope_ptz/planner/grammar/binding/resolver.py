@@ -217,7 +217,7 @@ class Resolver:
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
-        if step.how == "look" and not ref.explicit and "-" not in ref.name:  # a name of several words is that of the preset
+        if step.how == "look" and not ref.explicit and "-" not in ref.name:  # a name with several words can only be the preset's
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.explicit and preset is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
@@ -254,7 +254,7 @@ class Resolver:
         return ast.Tally(self.thing(part.thing), place, self._view(part.view))
 
     def _tallies(self, parts: Sequence[ast.Tally]) -> tuple[ast.Tally, ...]:
-        """Return the parts of a calculation; a part for every preset becomes one part for each preset."""
+        """Return the parts of a calculation, with a part that is counted everywhere split into one part for each preset."""
         every = [
             replace(part, place=place, everywhere=False)
             for part in parts
@@ -406,7 +406,8 @@ class Resolver:
         out: list[ast.Step] = []
         for place in places:
             self.preset = place.name
-            out += [ast.GoToPreset(place), *self.bind(step.body)]
+            body = self.bind(step.body)
+            out += [*([] if body[:1] == (ast.GoToPreset(place),) else [ast.GoToPreset(place)]), *body]
         return out
 
     def _sameat(self, step: ast.SameAt) -> Sequence[ast.Step]:
@@ -462,7 +463,7 @@ class Resolver:
             return ast.Negated(self.condition(condition.part))
         joined = replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
         if all(isinstance(part, ast.Seen) for part in joined.parts):
-            self.antecedent = ""  # "if you find a person or a dog, zoom in on it" does not say on which
+            self.antecedent = ""  # "if you find a person or a dog, zoom in on it" does not say on which one
         return joined
 
 

@@ -36,7 +36,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     """Return the steps of an instruction, or a clarifying question or refusal. Never raises, whatever the text.
 
     Args:
-        instruction: The text of the user.
+        instruction: The user's text.
         presets: The camera's presets; None accepts preset names as written.
         conversation: The earlier turns.
     """

@@ -1,1 +1,1 @@
-"""Check that a plan accounts for every number, direction, preset and act of its instruction, independently of the parser."""
+"""Check that a plan accounts for every number, direction, preset and action of its instruction, independently of the parser."""

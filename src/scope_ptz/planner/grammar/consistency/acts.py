@@ -1,8 +1,9 @@
-"""Find the acts of an instruction that its plan does not carry out, and the conditions that it does not test."""
+"""Find the actions in an instruction that its plan does not carry out, and the conditions that it does not test."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.evidence import Evidence
@@ -12,26 +13,28 @@ _PICTURES = frozenset(
     {"photo", "photos", "photograph", "photographs", "picture", "pictures", "snapshot", "snapshots", "screenshot"}
 )
 _TAKING = frozenset({"take", "taking", "snap", "grab", "save", "capture", "shoot", "record", "store"})
-_TAKE_REACH = 4  # words between "take" and "picture"
+_TAKE_REACH = 4  # number of words before "picture" in which to look for "take"
 _TURNS = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt"}
+_FORBIDDEN = {"follow": ast.Track, "track": ast.Track, "picture": ast.Snap, "photo": ast.Snap, "home": ast.Home}
+_FORBIDDING_REACH = 5  # number of words before a forbidden action in which to look for "not"
 _ZOOMING = frozenset({"zoom", "zooming", "magnify"})
 _TESTS = (
     ast.Seen, ast.Readable, ast.Statement, ast.Outnumbers, ast.PresetOutnumbers, ast.Ask, ast.Count, ast.Read, ast.BeforeAfter,
     ast.Compare, ast.CompareWithBefore, ast.Tally, ast.Total, ast.Difference, ast.RankCounts, ast.WhichPreset, ast.FirstWith,
     ast.CameraState, ast.Rescope, ast.WhatAbout, ast.Help,
 )  # fmt: skip
-"""Conditions that perception answers, and steps whose answer can be one."""
+"""Conditions that need an observation, and steps whose answer can serve as a condition."""
 _COURTEOUS = frozenset({
     "you", "may", "might", "could", "would", "can", "please", "possible", "trouble", "bother", "mind", "ok", "okay", "fine",
     "alright", "problem", "convenient", "want", "like", "wish", "time", "need", "needed", "necessary", "help", "helps",
     "so", "not", "yes", "no",
 })  # fmt: skip
-"""Words after "if" that make it courtesy, or refer to an earlier answer: "if it is no trouble", "if need be", "if so"."""
-_COURTESY_REACH = 7  # words after "if"
+"""Words after "if" that only express courtesy, or refer to an earlier answer: "if it is no trouble", "if need be", "if so"."""
+_COURTESY_REACH = 7  # number of words after "if" in which to look for courtesy
 
 
 def ignored_conditions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return each "if" and "unless" of a plan that tests nothing."""
+    """Return each "if" and "unless" of an instruction whose plan tests nothing."""
     if evidence.has(*_TESTS):
         return []
     return [
@@ -44,8 +47,37 @@ def ignored_conditions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
 
 
 def omitted_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return the words for pictures, home, pan, tilt, zoom and following that no step of the plan carries out."""
+    """Return the words for pictures, home, pan, tilt and zoom that no step of the plan carries out."""
     return [word for i, word in enumerate(words) if not (word.is_described or word.is_negated) and _is_omitted(words, i, evidence)]
+
+
+def forbidden_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words after "not" for following, pictures and home that the plan carries out: "follow it. No, don't follow it"."""
+    return [
+        word
+        for i, word in enumerate(words)
+        if word.is_negated
+        and not word.is_described
+        and (step := _FORBIDDEN.get(word.text)) is not None
+        and evidence.has(step)
+        and word.text not in {later.text for later in words[i + 1 :] if not later.is_negated}
+        and _is_forbidden(words, i)
+        and _ends_clause(words, i)
+    ]
+
+
+def _is_forbidden(words: Sequence[Word], i: int) -> bool:
+    """Return whether "do not", "don't" or "never" precedes a word, unlike "if not"."""
+    before = [word.text for word in words[max(0, i - _FORBIDDING_REACH) : i]]
+    return any(b in {"not", "t", "dont", "never"} and a != "if" for a, b in pairwise(before))
+
+
+def _ends_clause(words: Sequence[Word], i: int) -> bool:
+    """Return whether at most a pronoun follows a word in its clause, so that it refers to the same thing as before."""
+    after = words[i + 1] if i + 1 < len(words) else None
+    later = words[i + 2] if i + 2 < len(words) else None
+    is_last = later is None or later.is_break
+    return after is None or after.is_break or (after.text in {"it", "him", "her", "them", "that"} and is_last)
 
 
 def _is_omitted(words: Sequence[Word], i: int, evidence: Evidence) -> bool:

@@ -1,7 +1,7 @@
 """Check that a plan accounts for its instruction.
 
 The check reads the instruction again, with simple rules of its own. It therefore notices words that the parser loses, swallows or
-turns round, so that the planner asks the user instead of moving the camera.
+reverses, so that the planner asks the user instead of moving the camera.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from difflib import SequenceMatcher
 
 from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.consistency.acts import ignored_conditions, omitted_acts
+from scope_ptz.planner.grammar.consistency.acts import forbidden_acts, ignored_conditions, omitted_acts
 from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
@@ -32,7 +32,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     """Return the question to ask if the steps do not account for the instruction; None if they do.
 
     Args:
-        instruction: The text of the user.
+        instruction: The user's text.
         steps: The steps with all names resolved.
         presets: The camera's presets.
     """
@@ -53,6 +53,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
                 *ignored_directions(words, evidence),
                 *contradicted_zoom(words, evidence),
                 *omitted_acts(words, evidence),
+                *forbidden_acts(words, evidence),
                 *ignored_conditions(words, evidence),
                 *unvisited_presets(words, evidence, presets),
             )

@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.consistency.words import Word
 from scope_ptz.planner.grammar.lexing.spelling import within_one_edit
 
 _WORDS = {
-    "left": ("left", "lefts", "leftward", "leftwards", "anticlockwise", "counterclockwise", "ccw"),
+    "left": ("left", "lefts", "leftward", "leftwards", "lft", "anticlockwise", "counterclockwise", "ccw"),
     "right": ("right", "rigth", "rights", "rightward", "rightwards", "clockwise", "cw"),
     "up": ("up", "upward", "upwards", "higher", "skyward", "skywards"),
     "down": ("down", "downward", "downwards", "dn", "lower"),
@@ -22,7 +22,7 @@ _ALSO = {
     "up": frozenset({"u", "raise", "raising", "raised", "lift", "lifting", "elevate", "elevating", "above", "sky", "upper", "top"}),
     "down": frozenset({"d", "drop", "dropping", "lowering", "dip", "dipping", "below", "under", "ground", "floor", "bottom"}),
 }
-"""Other words that can name a direction. A plan may go there, but need not."""
+"""Other words that can name a direction. A plan may move in that direction, but need not."""
 
 _AFTER_RIGHT = frozenset({
     "now", "away", "then", "out", "in", "round", "around", "over", "at", "on", "through", "across", "angle", "angles", "hand",
@@ -46,7 +46,7 @@ _LOOSE = frozenset({
     "negative", "repeat", "return", "centre", "center", "level", "decrease", "reduce", "lessen", "other", "around", "round",
     "behind", "u", "i", "ahead", "straight", "horizon", "twice", "retrace",
 })  # fmt: skip
-"""Words with which a plan may move in a direction that is not named."""
+"""Words that allow a plan to move in a direction that is not named."""
 
 _ZOOM_IN = frozenset({"in", "closer", "nearer", "tighter", "tighten", "tightening", "inwards"})
 _ZOOM_OUT = frozenset({"out", "wider", "widen", "widening", "outwards", "broaden"})

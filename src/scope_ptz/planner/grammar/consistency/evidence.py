@@ -1,4 +1,4 @@
-"""Collect what a plan will do: its numbers, directions, presets, acts and texts."""
+"""Collect what a plan will do: its numbers, directions, presets, actions and texts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Evidence:
         presets: The names of the presets.
         steps: The types of all steps and conditions.
         axes: The axes that move: "pan", "tilt" and "zoom".
-        texts: Descriptions and questions, each with whether it is a description.
+        texts: Descriptions and questions, each with True for a description.
         is_still: Whether the instruction says not to move.
     """
 
@@ -44,7 +44,7 @@ class Evidence:
 
 
 def evidence_of(steps: Sequence[ast.Step]) -> Evidence:
-    """Return the evidence of all steps, with those in loops and branches."""
+    """Return the evidence of all steps, including those in loops and branches."""
     found = Evidence()
     for node in _nodes(steps):
         found.steps.add(type(node))

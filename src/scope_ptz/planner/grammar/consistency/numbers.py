@@ -37,7 +37,7 @@ _LONG_TIMES = frozenset({"minute", "minutes", "min", "mins", "hour", "hours"})
 
 
 def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return the words of the numbers that the plan does not use. Numbers in descriptions and negated clauses are used."""
+    """Return the words of the numbers that the plan does not use. Numbers in descriptions and negated clauses count as used."""
     claims = _claims(words)
     left = list(evidence.numbers)
     unmatched = [claim for claim in claims if not _take(claim, left, evidence)]

@@ -86,7 +86,7 @@ def noun(description: str, count: float) -> str:
 
 
 def is_uncountable(description: str) -> bool:
-    """Return whether a description is of something that is not counted, such as "smoke" or "standing water"."""
+    """Return whether a description names something uncountable, such as "smoke" or "standing water"."""
     return head_and_rest(description)[0].split(" ")[-1].lower() in _UNCOUNTABLE
 
 
@@ -150,7 +150,7 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
 
 
 def shortfall_text(result: Mapping[str, Any]) -> str:
-    """Return the words that state why a move ended early: a rule of the site, or limits of the camera; empty if it did not."""
+    """Return the words that state why a move ended early: a site rule or a camera limit; empty if it did not."""
     if held_back_by := result.get("held_back_by"):
         return f", held back by {held_back_by}"
     clamped = result.get("clamped", ())
@@ -192,12 +192,12 @@ def not_understood_text(error: str) -> str:
 
 
 def continued(text: str) -> str:
-    """Return a sentence so that it can follow a colon: with a small first letter, unless it begins with "I" or capitals."""
+    """Return a sentence so that it can follow a colon: with a lower-case first letter, unless it begins with "I" or capitals."""
     return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
 
 
 def without_consequence(reason: str, what: str) -> str:
-    """Return why a step was not made: "I can see no trucks, so I left it at that"."""
+    """Return why a step was not carried out: "I can see no trucks, so I left it at that"."""
     if not reason:
         return f"so I {what}"
     return f"{reason} So I {what}" if reason[-1] in ".!?" else f"{reason}, so I {what}"

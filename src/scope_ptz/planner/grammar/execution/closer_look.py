@@ -39,7 +39,7 @@ _NO_THING = frozenset({"picture", "image", "view", "frame", "scene", "photo", "t
 
 
 class CloserLook(RunState):
-    """The part of a run that asks perception, and goes closer when it must."""
+    """The part of a run that asks perception, and goes closer when necessary."""
 
     def _answer_to(self, question: str, view: View, thing: str = "") -> CallGenerator:
         """Ask a question and return the result; None if perception fails.
@@ -68,7 +68,7 @@ class CloserLook(RunState):
         return (yield from self._from_close_up(question, thing, result))
 
     def _from_close_up(self, question: str, thing: str, before: dict[str, Any] | None) -> CallGenerator:
-        """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` without one.
+        """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` if there is none.
 
         If a part cannot be found ("licence plate of the van"), the camera zooms in on the whole.
         """
@@ -87,7 +87,7 @@ class CloserLook(RunState):
         else:
             self._note(f"I zoomed in on the {thing} to answer that, and put the camera back afterwards")
         if self.assume_met:
-            self.pose = start  # a plan cannot know how far the camera zooms in, and so not the move back
+            self.pose = start  # a plan cannot know how far the camera zooms in, so it cannot compute the move back
         elif arguments := return_arguments(start, self.pose, self.limits):
             yield from self._camera_call("adjust_ptz", **arguments)
         return before if result is None else result

@@ -130,7 +130,7 @@ def _either(names: Sequence[str]) -> str:
 
 
 def presets_of_rank(counts: Mapping[str, int], comparison: ast.Comparison, rank: int) -> list[str]:
-    """Return the presets at a place in the order of their counts. Presets with equal counts share their places."""
+    """Return the presets at a place in the order of their counts. Presets with equal counts share a place."""
     ordered = sorted(counts.values(), reverse=comparison == "more")
     return [name for name, count in counts.items() if count == ordered[rank - 1]] if rank <= len(ordered) else []
 

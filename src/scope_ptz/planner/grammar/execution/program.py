@@ -73,7 +73,7 @@ class Program(Comparisons):
             return
         start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        # A move that was cut short is stated as the camera made it.
+        # Report a move that was cut short as the camera made it.
         shortfall = phrases.shortfall_text(result)
         moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
         how = f"I {phrases.move_text(moved)}{shortfall}"
@@ -251,7 +251,7 @@ class Program(Comparisons):
             met, reason = yield from self._test(step.until)
             best = max(best, self._last_count)
             if met is None and isinstance(step.until, ast.Negated):
-                raise HaltedError(f"{reason}, so I stopped")  # "while" goes on only as long as its condition is known to hold
+                raise HaltedError(f"{reason}, so I stopped")  # "while" continues only as long as its condition is known to hold
             if met:
                 self._note(f"{reason} after {phrases.moves_text(last, moves)}" if moves else f"{reason} without having to move")
                 return

@@ -62,8 +62,8 @@ class RunState:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
         assume_met: Whether to treat every condition as met, for plans without a camera.
-        may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers it.
-        keeps_still: Whether the user asks not to move the camera.
+        may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers to.
+        keeps_still: Whether the user asks for the camera not to move.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -81,9 +81,9 @@ class RunState:
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset for "go there" after a comparison; None if there is no winner
     _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home
-    _went_home: bool = False  # whether the run has made a move to home
+    _went_home: bool = False  # whether the run has moved the camera to home
     _last_count: int = -1  # the last count in a condition; -1 if there was none
-    _last_was_yes: bool | None = None  # whether the last look was a yes or found something; None if that is not known
+    _last_was_yes: bool | None = None  # whether the last answer was yes or the last look found something; None if unknown
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""

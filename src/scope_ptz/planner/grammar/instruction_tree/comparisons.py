@@ -76,7 +76,7 @@ class Tally:
     """One number of a calculation: how many objects there are at a preset or, if ``place`` is None, in the current position.
 
     Attributes:
-        everywhere: Whether the number stands for one number at each preset.
+        everywhere: Whether to count at every preset instead, which gives one number for each.
     """
 
     thing: Thing

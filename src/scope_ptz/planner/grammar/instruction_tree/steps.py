@@ -126,7 +126,7 @@ class AtPlaces:
 
 @dataclass(frozen=True, slots=True)
 class SameAt:
-    """Repeat the previous steps at other presets. ``or_go``: whether to go to the preset if there is nothing to repeat."""
+    """Repeat the previous steps at other presets. With ``or_go``, go to the preset if there is nothing to repeat."""
 
     places: tuple[PresetRef, ...]
     or_go: bool = False

@@ -10,7 +10,7 @@ from functools import lru_cache
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
 from scope_ptz.english.grammar.tokens import Token, tokenise
 from scope_ptz.planner.grammar.lexing.lexicon import longest_phrase, phrases
-from scope_ptz.planner.grammar.lexing.preset_names import preset_at, short_names
+from scope_ptz.planner.grammar.lexing.preset_names import preset_at, preset_key, short_names
 from scope_ptz.planner.grammar.lexing.spelling import corrected_word, is_english, within_one_edit
 
 _MARKS = {
@@ -58,6 +58,7 @@ _ADDRESSED = frozenset(
 """Words for people, which only address someone unless a determiner precedes them."""
 
 
+_MIN_CHARS_OF_PRESET_WORD = 4  # shorter words of a preset's name must be spelt correctly
 _AT_PLACE = frozenset({"at", "to", "go", "goto"})
 """Words after which the last word of a preset's name stands for the preset."""
 
@@ -97,7 +98,7 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
     tokens = _without_inner_hyphens(_without_list_markers(tokenise(text)))
     known = {part for preset in presets for part in re.findall(r"[^\W\d_]+", preset.lower())}
     words = [_preset_word(token.text, known) if _is_near(token.text, known) else corrected_word(token.text) for token in tokens]
-    words = ["and" if word == "&" else word for word in words]
+    words = _with_preset_words(["and" if word == "&" else word for word in words], presets)
     out: list[Lexeme] = []
     i = 0
     while i < len(tokens):
@@ -117,6 +118,20 @@ def _preset_word(word: str, known: set[str]) -> str:
         return single.pop()
     close = [name for name in known if len(word) > 5 and len(name) > 5 and within_one_edit(word, name)]
     return close[0] if len(close) == 1 and word not in known and not is_english(word) else word
+
+
+def _with_preset_words(words: list[str], presets: tuple[str, ...]) -> list[str]:
+    """Correct a misspelt word of a preset's name if all its other words match: "log dekc" becomes "log deck"."""
+    out = list(words)
+    for name in (preset_key(preset) for preset in presets):
+        for i in range(len(words) - len(name) + 1 if len(name) > 1 else 0):
+            said = words[i : i + len(name)]
+            wrong = [j for j, (a, b) in enumerate(zip(said, name, strict=True)) if a != b]
+            if len(wrong) != 1 or len(name[wrong[0]]) < _MIN_CHARS_OF_PRESET_WORD or is_english(said[wrong[0]]):
+                continue
+            if within_one_edit(said[wrong[0]], name[wrong[0]]):
+                out[i + wrong[0]] = name[wrong[0]]
+    return out
 
 
 def _is_near(word: str, known: set[str]) -> bool:
@@ -271,12 +286,17 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             classes = frozenset({"FREE"})  # "hi-vis vest"
         elif lexeme.word == "plus" and before and before.has("PAN", "TILT") and after and after.has("NUM"):
             classes = frozenset({"GLUE"})  # "tilt plus 5" has a sign
-        elif lexeme.word in _ADDRESSED and before and before.has("DET", "ANY", "HOWMANY") and not before.has("NUM", "PRON"):
+        elif lexeme.word in _ADDRESSED and before and _introduces(before):
             classes = frozenset({"FREE"})  # "if no operator is visible"
         elif lexeme.word == "point" and before and before.has("DET", "PREP"):
             classes = frozenset({"FREE"})
         out.append(lexeme if classes is lexeme.classes else Lexeme(lexeme.word, lexeme.start, lexeme.end, classes))
     return out
+
+
+def _introduces(lexeme: Lexeme) -> bool:
+    """Return whether a lexeme begins a noun phrase: "no" and "that" before "lad"."""
+    return lexeme.word in {"that", "this"} or (lexeme.has("DET", "ANY", "HOWMANY") and not lexeme.has("NUM", "PRON"))
 
 
 def is_number_word(word: str) -> bool:

@@ -44,7 +44,7 @@ def short_names(presets: tuple[str, ...]) -> Mapping[str, str]:
 
 
 def preset_at(words: Sequence[str], presets: tuple[str, ...]) -> tuple[str, int]:
-    """Return the preset whose name begins a list of words, and the number of its words, hyphens included; ("", 0) for none."""
+    """Return the preset whose name begins a list of words, and the number of its words, with hyphens; ("", 0) if there is none."""
     if not presets:
         return "", 0
     table = preset_table(presets)

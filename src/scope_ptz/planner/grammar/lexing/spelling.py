@@ -9,7 +9,7 @@ from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
-_MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as slips
+_MIN_CHARS = 5  # in shorter words, only exchanged, doubled and missing letters count as typing errors
 _MIN_SHORT_CHARS = 3
 
 
@@ -41,7 +41,7 @@ def corrected_word(word: str) -> str:
 
 
 def _with_letters_swapped(word: str) -> list[str]:
-    """Return the words of the vocabulary that a word becomes if two neighbouring letters are exchanged: the commonest slip."""
+    """Return the words of the vocabulary that a word becomes if two neighbouring letters are exchanged: the commonest error."""
     swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(len(word) - 1)} - {word}
     return sorted(swapped & known_words())
 

@@ -46,9 +46,11 @@ _WITHDRAWAL = re.compile(
     r"|\b(?:not|never|no longer) (?:be(?:en|ing)? )?(?:allowed|permitted|needed|necessary|required|supposed|wanted|meant)\b"
     r"|\b(?:not|nobody|no one) (?:wants?|needs?|asked for) (?:it|that|this|you|them|any)\b"
     r"|\bdo(?:es)? not want (?:to|it|that|this)\b|\b(?:which|that|this) (?:is|was) (?:wrong|an? (?:error|mistake))\b"
+    r"|\bcancell?ed$|\bcall(?:ed|ing|s)? (?:it|that|this) off\b|\bsecond thoughts\b|\bagainst (?:it|that|this)\b|\ban error\b"
+    r"|\bnever to\b|\b(?:say|says|said|told \w+ to) (?:hold on|hang on|wait|stop)\b|\b(?:have|has|had) to wait\b"
     r"|\b(?:has|have) already been done\b|\balready did (?:it|that)\b"
 )
-"""Words of statements that may take back or forbid what was asked."""
+"""Wordings that may withdraw or forbid what was asked."""
 
 _DROPPED = "(forget|scrap|scratch|cancel|disregard|belay|drop) (it|that|this|PRON)"
 _TAKEN_BACK = (
@@ -64,13 +66,13 @@ _TAKEN_BACK = (
 _MOVE_AT_THE_END = (
     f"COMMA (NOW|FILLER|AND|BUT|COMMA)* ({'|'.join(DIRECTIONS)}|IN|OUT|CLOSER|WIDER) (LITTLE|LOT|LIMIT|MORE|FILLER)* (COMMA|\\Z)"
 )
-"""A move without a verb after a remark, as in "that has it, left a bit". It is carried out or asked about, never ignored."""
+"""A move without a verb after a remark, as in "that has it, left a bit". It must not be ignored."""
 
 _NOT_A_REASON = frozenset({"must", "should", "never", "both"})
 
 
 def is_reason(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether a clause only says why: "I want to see the roof", "we cannot see the doors", "the sun is in the lens"."""
+    """Return whether a clause only gives a reason: "I want to see the roof", "we cannot see the doors"."""
     return bool(full_match(f"(FILLER|COMMA)* ({_WISH}|{_FAILING}|{_STATE})", lexemes))
 
 
@@ -85,7 +87,7 @@ def may_withdraw(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def withdraws(clause: Clause) -> bool:
-    """Return whether a statement may take back or forbid what was asked: "I changed my mind", "that is not allowed".
+    """Return whether a statement may withdraw or forbid what was asked: "I changed my mind", "that is not allowed".
 
     Unlike other statements, it must not be ignored.
     """
@@ -101,7 +103,7 @@ def takes_back(clause: Clause) -> bool:
 
 
 def drops_everything(clause: Clause) -> bool:
-    """Return whether a clause drops everything said before it: "no, forget it"."""
+    """Return whether a clause cancels everything said before it: "no, forget it"."""
     return (
         not clause.is_question
         and full_match(f"(no|nah|nope|oh|ah|actually|BUT|FILLER|COMMA)* {_DROPPED} (FILLER)*", clause.lexemes) is not None
@@ -139,7 +141,7 @@ def explains(clause: Clause, clause_count: int) -> bool:
         return False
     knows = match_start("(FILLER|COMMA|NOW)* SELF know (this|it|that|you|DET)", clause.lexemes)  # "I know this sounds picky"
     asks = frozenset({"tell", "whether"} if knows else {"know", "tell", "whether"})
-    if any(x.has("HOWMANY") or x.word in asks for x in clause.lexemes):
+    if any(x.has("HOWMANY") or x.word in asks or x.word == "ones" for x in clause.lexemes):
         return False  # "I need to know how the bins are placed"
     denies = any(x.has("NOT") for x in clause.lexemes)
     if not denies and any(x.has("EACHTIME", "COUNT-ED", "COUNT", "TRACK", "READ") for x in clause.lexemes):

@@ -21,7 +21,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstood
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of, without_inner_place
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, place_asked_about, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
@@ -29,11 +29,11 @@ _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FE
 
 
 class Branches(ClauseReading):
-    """Reads conditions, and the clauses that are carried out if they are met or not."""
+    """Reads conditions, with the clauses to carry out when they are met and when they are not."""
 
     @abstractmethod
     def _linked(self) -> list[Linked]:
-        """Return the linked steps of the next clause, with the clauses that belong to it."""
+        """Return the linked steps of the next clause and of the clauses that belong to it."""
 
     def _condition(self, clause: Clause) -> tuple[Condition, tuple]:  # type: ignore[type-arg]
         """Return the condition of a clause, and the presets at which it is tested."""
@@ -71,6 +71,13 @@ class Branches(ClauseReading):
         is_if = clause.marker in {"IF", "WHEN", "UNLESS"}
         if is_if and isinstance(condition, Statement) and (place := occupied_place(self.reader.source, clause.lexemes)) is not None:
             places = (place,)
+        elif (
+            is_if
+            and isinstance(condition, Statement)
+            and found is None
+            and (named := place_asked_about(clause.lexemes)) is not None
+        ):
+            places = (named,)  # "if the bus bay is full"
         if is_if and isinstance(condition, Statement) and (inside := without_inner_place(self.reader.source, clause.lexemes)):
             source, words, place = inside
             if isinstance(stated := condition_of(source, words), Statement):
@@ -78,7 +85,7 @@ class Branches(ClauseReading):
         if inner is not None and found is not None:
             condition, places = inner, found
         if condition is None or (isinstance(condition, Seen) and condition.thing.text in {"something", "anything"}):
-            raise NotUnderstoodError(clause.lexemes)  # "until something moves" describes nothing that a picture shows
+            raise NotUnderstoodError(clause.lexemes)  # "until something moves" does not say what to look for
         if clause.marker == "UNLESS" or clause.marker == "NEVER":
             condition = Negated(condition)
         return condition, places
@@ -89,7 +96,7 @@ class Branches(ClauseReading):
         return AtPlaces(places, (step,)) if places and isinstance(step, If) else step
 
     def _branches(self, condition: Condition, clause: Clause) -> Step:
-        """Return the condition with the clauses that follow it as its branches."""
+        """Return the conditional step whose branches are the clauses that follow."""
         then: list[Step] = []
         if clause.marker in {"IFSO", "IFNOT"} and clause.lexemes:
             then = compose([Linked("", s) for s in self.reader.read(clause.lexemes, asked=clause.is_question)], then)

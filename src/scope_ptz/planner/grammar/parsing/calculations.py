@@ -14,13 +14,13 @@ _SUM = frozenset({
 })  # fmt: skip
 _SUM_AT_END = frozenset({"together", "altogether", "all_together", "in_total", "combined", "in_all", "overall", "total"})
 _ADDED = frozenset({"put", "taken", "added", "all", "counted", "and", "when"})
-"""Words before "together" that belong to it."""
+"""Words that can precede "together" in a request for a sum, as in "put together"."""
 
 _DIFFERENCE = frozenset({"minus", "difference", "the_difference"})
 
 
 def calculated(lexemes: Sequence[Lexeme], step: Step) -> Step:
-    """Return the step that adds or subtracts the counts of a step, if the words of its clause ask for it; otherwise the step."""
+    """Return a step with its counts added or subtracted if the words of its clause ask for that; otherwise the step itself."""
     parts = _parts(step)
     words = {x.word for x in lexemes}
     if len(parts) == 2 and words & _DIFFERENCE:
@@ -41,7 +41,7 @@ def without_sum(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def calculated_afterwards(steps: Sequence[Step]) -> list[Step]:
-    """Return steps in which counts are added or subtracted if "... and add them up" or "... report the difference" follows."""
+    """Return steps with counts combined where "... and add them up" or "... report the difference" follows them."""
     out: list[Step] = []
     for step in steps:
         if not isinstance(step, Report) or step.calculation == "none":
@@ -61,7 +61,7 @@ def calculated_afterwards(steps: Sequence[Step]) -> list[Step]:
 
 
 def _parts(step: Step) -> tuple[Tally, ...]:
-    """Return the single counts of a count of several things, or of one thing at several presets; none for other steps."""
+    """Split a count of several things, or of one thing at several presets, into single counts; other steps yield none."""
     match step:
         case Count(things=things, view=view):
             return tuple(Tally(thing, view=view) for thing in things)

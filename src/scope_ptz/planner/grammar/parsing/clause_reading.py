@@ -62,9 +62,9 @@ class ClauseReading:
         self.next = 0
         self.last: Step | None = None
         self.has_zoomed_in = False
-        self.visits_in_row = 0  # how many presets the last clauses go to, with nothing else between them
+        self.visits_in_row = 0  # number of presets that the last clauses visit in a row
         self.has_pictured_preset = False  # whether the last clause takes a picture of a preset
-        self.has_visited = self.has_left = False  # in this sentence: whether the camera went to a preset, and moved on from there
+        self.has_visited = self.has_left = False  # whether this sentence goes to a preset, and then moves on from it
 
     def _peek(self, offset: int = 0) -> Clause | None:
         position = self.next + offset
@@ -75,7 +75,7 @@ class ClauseReading:
         return self.clauses[self.next - 1]
 
     def _as_needed(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
-        """Return the steps of "zoom in if you have to": none, because a look that needs a closer view takes it by itself."""
+        """Return no steps for "zoom in if you have to", because a look zooms in by itself when necessary; ask about other steps."""
         self._take()
         is_zoom = all(isinstance(s, Move) and all(isinstance(p, Zoom) for p in s.parts) for s in steps)
         if is_zoom and (self.next > 2 or self._peek() is not None):
@@ -137,7 +137,7 @@ class ClauseReading:
         return (*moves, Snap()) if len(moves) == 1 and isinstance(moves[0], Move) else None
 
     def _with_clear_return(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
-        """Return the steps of a clause. "Go to the gate, zoom in and return" is asked about: there are two places to return to."""
+        """Return the steps of a clause, or ask where to return: "go to the gate, zoom in and return" has two possible places."""
         if clause.link == ".":
             self.has_visited = self.has_left = False
         returns_here = any(isinstance(s, Back) for s in steps) and any(x.word == "here" for x in clause.lexemes)
@@ -246,7 +246,7 @@ class ClauseReading:
         if moves and isinstance(self.last, AtIntervals) and any(isinstance(step, Snap) and step.times > 1 for step in steps):
             return (Unclear("How far shall I turn in all?"),)  # "pan right 60, a picture every 15 degrees, four pictures"
         if moves and [x.word for x in clause.lexemes[:2]] == ["make", "that"]:
-            return (Unclear("Which way shall I turn, and how far?"),)  # a correction of something that was not said
+            return (Unclear("Which way shall I turn, and how far?"),)  # "make that ..." has nothing to correct
         if moves and self.has_zoomed_in and any(x.word == "back_out" for x in clause.lexemes) and not search("NUM", clause.lexemes):
             return (Back(zoom_only=True),)  # "zoom in 4x, take a picture, zoom back out"
         if moves:
@@ -290,7 +290,7 @@ class ClauseReading:
         return None
 
     def _ended(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
-        """Return the linked steps of a clause. "Keep panning" without an end is asked about."""
+        """Return the linked steps of a clause, or ask where to stop if it is "keep panning" without an end."""
         keeps = bool(clause.lexemes) and any(
             x.has("KEEP") and x.word.startswith(("keep", "carry_on", "continue")) for x in clause.lexemes[:2]
         )
@@ -317,7 +317,7 @@ class ClauseReading:
 
 
 def _as_command(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return a clause after a preset as a command if it says how the camera is set there: "the gate, zoomed in", "... at 3x"."""
+    """Return the command for a clause that says how to set the camera at the last preset: "the gate, zoomed in", "... at 3x"."""
     if match_start("(FILLER|COMMA)* at NUM X", lexemes):
         start = next(i for i, x in enumerate(lexemes) if x.word == "at")
         return (*lexemes[:start], replace(lexemes[start], word="zoom", classes=frozenset({"ZOOM"})), *lexemes[start:])

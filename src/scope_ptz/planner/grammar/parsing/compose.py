@@ -120,9 +120,9 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
 
 
 def _restates(first: Move, second: Move) -> bool:
-    """Return whether a move without a verb and an amount may restate the previous one: "6 degrees of tilt, upwards".
+    """Return whether a move without a verb or an amount may restate the previous one: "6 degrees of tilt, upwards".
 
-    Such a move must not be made in addition.
+    Such a move must not be made as a second move.
     """
     if second.has_verb:
         return False
@@ -133,7 +133,7 @@ def _restates(first: Move, second: Move) -> bool:
 
 
 def _last_visited(steps: Sequence[Step]) -> tuple[PresetRef, ...]:
-    """Return the presets that the last steps go to, without anything between them."""
+    """Return the presets that the last steps visit in a row."""
     visited: list[PresetRef] = []
     for step in reversed(steps):
         if not isinstance(step, GoToPreset):
@@ -152,7 +152,7 @@ def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
 
 
 def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
-    """Join a move with the step after its "and": another move, or a loop that then includes the move."""
+    """Join a move with the step after "and": another move, or a loop, whose body then begins with the move."""
     if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
         return [stepped_loop(replace(step, body=(last, *step.body)))]
     if isinstance(step, Loop | Repeat) and (verbless := _verbless(step.body[0])):
@@ -191,7 +191,7 @@ def _verbless(step: Step) -> Move | None:
 
 
 def _joined(first: Move, second: Move) -> list[Step]:
-    """Join two moves with "and" between them, into one move if their axes differ."""
+    """Join two moves linked by "and". They become one move if their axes differ."""
     axes = [axis_of(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
         parts = first.parts if second.has_verb else tuple(_shared(p, second.parts) for p in first.parts)
@@ -213,7 +213,7 @@ def axis_of(part: Part) -> str:
 
 
 def _shared(part: Part, others: tuple[Part, ...]) -> Part:
-    """Return a part that has no amount with the amount of the last part: in "up and left 20", 20 applies to both."""
+    """Give a part without an amount the amount of the last part: in "up and left 20", 20 applies to both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
         return replace(part, amount=last.amount, step=last.step, steps=last.steps)

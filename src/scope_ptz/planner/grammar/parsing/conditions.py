@@ -73,7 +73,7 @@ def condition_of(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
 
 
 def without_happening(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes without "happens to": "a van happens to be at the gate" is "a van is at the gate"."""
+    """Return lexemes without "happens to": "a van happens to be at the gate" becomes "a van is at the gate"."""
     for i, x in enumerate(lexemes):
         if x.word in {"happens", "happen"} and [y.word for y in lexemes[i + 1 : i + 3]] == ["to", "be"]:
             return (*lexemes[:i], replace(lexemes[i + 2], word="is", classes=lexemes[i + 2].classes | {"BE"}), *lexemes[i + 3 :])
@@ -81,7 +81,7 @@ def without_happening(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def _joined(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
-    """Read "there is a van and the gate is open": two conditions that are complete by themselves."""
+    """Read "there is a van and the gate is open": two complete conditions joined by "and" or "or"."""
     for i, x in enumerate(lexemes):
         if x.has("AND", "OR") and 1 < i < len(lexemes) - 2:
             first, second = lexemes[:i], lexemes[i + 1 :]
@@ -259,7 +259,7 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
 
 
 def _alternatives(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Thing, ...]:
-    """Return the things of "the red van or a blue truck"; none for other lexemes."""
+    """Return the things of "the red van or a blue truck"; an empty tuple for other lexemes."""
     at = [i for i, x in enumerate(lexemes) if x.has("OR")]
     if len(at) != 1 or at[0] + 1 >= len(lexemes) or not lexemes[at[0] + 1].has("DET"):
         return ()

@@ -1,4 +1,4 @@
-"""Read clauses that control others: what not to do, what to do again, and how the result is to be reported."""
+"""Read clauses that control others: what not to do, what to do again, and how to report the result."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _DIFFERENCES = frozenset({"difference", "the_difference"})
 
 
 def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
-    """Read clauses that say what not to do, what to do again, or how the result is to be reported."""
+    """Read clauses that say what not to do, what to do again, or how to report the result."""
     if full_match(
         "(NEGATED|(SELF)? (do|MODAL|need) not|DOV not) (bother|worry|do anything|anything) (FILLER)*|do_not_bother "
         "(FILLER|with it)*|(FILLER)* (do nothing|(CARRY|TAKE|DOACT)? no action (FREE|FILLER)*|nothing)|"

@@ -21,11 +21,11 @@ from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first
 from scope_ptz.planner.grammar.parsing.sentences import Sentences
 
-MAX_CHARS = 2000  # longer texts are not parsed, because the first part of an instruction must not be carried out alone
+MAX_CHARS = 2000  # longer texts are rejected as a whole, because part of an instruction must not be carried out alone
 MAX_LEXEMES = 250  # maximum number of lexemes in a text that is parsed
 MAX_CONDITIONS = 12  # maximum number of conditions in a text that is parsed
 _MAX_QUOTATIONS = 3
-_MAX_QUOTED_WORDS = 8  # longer clauses are quoted by their first words
+_MAX_QUOTED_WORDS = 8  # longer quotations are truncated to this many words
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,10 @@ class Parsed:
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. No text raises an exception."""
+    """Return the steps of an instruction. This never raises an exception."""
     if len(text) > MAX_CHARS:
         return Parsed(text, None)
-    plain = plainer(text)
+    plain = plainer(text, presets)
     for said in (relayed(plain, presets), plain if plain != text else None):
         if said is not None and (parsed := _parsed(said, presets)).steps is not None:
             return parsed
@@ -56,7 +56,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 
 
 def _parsed(text: str, presets: tuple[str, ...]) -> Parsed:
-    """Return the steps of a text without words that relay it."""
+    """Return the steps of a text, parsed as it stands."""
     lexemes = lexemes_of(text, presets)
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
@@ -73,7 +73,7 @@ def _parsed(text: str, presets: tuple[str, ...]) -> Parsed:
 
 
 def _is_vantage(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the last clause only states from where to answer a question: "is it open? Look from the yard."."""
+    """Return whether the last clause only states where to look from to answer a question: "is it open? Look from the yard."."""
     is_asked = clauses[-1].is_question and not any(x.has("OPEN") for x in lexemes)
     if len(clauses) < 2 or is_asked or any(x.has("THEN") for x in lexemes):
         return False
@@ -101,7 +101,7 @@ def _quoted(text: str, lexemes: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return quotations of the words that were not understood."""
     if not lexemes:
         return ()
-    groups: list[tuple[int, int]] = []  # free words, with at most one other word between them
+    groups: list[tuple[int, int]] = []  # spans of free words with at most one other word between them
     for i, lexeme in enumerate(lexemes):
         if lexeme.has("FREE"):
             joins = groups and i - groups[-1][1] <= 2

@@ -24,7 +24,7 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
-"""The end of a turn that puts a thing in the middle, such as "the van is in the centre of the picture"."""
+"""An "until" condition that a thing is in the middle, such as "the van is in the centre of the picture"."""
 
 
 class Loops(Branches):

@@ -1,4 +1,4 @@
-"""Read one clause: courtesy and adjuncts are taken off, and what remains must be covered by one of the readings."""
+"""Read one clause: strip courtesy and adjuncts, then find an interpretation that covers all remaining words."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodE
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, places_of, without_inner_place
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, place_asked_about, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 _EDGE = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "QUOTE", "INSTEAD", "DASH", "OPEN", "CLOSE", "AND", "BUT", "ATSAMETIME")
 _SILENT_CLAUSE = r"(FILLER|LEADFILLER|FIRSTLY|COMMA|WRAPPER|PURPOSE|QUOTE|THEN|AND|SELF|HALT there)*"
 _CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
-"""The words with which someone opens a radio message: "camera one from control"."""
+"""The words that open a radio message: "camera one from control"."""
 
 
 _CAMERA_MOVED = "(FILLER)* (DET)? CAMERA (ADVERB|FILLER)* (PAN-ED|TILT-ED|ZOOM-ED|TURN-ED|CARRY-ED|SWITCH-ED)"
@@ -93,7 +93,7 @@ class Reader:
         """Return the steps of a clause.
 
         Raises:
-            NotUnderstoodError: No reading covers all words of the clause.
+            NotUnderstoodError: No interpretation covers all words of the clause.
         """
         if match_start(_CAMERA_MOVED, lexemes) or search(_SHOULD_HAVE_MOVED, lexemes):
             raise NotUnderstoodError(lexemes)
@@ -216,6 +216,8 @@ class Reader:
         rest, places = place_after(self.source, without_sum(lexemes))
         if places is None and (inner := self._place_of_subject(lexemes, asked)) is not None:
             return inner
+        if places is None and (named := self._named_place(lexemes, asked)) is not None:
+            return named
         if places is None or not rest:
             return None
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
@@ -251,6 +253,16 @@ class Reader:
         except NotUnderstoodError:
             return None
         return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask | Count | Read) for step in steps) else None
+
+    def _named_place(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+        """Read "has the bus bay got any room left?" as a question at the preset."""
+        if not (asked or is_question(lexemes) or lexemes[0].has("ANY")) or (place := place_asked_about(lexemes)) is None:
+            return None
+        try:
+            steps = self._plain(lexemes, asked)
+        except NotUnderstoodError:
+            return None
+        return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask) for step in steps) else None
 
     def _plain(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
         """Read a clause without adjuncts."""
@@ -298,7 +310,7 @@ class Reader:
 
 
 def is_report(lexemes: Sequence[Lexeme], *, asked: bool) -> bool:
-    """Return whether a clause tells or asks about a move, instead of commanding it: "I panned left", "did you pan left?"."""
+    """Return whether a clause reports or asks about a move, instead of commanding it: "I panned left", "did you pan left?"."""
     if asked and lexemes[0].word in _ASKING:
         return True
     if match_start("(SELF|PRON|(DET)? CAMERA|DET VIEWNOUN|DET PICTURE) (BE|HAVEV|'s) ", lexemes):

@@ -18,7 +18,7 @@ _WANTS_A_LOOK = "(DET)? FREE{1,2} (wants|needs|WRAPPER|TAKE-S|SHOW-S) (to)? (DET
 _WANTED_VIEW = (
     "(FILLER)* (i_need|i_want|we_need|we_want|SELF (need|want)) DET (FREE|CLOSER|WIDER|TIGHT|WIDE)? (VIEWNOUN|look) (of|at) _+"
 )
-"""A view that is wanted, as the reason for the move in the next sentence."""
+"""A statement of the view that the user wants, which is the reason for the move in the next sentence."""
 
 _NO_MORE = (
     "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"

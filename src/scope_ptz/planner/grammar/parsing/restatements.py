@@ -57,7 +57,7 @@ def says_size_again(move: Move, clause: Clause) -> bool:
 
 
 def _ways(move: Move) -> set[tuple[str, bool]]:
-    """Return the axes that a move changes by an amount, each with the direction."""
+    """Return the axes that a move changes by an amount, each with its direction."""
     ways: set[tuple[str, bool]] = {(part.axis, part.sign > 0) for part in move.parts if isinstance(part, Turn)}
     for part in move.parts:
         if isinstance(part, Zoom) and part.kind in {"factor", "percent"}:

@@ -45,6 +45,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import (
 )
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
+from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
 from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
 from scope_ptz.planner.grammar.parsing.restatements import is_wish_for_zoom, says_again
@@ -55,7 +56,7 @@ _SEARCHING = frozenset({"look_for", "search_for", "have_a_look_for", "take_a_loo
 _REACHED = (
     "(it|them|one|PRON)|SELF (HAVEV|have|got|SEE|FIND|find) (found|got)? (it|them|one|PRON)|(it|PRON) (BE) (VISIBLE|found|NOW)+"
 )
-"""Words after "when" for the end of the previous loop: "pan left until you see a van. When you have it, ..."."""
+"""Words after "when" that refer to the end of the previous loop: "pan left until you see a van. When you have it, ..."."""
 
 _WHICH_FIRST = Unclear("Which of the two shall I do first?")
 _IN_ANY_CASE = Unclear("Shall I do the last part in any case, or only if I do not do the first?")
@@ -69,7 +70,7 @@ class Sentences(Tours):
     def steps(self) -> list[Step]:
         """Return the steps of all clauses."""
         out: list[Step] = []
-        at_once: list[Step] = []  # since the last "then" or the last sentence
+        at_once: list[Step] = []  # steps since the last "then" or full stop
         while self.next < len(self.clauses):
             start, linked = self.next, self._linked()
             out = _merged(compose(linked, out))
@@ -83,7 +84,7 @@ class Sentences(Tours):
         return calculated_afterwards(out)
 
     def _linked(self) -> list[Linked]:
-        """Return the linked steps of the next clause, with the clauses that belong to it."""
+        """Return the linked steps of the next clause and of the clauses that belong to it."""
         clause = self._take()
         match clause.marker:
             case "" if self._takes_back(clause):
@@ -132,11 +133,7 @@ class Sentences(Tours):
         if times := self._times_of_all(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:
-            is_told = not clause.is_question and match_start("SOMEONE BE", clause.lexemes)
-            if is_told and isinstance(condition, Seen) and after is not None and search("them|him|her|it|PRON", after.lexemes):
-                self.last = Mention(condition.thing)  # "someone is at the door - zoom in on them"
-                return [Linked(clause.link, self.last)]
-            return [Linked(clause.link, self._branches(condition, replace(clause, lexemes=(), marker="IF")))]
+            return self._elliptical(clause, after, condition)
         if (count := topic_count(self.reader.source, clause, after)) is not None:
             self._take()
             clause, after = count, self._peek()
@@ -207,6 +204,17 @@ class Sentences(Tours):
         if after.marker == "REASON" and after.link in {"", ",", "and"}:
             self._take()
         return self._ended(clause, steps)
+
+    def _elliptical(self, clause: Clause, after: Clause | None, condition: Condition) -> list[Linked]:
+        """Return the steps of a condition without "if" and of its branches: "more than five vans at the gate? Then go home"."""
+        is_told = not clause.is_question and match_start("SOMEONE BE", clause.lexemes)
+        if is_told and isinstance(condition, Seen) and after is not None and search("them|him|her|it|PRON", after.lexemes):
+            self.last = Mention(condition.thing)  # "someone is at the door - zoom in on them"
+            return [Linked(clause.link, self.last)]
+        rest, places = place_after(self.reader.source, clause.lexemes)
+        inner = elliptical_condition(self.reader.source, replace(clause, lexemes=rest), after) if places and rest else None
+        branches = self._branches(inner or condition, replace(clause, lexemes=(), marker="IF"))
+        return [Linked(clause.link, branches if inner is None else AtPlaces(places or (), (branches,)))]
 
     def _with_condition(self, there: AtPlaces | None, steps: tuple[Step, ...]) -> Step:
         """Return steps with the condition that follows them, to be carried out at places if there are any."""

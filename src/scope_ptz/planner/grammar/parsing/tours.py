@@ -31,10 +31,10 @@ class Tours(Loops):
     """Reads tours, such as "the gate and the yard, and count the cars at each", and "three times: pan left, take a picture"."""
 
     def _tour(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked] | None:
-        """Return the steps of a clause that visits presets one by one, with what is to be done at each; None for other clauses."""
+        """Return the steps of a clause that visits presets one by one, with what to do at each; None for other clauses."""
         if not steps or not all(isinstance(step, GoToPreset) for step in steps):
             return None
-        size = 0  # of the list of presets that the clause begins
+        size = 0  # number of further presets in the list that the clause begins
         while (other := self._peek(size)) is not None and _lists_place(self.reader.source, other):
             size += 1
         listed = self.clauses[self.next : self.next + size]

@@ -198,7 +198,7 @@ def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | tupl
 
 
 def _is_yes_no(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether a comparison is to be confirmed: "are there more cars than vans?", unlike "which ..." and "... or vans?"."""
+    """Return whether a comparison asks for yes or no: "are there more cars than vans?", unlike "which ..." and "... or vans?"."""
     first = next((x for x in lexemes if not x.has("FILLER", "TELL", "FIRSTLY") and x.word not in {"me", "us", "check"}), lexemes[0])
     asks = first.has("BE", "DOV", "MODAL", "IF") or first.word in {"if", "whether", "have"}
     return (

@@ -1,4 +1,4 @@
-"""Read clauses that count, or check places for things."""
+"""Read clauses that count things or check places for them."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
         rf"{SKIP} ({_LOOKING}|{ME}|WHQ|BE|DET|that|about|roughly|around|EXACTLY)* (?P<how>HOWMANY) (?P<rest>_+)", lexemes
     ):
         if match["how"][0].word in {"how much", "how_much"} and match["rest"][0].word == "of":
-            return None  # "how much of the blade is iced" asks for a share
+            return None  # "how much of the blade is iced" asks for a proportion
         return _counted(source, match["rest"], view, lexemes, match["how"][0])
     if full_match(rf"{SKIP} HOWMANY {SKIP}", lexemes):
         return Count((Thing(),), view)
@@ -93,7 +93,7 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
         return _counted(source, match["thing"], view, lexemes, None)  # "people count"
     if match := full_match(rf"{SKIP} (do|TAKE|CARRY)? DET? (headcount|head_count) (of|on|for)? (?P<rest>_+)", lexemes):
         if place_of(source, match["rest"]) is not None:
-            return None  # "a headcount on the bridge" does not say of what
+            return None  # "a headcount on the bridge" does not say what to count
         listed = full_match("(?P<place>(DET)? PRESET PRESETNOUN?) COMMA (?P<things>_+)", match["rest"])
         if listed and (place := place_of(source, listed["place"])) is not None:
             things = things_of(source, without_sum(listed["things"]))

@@ -56,7 +56,7 @@ def look_step(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> Step
 
 
 def _sweep(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
-    """Read "sweep the scene", which makes the following questions be about the whole scene."""
+    """Read "sweep the scene", which makes the questions after it apply to the whole scene."""
     scope = (
         r"(DET|FULL|WHOLETHING|VIEWNOUN|PRESETNOUN|area|site|AROUND|CAMERA|through|FILLER|over|of|whole|entire|"
         r"full|sweep|place|LIMIT|surroundings|look|and|have|DET|all|full_sweep|once|CARRY|TURN|in|AIM|complete|"

@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
 _SKIP = "(FILLER|FIRSTLY|LEADFILLER|TELL|me|us|SELF|if|whether|IF|COMMA|check|see)*"
 _THERE = "(in (PRON|it|them|VIEWNOUN)|on (PRON|it|them)|VISIBLE|NOW|FILLER)*"
-"""Words after a thing that only repeat that it is at the preset: "which presets have people in them"."""
+"""Words after a thing that only restate that it is at the preset: "which presets have people in them"."""
 
 _ANY_PRESET = (
     r"(ANY|any|either|one|any_of_the|either_of_the|any_of|any_of_these) (of)? (DET|SELF|NUM|PRON|saved|"
@@ -30,7 +30,7 @@ _LISTED = r"((COMMA|COLON|DASH|OPEN)+ (?P<places>_+?) (CLOSE)?)?"
 
 _STORED = frozenset({"available", "saved", "stored", "set", "defined", "configured", "programmed", "there", "loaded", "left"})
 _HOW_WELL = frozenset({"best", "better", "clearly", "well", "closest"})
-"""Words of questions about how well a preset shows something, which counts do not answer."""
+"""Words of questions about how well a preset shows something, which counts cannot answer."""
 
 _YES_NO = (
     rf"{_SKIP} (DOV|do|does|MODAL) {_ANY_PRESET} {_SHOW} (?P<thing>_+?) {_THERE}",

@@ -66,7 +66,7 @@ def sum_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ..
 
 
 def _calculation(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
-    """Read two counts, of different things or at different presets, with the operation that joins them."""
+    """Read two counts (of different things or at different presets) and the operation that joins them."""
     words, view = without_view(lexemes)
     view = "full" if has_full_scope(lexemes) else view
     if (summed := full_match(_SUM_OF, words)) is not None and (step := _total(source, summed["things"], view, lexemes)) is not None:
@@ -114,7 +114,7 @@ def _total(source: Source, lexemes: Sequence[Lexeme], view: object, clause: Sequ
 
 
 def _operands(source: Source, match: Match, view: object) -> tuple[Tally, Tally] | None:
-    """Return the two counts of a match; None unless both are the counts of things, at one preset each or at none."""
+    """Return the two counts of a match; None unless each counts one thing, at one preset or at none."""
     second = match["second"]
     first_part = _tally(source, match["first"], view)
     if first_part is None:

@@ -42,7 +42,7 @@ _STORED = (
     "thing|system|unit|memory|box|rig|device|right|now|here|at|the|moment|to|choose|from|pick|disposal|my|our|(this|"
     "DET) FREE \\Z)*)"
 )
-"""A question after the presets themselves: "presets?", "what views have we got saved on this thing?"."""
+"""A question about the presets themselves: "presets?", "what views have we got saved on this thing?"."""
 
 
 def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
@@ -121,7 +121,7 @@ def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
-    """Return the step of "visit every preset": a tour whose acts follow; None for other clauses."""
+    """Return the step of "visit every preset": a tour whose actions come later; None for other clauses."""
     if match := full_match(
         r"(SWITCH|CARRY|SHOW|SCAN|tour|through|to|at|FILLER)* (?P<places>(DET|EVERY)* _* PRESETNOUN EXCEPT _+)", lexemes
     ):
@@ -164,7 +164,7 @@ def _ref(source: Source, match: Any, lexemes: Sequence[Lexeme]) -> PresetRef:
 
 
 def _how(lexemes: Sequence[Lexeme]) -> Any:
-    """Return how a clause goes to a preset: with a verb that only presets follow, or one that things may follow."""
+    """Return the kind of verb with which a clause names a preset, as in ``GoToPreset.how``."""
     words = {x.word for x in lexemes}
     if words & {"use", "using"}:
         return "use"

@@ -23,7 +23,7 @@ _HOW_FAR = (
 _BACK = "(BACK|return|go_back|come_back|turn_back|swing_back|move_back|head_back)"
 _TOWARDS = rf"{_VERB} {_BACK} (to|DET|GLUE)* (?P<way>LEFT|RIGHT|UP|DOWN) (GLUE|FILLER|AGAINWORD)*"
 BACK_UP = "(FILLER)* BACK UP (FILLER|LITTLE|LOT)*"
-"""Words that can ask for a tilt, for a zoom, and for a return."""
+"""Words that can ask for a tilt, a zoom or a return."""
 _OTHER_WAY = "(in|to|DET)* (other|opposite) (way|direction|side)"
 
 

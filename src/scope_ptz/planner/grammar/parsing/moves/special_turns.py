@@ -1,4 +1,4 @@
-"""Read turns whose words name no direction and amount: "turn around", "level the camera", "pan 20, tilt -10"."""
+"""Read turns that are not stated as a direction and an amount: "turn around", "level the camera", "pan 20, tilt -10"."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _NO_CLOCK = Unclear(
     "A clock position can mean a turn or a place in the picture. By how many degrees shall I turn, and which way, or "
     "what shall I look at?"
 )
-"""The answer to "look at 3 o'clock", which some say for a quarter turn and others for the right edge of the picture."""
+"""The answer to "look at 3 o'clock", which can mean a quarter turn or the right edge of the picture."""
 
 
 def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
-    """Return the step of a turn whose words name no direction and amount: "turn around", "level the camera"."""
+    """Return the step of a turn that is not stated as a direction and an amount: "turn around", "level the camera"."""
     glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
     if (clock := full_match(f"{glue} (to|at|towards) SELF (?P<hour>NUM) (o_'_clock|o_clock) {glue}", lexemes)) is not None:
         return _to_hour(clock["hour"][0].value, lexemes)

@@ -48,7 +48,7 @@ ME = "(me|us|FILLER|SELF|back|again|out)*"
 
 
 class NotUnderstoodError(Exception):
-    """A clause has words that no reading accounts for. ``lexemes`` are these words."""
+    """A clause contains words that could not be interpreted. ``lexemes`` holds these words."""
 
     def __init__(self, lexemes: Sequence[Lexeme]) -> None:
         super().__init__(" ".join(lexeme.word for lexeme in lexemes))
@@ -57,10 +57,10 @@ class NotUnderstoodError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text of an instruction, and the presets of the camera; none if they are unknown.
+    """The text of an instruction, and the presets of the camera if they are known.
 
     Attributes:
-        has_moved: Whether an earlier clause moves the camera. If so, "the people on the bridge" are sought in the new view.
+        has_moved: Whether an earlier clause moves the camera. If so, "the people on the bridge" are looked for in the new view.
     """
 
     text: str
@@ -73,7 +73,7 @@ class Clause:
     """A clause of an instruction.
 
     Attributes:
-        link: What separates it from the clause before: "and", ",", "then", ".", ":", or "" for nothing.
+        link: What separates it from the previous clause: "and", ",", "then", ".", ":", or "" for nothing.
         marker: The class of the word that makes it subordinate, such as IF; "" for a main clause.
         lexemes: Its lexemes without the separator and the marker.
         is_question: Whether a question mark ends it.
@@ -93,7 +93,7 @@ def text_of(source: Source, lexemes: Sequence[Lexeme]) -> str:
 
 
 def command_of(lexeme: Lexeme) -> Lexeme | None:
-    """Return the command for a past form or participle: "count" for "counted". None for other words, and for verbs as they are."""
+    """Return the command for a past form or participle: "count" for "counted". None for other words and for base forms."""
     verb = next((name for name in VERBS if lexeme.has(f"{name}-ED")), None)
     return None if verb is None or lexeme.has(*VERBS) else lexeme.reworded(verb.lower(), verb)
 

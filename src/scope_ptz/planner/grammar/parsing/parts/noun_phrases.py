@@ -22,7 +22,7 @@ _NEVER = (
 """Classes of words that no description contains."""
 
 _AROUND_NOUN_PHRASE = ("ATLEAST", "MORETHAN", "FEWERTHAN", "EXACTLY", "ADVERB", "VISIBLE", "SELF")
-"""Classes of words before and after a noun phrase that a description may contain: "fewer than 20 people", "boats alongside"."""
+"""Classes of words that a description may contain before or after its noun phrase: "fewer than 20 people", "boats alongside"."""
 
 _COMMANDS = ("TELL", "SWITCH", "TAKE", "SHOW", "FIND", "CARRY", "READ", "COUNT", "SNAP", "AIM", "TRACK", "TURN", "SCAN", "KEEP")
 _LEAD = r"(me|us|FILLER|OFNOUN|all of|both of|any of|some of)*"
@@ -163,13 +163,13 @@ def has_noun(lexemes: tuple[Lexeme, ...]) -> bool:
 
 
 def is_noun(word: str) -> bool:
-    """Return whether a word is a noun in the lexicons of English."""
+    """Return whether the English lexicon or the list of common nouns contains a word."""
     words = word.replace("_", " ")
     return lexicon().concept(words) is not None or is_common_noun(words)
 
 
 def _is_command(lexemes: Sequence[Lexeme], i: int) -> bool:
-    """Return whether the word at a position of a description is a verb in the imperative, not after a determiner."""
+    """Return whether the word at a position of a description is an imperative verb that does not follow a determiner."""
     lexeme = lexemes[i]
     if not lexeme.has(*_COMMANDS) or lexeme.has("FREE", "PREP", "DET") or is_noun(lexeme.word):
         return False
@@ -226,7 +226,7 @@ def things_of(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Thing, ...] | 
 
 
 def _is_separate(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> bool:
-    """Return whether "and" joins two things, instead of two parts of the description of one."""
+    """Return whether "and" joins two things, rather than two parts of one description."""
     if match_start(r"(DET|HOWMANY|EVERY|the)", after):
         return not any(x.has("REL") for x in before) and not (
             any(x.word == "between" for x in before) and not any(x.has("AND") for x in before)

@@ -1,6 +1,6 @@
 """Match patterns of word classes against lexemes.
 
-A pattern is a regular expression whose letters are lexemes. A word in capitals is a class of the lexicon, a word in small letters
+A pattern is a regular expression whose letters are lexemes. A word in capitals is a class of the lexicon, a word in lower case
 is that word, and "_" is any lexeme: "(COUNT|tally) DET? (?P<things>_+)". Alternation, groups, repetition and look-ahead are those
 of regular expressions. Spaces have no meaning.
 """
@@ -24,7 +24,7 @@ class Match:
         self._match, self._lexemes, self._offsets = match, lexemes, offsets
 
     def __getitem__(self, name: str) -> Sequence[Lexeme]:
-        """Return the lexemes of a group; none if the group took no part in the match."""
+        """Return the lexemes of a group; empty if the group took no part in the match."""
         group = self._found.get(name)
         if group is None:
             return ()
@@ -51,7 +51,7 @@ class Match:
 
 
 class _Pattern:
-    """A pattern that is compiled when it can first match."""
+    """A pattern that is not compiled until some lexemes might match it."""
 
     def __init__(self, source: str) -> None:
         self._source, self._is_compiled = source, False

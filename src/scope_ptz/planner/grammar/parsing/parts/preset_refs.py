@@ -32,6 +32,9 @@ EVERY_PLACE = (
 _OCCUPANCY = frozenset(
     {"empty", "full", "clear", "busy", "quiet", "crowded", "packed", "deserted", "occupied", "vacant", "blocked"}
 )
+_PREPOSITIONS_OF_PLACES = frozenset(
+    {"at", "in", "on", "inside", "of", "off", "into", "onto", "around", "round", "outside", "across"}
+)
 _IS = "(BE|LOOKSLIKE|looks|seems|gets)"
 
 
@@ -50,7 +53,7 @@ def place_of(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
 
 
 def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
-    """Return the preset of which a clause says or asks how full it is: "the yard is empty", "is the yard busy?"."""
+    """Return the preset in a statement or question about how busy it is: "the yard is empty", "is the yard busy?"."""
     match = full_match(
         f"((?P<place>_{{1,3}}?) {_IS}|{_IS} (?P<asked>_{{1,3}}?)) (ADVERB|FILLER|not|NOW|still)* (?P<state>FREE|_)", lexemes
     )
@@ -67,10 +70,27 @@ def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | Non
     return place_of(source, match["place"] or match["asked"])
 
 
+def place_asked_about(lexemes: Sequence[Lexeme]) -> PresetRef | None:
+    """Return the only preset that a question names, if the name cannot be that of a thing in the current view.
+
+    Names of several words ("bus-bay") and words that are in no lexicon ("debarker") are taken for the preset. A preset after
+    a preposition such as "near" only says where something is.
+    """
+    found = [i for i, x in enumerate(lexemes) if x.has("PRESET")]
+    if len(found) != 1:
+        return None
+    name = lexemes[found[0]]
+    before = [x for x in lexemes[: found[0]] if not x.has("DET") or x.has("PREP")]
+    if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES:
+        return None
+    is_unmistakable = "_" in name.word or lexicon().concept(name.word) is None
+    return PresetRef(name.preset, explicit=True) if is_unmistakable else None
+
+
 def without_inner_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Source, tuple[Lexeme, ...], PresetRef] | None:
     """Return "is the barrier up?" and the preset for "is the barrier at the crossing up?"; None for other clauses.
 
-    The words are returned as a text of their own with its lexemes.
+    The question is returned as a new source with its lexemes.
     """
     match = full_match("(?P<before>_+? (FREE|SOMEONE)) (?P<at>(at|on) (DET)? PRESET PRESETNOUN?) (?P<after>_+)", lexemes)
     if (

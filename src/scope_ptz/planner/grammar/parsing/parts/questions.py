@@ -39,5 +39,5 @@ _COMMANDS = (
 
 
 def is_question(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes have the form of a question, without a command in it."""
+    """Return whether lexemes have the form of a question and contain no command."""
     return any(match_start(f"{_LEAD} {form}", lexemes) for form in _FORMS) and not search(_COMMANDS, lexemes) and len(lexemes) > 1

@@ -99,7 +99,7 @@ def _is_part_of_noun(rest: Sequence[Lexeme]) -> bool:
 
 
 def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
-    """Return a clause without the preset that ends it ("count the cars at the gate"), and this preset; None for none."""
+    """Return a clause without the preset that ends it ("count the cars at the gate"), and that preset, or None."""
     lexemes = _without_time(trimmed(lexemes, *_TRIVIAL))
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]

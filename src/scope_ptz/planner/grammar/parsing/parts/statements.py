@@ -1,4 +1,4 @@
-"""Recognise statements and comments, which accompany a command and do not command anything."""
+"""Recognise statements and comments that accompany a command without commanding anything."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _ONLY_PAST = frozenset({
     "came", "went", "saw", "took", "fell", "broke", "began", "blew", "drove", "flew", "grew", "rang", "ran", "spoke", "wore",
     "gave", "ate", "froze", "stole", "threw", "woke", "rode", "swam", "forgot", "knew", "shook",
 })  # fmt: skip
-"""Past forms that are no participles, so they follow a subject: "the shouting came from behind", unlike "the car parked here"."""
+"""Past forms that are not participles, so they follow a subject: "the shouting came from behind", unlike "the car parked here"."""
 _ACTIVITIES = frozenset({
     "got", "getting", "hearing", "missing", "losing", "having", "expecting",
 })  # fmt: skip
-"""Forms of verbs that command no camera: "..., getting glare off the water"."""
+"""Verb forms that are never commands to a camera: "..., getting glare off the water"."""
 _PARTS = frozenset({"side", "hand", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
 
 
@@ -41,7 +41,7 @@ def is_statement(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def subject_of(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return the subject of a statement: "a kid" in "a kid just fell over"; none if lexemes are no statement."""
+    """Return the subject of a statement: "a kid" in "a kid just fell over"; empty if lexemes are not a statement."""
     for end in _subject_ends(lexemes):
         if _is_predicate(lexemes, end):
             return tuple(lexemes[:end])
@@ -49,7 +49,7 @@ def subject_of(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def without_time_ahead(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes without the time until something happens at their end: "we start loading in five minutes"."""
+    """Strip the time until an event from the end of lexemes: "we start loading in five minutes"."""
     match = full_match("(?P<body>_+) in (AMOUNTISH|DET)* (NUM|FRACTION|DET)+ (MINUTES|HOURS) (FILLER)*", lexemes)
     return tuple(match["body"]) if match else tuple(lexemes)
 

@@ -1,1 +1,1 @@
-"""Replace wordings of an instruction by plainer ones with the same meaning, before its clauses are read."""
+"""Replace wordings in an instruction with plainer ones of the same meaning, before its clauses are read."""

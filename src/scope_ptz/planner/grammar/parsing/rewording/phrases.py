@@ -1,4 +1,4 @@
-"""Replace some wordings by others that mean the same, so that the rules for those also read them."""
+"""Replace some wordings with equivalent ones that the other rules already cover."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _PLACES_FIRST = (
     " ((COMMA|AND)+ (DET|PRESETNOUN)* PRESET PRESETNOUN?)+ (?P<end>COMMA|COLON)"
     " (?P<go>(CARRY (there|to them|to each) (COMMA|AND)+))?"
 )
-"""Several places before what is done at each of them."""
+"""A list of places, followed by what to do at each of them."""
 
 _COUNT_AT_LIST = (
     "(FILLER|WRAPPER|SELF|need|want)* (DET)? (COUNTNOUN|COUNT|HOWMANY) (DET|FREE){1,4} (FILLER|COMMA)* (?P<end>COLON|COMMA|DASH) "
@@ -39,13 +39,13 @@ _WANTED_PICTURE = (
     "(FILLER)* ((DET)? FREE{1,2} (wants|needs|WRAPPER)|WRAPPER|SELF (want|need)) (DET|ANY|NUM|SEVERAL)? PICTURE of _+?"
     " PREP? (DET)? (?P<place>PRESET) PRESETNOUN? STOP (FILLER)* (?P<go>CARRY|SWITCH) (over|ADVERB|FILLER)* there (COMMA|AND|THEN)*"
 )
-"""A wish for a picture, before the commands that take it at that place."""
+"""A request for a picture, before the commands that take it at that place."""
 
 _FOLLOWED_AT_PLACE = (
     "(FILLER|COMMA)* (KEEP|TRACK|TRACK-ING) ((?!COMMA|STOP|AND|THEN) _)+? (?P<place>(at|in) (DET)? PRESET PRESETNOUN?) (COMMA)? "
     rf"(for|during|over) {SECONDS} FILLER* (?=COMMA|STOP|AND|THEN|\Z)"
 )
-"""A thing to follow at a preset, before the time: "follow the van at the gate for 20 seconds"."""
+"""A thing to follow at a preset, then for how long: "follow the van at the gate for 20 seconds"."""
 
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
@@ -66,7 +66,7 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
 
 
 def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with "at gate and yard, ..." for "for each of gate and yard: go there, ...", which means the same."""
+    """Return lexemes with "for each of gate and yard: go there, ..." shortened to "at gate and yard, ..."."""
     match = match_start(_PLACES_FIRST, lexemes)
     if match is None:
         return lexemes
@@ -77,7 +77,7 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _followed_at_place(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with "at the gate, follow the van for 20 seconds" for "follow the van at the gate for 20 seconds"."""
+    """Return lexemes with the preset of a thing to follow moved to the front: "at the gate, follow the van for 20 seconds"."""
     match = match_start(_FOLLOWED_AT_PLACE, lexemes)
     if match is None:
         return lexemes
@@ -87,7 +87,7 @@ def _followed_at_place(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with "zoom out 1.5x until ..." for "zoom out in steps of 1.5x until ..."."""
+    """Return lexemes with "zoom out 1.5x until ..." in place of "zoom out in steps of 1.5x until ..."."""
     match = search(
         "(ZOOM|ENLARGE|WIDEN|ZOOM-ING) (IN|OUT)? (?P<dropped>in (STEPNOUN|steps|increments|stages) of) NUM X UNTIL", lexemes
     )
@@ -95,7 +95,7 @@ def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _without_yes_or_no(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with a question mark for "yes or no" at the end: "kids on the crossing, yes or no"."""
+    """Return lexemes with "yes or no" at the end replaced by a question mark: "kids on the crossing, yes or no"."""
     ending = [x.word for x in lexemes[-4:] if not x.has("STOP", "QUESTION")][-3:]
     if ending != ["yes", "or", "no"] or len(lexemes) < 6:
         return lexemes
@@ -105,7 +105,7 @@ def _without_yes_or_no(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _count_at_list(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with "count people at the gate and the yard" for "count people: the gate, the yard"."""
+    """Return lexemes with "count people at the gate and the yard" in place of "count people: the gate, the yard"."""
     match = match_start(_COUNT_AT_LIST, lexemes)
     return lexemes if match is None else [x.reworded("at", "PREP", "GLUE") if x is match["end"][0] else x for x in lexemes]
 
@@ -116,13 +116,13 @@ def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     if match is None or not any(x.has("PICTURE", "SNAP", "ANOTHER") or x.word == "one" for x in lexemes[match.size :]):
         return lexemes
     if any(x.word in {"it", "him", "her", "them"} for x in lexemes[match.size :]):
-        return lexemes  # "zoom in on it" needs the thing in the wish
+        return lexemes  # "zoom in on it" needs the thing in the request
     go, place = match["go"][0], match["place"][0]
     return [go, go.reworded("to", "PREP", "GLUE"), place, go.reworded(",", "COMMA"), *lexemes[match.size :]]
 
 
 def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
-    """Return the lexemes that replace one of them, or that lexeme itself."""
+    """Return the lexemes that replace a lexeme; only that lexeme if it stays."""
     last = before[-1] if before else None
     if (changed := reworded_in_context(before, lexeme, after)) is not None:
         return changed

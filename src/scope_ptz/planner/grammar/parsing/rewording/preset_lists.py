@@ -1,4 +1,4 @@
-"""Replace wordings about every preset by others that mean the same, so that the rules for those also read them."""
+"""Replace wordings about lists of presets with equivalent ones that the other rules already cover."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ _CHECKED_FIRST = (
     "EVERY (of|DET|SELF|single)* PRESETNOUN "
     "(AND|COMMA|THEN)+ (?P<asked>TELL|SHOW|LISTING) (me|us)? (?P<which>which) (?P<ones>ones|one)"
 )
-"""Words that go to every preset before the question which of them show something."""
+"""Words that go to every preset, before a question about which of them show something."""
 
 
 _LISTED = "(?P<places>(DET)? PRESET PRESETNOUN? ((COMMA|AND|THEN)+ (DET)? PRESET PRESETNOUN?)+)"
 _GO_ROUND = "(FILLER|SHOW|TELL|SWITCH|CARRY|TAKE|AIM|SCAN|at|to|through)*"
 _CHECKED_IN_ORDER = f"{_GO_ROUND} {_LISTED} (COMMA)? (?P<end>for) (FREE|SOMEONE|ANY|DET)"
-"""Presets in an order, at all of which something is looked for: "check the gate and then the yard for people"."""
+"""An ordered list of presets to check for something: "check the gate and then the yard for people"."""
 
 _STOP_AT_FIRST = (
     f"{_GO_ROUND} {_LISTED} (?P<end>STOP|COMMA|COLON|THEN|AND) (AND|COMMA|THEN)* (HALT|STAY|KEEP|stop|end) (at|on|with)"
 )
-"""Presets in an order, at the first of which the camera stops: "try the gate, then the yard; stop at the first with a van"."""
+"""An ordered list of presets, with a condition for stopping at one: "try the gate, then the yard; stop at the first with a van"."""
 
 
 def with_presets_reworded(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
@@ -53,5 +53,5 @@ def _with_condition(lexemes: Sequence[Lexeme], i: int) -> Sequence[Lexeme]:
 
 
 def _joined(lexeme: Lexeme) -> Lexeme:
-    """Return a comma for a separator, so that a list of presets is read as one; any other lexeme unchanged."""
+    """Return a comma for a separator, so that presets are read as one list; any other lexeme unchanged."""
     return lexeme.reworded(",", "COMMA") if lexeme.has("THEN", "STOP", "COLON") else lexeme

@@ -1,6 +1,6 @@
 """Read self-repairs: "pan left 20, sorry, I meant right 20" is read as "pan right 20".
 
-In a repair, a speaker retracts words, says that they do ("no", "sorry", "I mean", "make that"), and says what to do instead.
+In a repair, a speaker signals that something was wrong ("no", "sorry", "I mean", "make that") and says what to do instead.
 A repair replaces a direction, a number or a preset of the previous clause, reverses its direction ("no, the other way"), or
 replaces a single command as a whole ("scratch that, tilt down 5"). Anything else is left as it is, and the user is asked.
 """
@@ -28,8 +28,8 @@ _RETRACTION = (
 """Words that retract what was said just before them."""
 
 _SLIP = "no|nah|naw|nope|sorry|wait|oops|gah|argh|aargh|ugh|damn|dammit|drat|er|erm|actually|OR? rather|(make|made) (that|it)"
-"""Words that retract what was said before only if what follows replaces a part of it: "wait, zoom in" may come in addition,
-and "no zoom" forbids to zoom."""
+"""Words that retract what was said before only if what follows replaces a part of it: "wait, zoom in" may be an extra command,
+and "no zoom" forbids zooming."""
 
 _HESITATION = "FILLER|well|oops|hang on|hold on"
 _EDITING = (
@@ -83,7 +83,7 @@ def repaired(lexemes: Sequence[Lexeme], text: str) -> Repaired:
 
 
 def unresolved_editing(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return words with which the speaker retracts something, without a repair that says what; none if there are none."""
+    """Return the words that retract something without a repair that says what; empty if there are none."""
     found = search(
         rf"{_PAUSE} (FILLER)* (?P<editing>(no|wait|oops|hang on|hold on|(scratch|scrap|strike) that)+) (FILLER)* {_PAUSE}", lexemes
     )
@@ -93,7 +93,7 @@ def unresolved_editing(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def without_text(said: Repaired, meant: tuple[Lexeme, ...]) -> Repaired:
-    """Return an instruction with other lexemes, and with spaces instead of the words that are no longer among them."""
+    """Return an instruction with new lexemes, and with spaces in its text in place of the words that were dropped."""
     text = said.text
     for lexeme in said.lexemes:
         if not any(kept.start <= lexeme.start and lexeme.end <= kept.end for kept in meant):
@@ -203,7 +203,7 @@ def _same_axis(one: Lexeme, other: Lexeme) -> bool:
 
 
 def _with_number(old: tuple[Lexeme, ...], match: Match) -> tuple[Lexeme, ...] | None:
-    """Return a clause with its last number replaced, and the unit of this number if the new one has a unit of the same kind."""
+    """Return a clause with its last number replaced, along with its unit if the new number has a unit of the same kind."""
     numbers = [i for i, x in enumerate(old) if x.has("NUM")]
     if not numbers:
         return None

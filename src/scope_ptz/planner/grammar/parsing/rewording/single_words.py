@@ -1,4 +1,4 @@
-"""Replace single words whose neighbours show that they stand for others: slips of the keyboard, and verbs in unusual forms."""
+"""Replace single words whose neighbours show that they stand for others: typing errors, and verbs in unusual forms."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COMMANDS = frozenset({"tilt", "zoom", "pan", "take", "go", "turn", "snap", "cou
 
 
 def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme] | None:
-    """Return the lexemes that replace one of them; None if it stays.
+    """Return the lexemes that replace a lexeme; None if it stays.
 
     Args:
         before: The lexemes before it, already reworded.

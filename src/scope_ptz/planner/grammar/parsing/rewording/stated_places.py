@@ -141,7 +141,7 @@ def _without_source(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _question_about(text: str, stated: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str | None:
-    """Return the question whether a statement is true: "are the lights out?", "is there a dog?"; None for other statements."""
+    """Return the question that tests a statement: "are the lights out?", "is there a dog?"; None for other statements."""
     if not thing and match_start("(there BE)? (SOMEONE|NOONE) (BE|HAVEV|'s|\\Z)", stated):
         return "is there anyone?"
     is_or_should_be = "((MODAL|should|ought to) (FILLER)* be|BE)"
@@ -153,7 +153,7 @@ def _question_about(text: str, stated: Sequence[Lexeme], thing: Sequence[Lexeme]
 
 
 def _statement_end(lexemes: Sequence[Lexeme]) -> int:
-    """Return the number of lexemes of the statement at the beginning, which ends at a full stop, or after a preset; 0 for none."""
+    """Return the length of the statement at the beginning, which ends at a full stop or after a preset; 0 if there is none."""
     for i, x in enumerate(lexemes):
         if x.has("QUESTION"):
             return 0
@@ -213,7 +213,7 @@ def _joined(text: str, *parts: Sequence[Lexeme]) -> str:
 
 
 def _with_thing(text: str, lexemes: Sequence[Lexeme], thing: Sequence[Lexeme]) -> str:
-    """Return the words from the first of some lexemes on, with the thing in place of the first pronoun."""
+    """Return the text from the first lexeme on, with the thing in place of the first pronoun."""
     pronoun = next((x for x in lexemes if x.word in _PRONOUNS), None)
     if pronoun is None or not thing or not _refers(lexemes):
         return text[lexemes[0].start :]
@@ -237,7 +237,7 @@ def _refers(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _thing_in(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return the thing that a statement is about: "a dog" in "we had a call about a dog"; none if it cannot be told."""
+    """Return the thing that a statement is about: "a dog" in "we had a call about a dog"; empty if it is unclear."""
     for pattern in ("there (MODAL)? (BE|be|HAVEV been)+ (?P<thing>_+)", "(?P<thing>_+?) (MODAL)? (BE|be|been|HAVEV)+ _*"):
         is_someone = bool(lexemes) and lexemes[0].has("SOMEONE") and len(lexemes) > 2
         if not is_someone and (match := full_match(pattern, lexemes)) is not None and is_noun_phrase(match["thing"]):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 _PICTURES = "photo|picture|pic|snap|shot|still"
 _GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
 _ENDS = {"lower": "down", "upper": "up", "left": "left", "right": "right"}
@@ -18,6 +20,64 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
+    (r"\bcloseup\b", "close-up"),
+    (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
+    (
+        r"\b(?:i )?(?:wish|want|would like|need) to (?:examine|inspect|study) ([^,.;]+?)(?: more closely| up close| "
+        r"closely| in detail)?\W*$",
+        r"zoom in on \1",
+    ),
+    (
+        r"\b(?:swing|turn|spin) (?:it |her |the camera )?(?:right |all the way )?a?round(?: so(?: that)?| until| till) "
+        r"(?:you['’]re|you are|it['’]s|it is|we['’]re) (?:facing|looking|pointing) the other way",
+        "turn around",
+    ),
+    (
+        r"\bzoom (in|out) to (?:the|its) (?:maximum|fullest|full|greatest) (?:extent|amount|level|zoom)(?: "
+        r"(?:available|possible))?",
+        r"zoom all the way \1",
+    ),
+    (r"(\ball the way), (?:as )?far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
+    (r"^.*\bin the same direction\b.*$", lambda match: _same_direction(match[0])),
+    (r"\bhave a look (?=which|what|how many|if|whether)", "tell me "),
+    (r"\bgo to the one (?:that['’]s got|that has|with|which has) (?:the )?(?:more|most)(?=\W*$|,)", "go there"),
+    (r", (half a minute|a minute|(?:\d+|[a-z]+) (?:seconds|minutes)) ?(?:['’]ll|will|should) do\b", r" for \1"),
+    (r"\bal the way\b", "all the way"),
+    (r"\bnose (up|down)\b", r"tilt \1"),
+    (r"(^|[,.;] |then |and )(?:then )?back to (\d+(?:\.\d+)?) ?(?:x|times)\b", r"\1zoom to \2x"),
+    (r"\b(\d+) plus (?:another |a further |an extra )?(\d+)(?= degrees|\W*$)", lambda match: str(int(match[1]) + int(match[2]))),
+    (rf"^((?:{'left|right|up|down'}) \d+)(?:,? \1)(?:,? \1)*\W*$", lambda match: _each_after_the_other(match)),
+    (r"(?<=\d)x for (?:a|one|the) (?:photo|picture|shot|snap|still)\W*$", "x and take a picture"),
+    (r"\btilt to (\d+)(?: degrees)? below (?:the )?(?:horizontal|horizon)\b", r"tilt to minus \1 degrees"),
+    (r"\b(?:point|aim|set)(?: the camera)? (?:at|to) (-?\d+)(?: degrees)? (pan|tilt)\b", r"set \2 to \1 degrees"),
+    (r"\b(two|three|four|five|\d) time (?=bigger|closer|larger|wider|smaller)", r"\1 times "),
+    (r"(?<!a )\blittle bit (?=more|closer|further)", "a bit "),
+    (r",? a (?:little )?bit only\W*$", ""),
+    (r"\bgo to whichever(?: one)?(?: it is| that is| has (?:it|more|the most)| wins?)?(?=\W*$|,)", "go there"),
+    (r"^(?:stick|stay|keep) (?:with|on) (?=(?:the|that|him|her|it|them|this)\b(?! (?:left|right|move|pan|tilt|zoom)))", "follow "),
+    (r",? as (?:he|she|it|they) (?:goes?|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)", ""),
+    (
+        r", ((?:\d+|[a-z]+(?:-[a-z]+)?) (?:seconds|minutes)) (?:ought to|should|will|would) (?:do|be enough|be "
+        r"plenty)(?: it| nicely| fine)?",
+        r" for \1",
+    ),
+    (r"\b(?:i )?(?:need|want|would like|['’]d like)(?: to)? (?:see|look at) (?:more close|closer|more closely) ", "zoom in on "),
+    (
+        r"\b(?:i )?(?:need|want|would like|['’]d like) to (?:see|look at) ([\w ]+?) (?:up close|close up|close-up|from close up)",
+        r"zoom in on \1",
+    ),
+    (
+        r"\b(?:show (?:me|us)|let me see) ((?:the|that|this|my|our) [\w ]+?) (?:up close|close up|close-up|from close up)",
+        r"zoom in on \1",
+    ),
+    (r"\bi (want|need) (?=see\b)", r"i \1 to "),
+    (
+        r"^((?:zoom|find|follow|track|show|look at|get)\b.*?) (?:which|that|wich) (?:is|are) (?=(?:on|in|at|by|near"
+        r"|behind|under|beside|next to)\b)",
+        r"\1 ",
+    ),
+    (r"^(?:a )?close(?:r)?(?: |-)?(?:look|view|up), (?:the )?(?=[a-z][\w -]*\W*$)", "zoom in on the "),
     (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
     (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
     (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
@@ -43,7 +103,22 @@ MOVES = (
     (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
     (r"^keep an eye on (.+?), (?:and )?follow (?:it|him|her|them) for (?=.+$)", r"follow \1 for "),
 )
-"""Patterns with the words, or the function of the match, that replace them."""
+"""Patterns with their replacements: words, or a function of the match."""
+
+
+def _same_direction(text: str) -> str:
+    """Return "right 10, then 20 degrees to the right" for "right 10, then a further 20 degrees in the same direction"."""
+    named = re.findall(rf"\b(?:{_DIRECTIONS})\b", text, re.IGNORECASE)
+    if len(named) != 1:
+        return text
+    return re.sub(
+        r"(?:a further |another )?([\w-]+ degrees) in the same direction\b", rf"\1 to the {named[0]}", text, flags=re.IGNORECASE
+    )
+
+
+def _each_after_the_other(match: re.Match[str]) -> str:
+    """Return "left 5, then left 5, then left 5" for "left 5, left 5, left 5"."""
+    return ", then ".join([match[1]] * len(re.findall(re.escape(match[1]), match[0], re.IGNORECASE)))
 
 
 def _steps(word: str) -> str:

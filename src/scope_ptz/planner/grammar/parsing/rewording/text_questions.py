@@ -8,11 +8,18 @@ _TAGS = "right|correct|yeah|is there|are they|is that right"
 _INVERTED = r"(?:is|are|does|do|has|have) (?:the|there|any|anyone|anybody|someone|somebody|all|an?)\b"
 _JOINED = re.compile(
     rf"(?P<topic>(?:[\w' -]+: )?)(?P<first>(?:{_INVERTED}|how many )[^?,.;:]+?),? "
-    rf"and (?P<second>(?:{_INVERTED}|how many )[^?,.;:]+)\?*",
+    rf"and (?P<second>(?:{_INVERTED}|how many |(?:what|which|where|who)\b)[^?,.;:]+)\?*",
     re.IGNORECASE,
 )
 _NOT_JOINED = re.compile(r"\b(?:if|or|than|more|fewer|same|both|between|each|total|together|altogether)\b", re.IGNORECASE)
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
+
+_MAX_TOPIC = 7  # maximum number of words before "is he ...?"
+_NO_TOPIC = re.compile(
+    r"\b(?:zoom|pan|tilt|turn|go|take|count|follow|track|look|find|check|tell|show|read|see|how|what|which|who|is|are|was|has|if|there|any"
+    r"|please|ok|okay|hey|hi|hiya|hello|right|so|now|and|left|up|down|home|move|swing|point|aim|focus|hold|wait|stop|yes|no)\b",
+    re.IGNORECASE,
+)
 
 QUESTIONS = (
     (r"\bppl\b", "people"),
@@ -33,7 +40,74 @@ QUESTIONS = (
     (r"\bcheck once\b", "check"),
     (r"^look (?=whether|if\b)", "check "),
     (r"\brevert with\b", "tell me"),
+    (r"(^|\s)y/n\b", r"\1yes or no"),
+    (r"\b(?:then )?answer me this:? ", "tell me "),
+    (
+        r"^(?:but )?looking (?:at|over|around|round|all around|all round) the (?:whole|entire|full) (?:scene|site"
+        r"|area|place), ([^?]*)\?*$",
+        r"\1 in the whole scene?",
+    ),
+    (r"^looking all (?:around|round|over)(?: the \w+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (
+        r"^(anything|anyone|anybody|someone|somebody) (.+?) or am i (?:\w+ )?(?:hearing|seeing|imagining) things(?: again)?\?",
+        r"\1 \2?",
+    ),
+    (r"^((?:the )?\w+(?: \w+){0,2}?) (is|are) ((?:\w+ )*?\w+ or \w+)\?$", lambda match: _inverted(match)),
+    (
+        r"^where(?:['’]d| did| have| has) (?:they|he|she|you|we|i) (?:leave|left|put|park|parked) ((?:the|my|our|that"
+        r"|his|her) [^,?.]+)[,?.]+ *"
+        r"(?:find|show|locate|zoom in on) (?:it|them)\b",
+        r"find \1",
+    ),
+    (r"\bwhat presets hav\b", "what presets have"),
+    (r"^time on (the [\w ]+?)\?*$", r"what time does \1 show?"),
+    (
+        r"^((?:(?:the|that|my|our) )?[\w'’ ]+), (is|are|does|was|can|has|which way (?:is|are)|what (?:is|are)) (?:he"
+        r"|she|it|they) ([^?,]+)\?$",
+        lambda match: _about_topic(match),
+    ),
     # Counts
+    (
+        r"\b(how m[ae]ny [^,.;?]+?) (?:have we(?: got)?|we(?:['’]ve)? got|have you got|have they(?: put out| got| "
+        r"left(?: out)?)|are you seeing|do you make it)(?= (?:at|in|on|down|up|over|out|by)\b|\W*$)",
+        r"\1 are there",
+    ),
+    (r" (?:at|in) this (?:hour|time of (?:day|night|year))(?=\W|$)", ""),
+    (r"^(?:need|i need|want)(?: a| the)? (?=number of\b)", ""),
+    (r"^(how many .*?\b(?:is|are)) (?:currently|presently|now) (?=\w)", r"\1 "),
+    (
+        r"^((?:so |now |and )?(?:how many|is|are|any|has|have|did|who|what)\b.*?) this (?:morning|afternoon|evening"
+        r"|minute)(?=[?.!]*$)",
+        r"\1",
+    ),
+    (r"\bhi vis\b", "hi-vis"),
+    (r"^total (?=(?:people|\w+s)\b)", "number of "),
+    (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan)\W*$", " all around"),
+    (
+        r",? (?:and )?not (?:just|only) (?:in |at |on )?(?:this|that) (?:part|bit|area|side|corner|section|end)"
+        r"(?: of (?:it|the (?:picture|scene|view|frame|shot)))?",
+        "",
+    ),
+    (r"^head ?count(?: please)?,? (?:just|only) (?:the )?(?:ones|those) (?=with|in|wearing)", "count the people "),
+    (
+        r"^compare the (?:number|numbers|count) of ([\w ]+?) (?:in|at|on) (.+?) (?:with|to|and|against) (?:the "
+        r"(?:number|count|one)s? )?(?:in|at|on) "
+        r"(.+?)\W*$",
+        r"which has more \1, \2 or \3?",
+    ),
+    (r",? (?:and )?not (?:just|only) (?:here|there)(?=\W*$)", ""),
+    (r"\bexcl?\. (?=\w)", "except "),
+    (r"\b(?:no\.|qty\.?|quantity) (?:of )?(?=[a-z])", "number of "),
+    (
+        r"\b(on|of|at|the|count|count me|find|see|follow) them (?!for|at|in|on|across|until|as|with|to|from|and|is"
+        r"|was|towards|past|all)(?=(?:\w+ )?\w+s\b)",
+        r"\1 the ",
+    ),
+    (
+        r"\bdo (?:us|me) a (?:full |quick )?(?:sweep|scan)(?: right round| all round| all around| round| around)* and "
+        r"(?=(?:tell|count|see)\b)",
+        "sweep the scene and ",
+    ),
     (r"\bseparately (?=on|at|in\b)", ""),
     (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
     (r",? each (?:one )?(?:on its own|on their own|separately|individually|by itself)(?=[.!?]|$)", " separately"),
@@ -64,15 +138,34 @@ QUESTIONS = (
 """Patterns with the words that replace them."""
 
 
+def _about_topic(match: re.Match[str]) -> str:
+    """Return "is that man carrying a box?" for "that man, is he carrying a box?"; other texts unchanged."""
+    if len(match[1].split()) > _MAX_TOPIC or _NO_TOPIC.search(match[1]):
+        return match[0]
+    article = "" if re.match(r"(?:the|that|my|our)\b", match[1], re.IGNORECASE) else "the "
+    return f"{match[2]} {article}{match[1]} {match[3]}?"
+
+
+def _inverted(match: re.Match[str]) -> str:
+    """Return "is the gate open or shut?" for "the gate is open or shut?"; a question is returned unchanged."""
+    if re.match(r"(?:what|which|who|where|how|when|why|is|are|any|there|it|this|that|tell|check|see)\b", match[1], re.IGNORECASE):
+        return match[0]
+    article = "" if match[1].lower().startswith("the ") else "the "
+    state = re.sub(r" or (?:no|not)$", "", match[3], flags=re.IGNORECASE)
+    return f"{match[2]} {article}{match[1]} {state}?"
+
+
 def with_separate_questions(text: str) -> str:
     """Return "is the bin full? how many cars are there?" for "is the bin full, and how many cars are there?".
 
-    A second question with a pronoun is only separated from a count, whose things the pronoun then refers to.
+    A second question with a pronoun is separated only if the first is a count, because the pronoun then refers to what is counted.
     """
     match = _JOINED.fullmatch(text.strip())
     if match is None or _NOT_JOINED.search(text):
         return text
     first, second = match["first"], match["second"]
+    if re.match(r"wh", second, re.IGNORECASE) and not first.lower().startswith("how many"):
+        return text
     if _PRONOUNS.search(second) and not first.lower().startswith("how many"):
         return text
     return f"{match['topic']}{first}? {second}?"

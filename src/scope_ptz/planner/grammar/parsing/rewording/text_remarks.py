@@ -27,6 +27,21 @@ REMARKS = (
     (r"^oi[,!]?\s+", ""),
     (r"^(?:jaysus|jesus|christ|lord|good god|good lord|good grief),\s*", ""),
     (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
+    (r",? (?:will|would|could) (?:ye|ya|yous)\b", ""),
+    (r"^righto[,.!]? ", ""),
+    (r",? if (?:it|you|that|the camera) (?:can|could) (?:do|manage) (?:that|it|this)(?=[,.]|$)", ""),
+    (r",? for the (?:sheet|report|log|file|records?|logbook|book)\W*$", ""),
+    (r", i swear(?: to god)?(?=,)", ""),
+    (r"\bi should like\b", "i would like"),
+    (r"^aye,? (?:right,? )?", ""),
+    (r"\b(can|will|would|could|do|did|have|are|if) yer\b", r"\1 you"),
+    (r"\bth['’](?=[a-z])", "the "),
+    (r"\bur (?=look|point|aim)", "you're "),
+    (
+        r"(\ball the way(?: to the)? (?:left|right|up|down|in|out)),? (?:till|until) it (?:stops|hits the stop|will "
+        r"not go any further)(?: like)?",
+        r"\1",
+    ),
     (r",? shall we\s*[?.!]*$", ""),
     (r"\bhere['’]?s the thing\s*[:,]\s*", ""),
     (rf"(^|[.!] )(?:(?:first|last|next) (?:job|task|stop|thing|order of business)|job one)(?: {_TIMES_OF_DAY})?[,:]\s*", r"\1"),
@@ -42,7 +57,7 @@ REMARKS = (
         r"\1",
     ),
     (rf"^(how (?:full|empty)\b[^?]*\?)(?:\s*{_SHARES}\?)+$", r"\1"),
-    (r", do (?:i|we) need (?:my|a|an|our) \w+\s*\?", "?"),
+    (r", do (?:i|we) need (?:my|me|a|an|our) \w+\s*\?", "?"),
     (rf"\b(if|when|should|in case)\b(.+?)[;,.]\s*(?:if not|otherwise),? (?:{_NOTHING_ELSE})\s*[.!]*$", r"\1\2"),
 )
 """Patterns of remarks, with what is left of them."""

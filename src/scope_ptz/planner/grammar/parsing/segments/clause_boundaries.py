@@ -33,7 +33,7 @@ _SETTING = f"{SET_THERE}|at (DET|LIMIT|full|maximum|max|minimum|min|FREE)* (ZOOM
 """The beginning of words that say how the camera is set at a preset: "... zoomed in", "... at full zoom", "... at 3x"."""
 
 _ASKS_MORE = "(what|which) FREE{1,2} (BE|HAVEV|DOV|MODAL) DET _|(what|which|who|where|WHQ) (BE|DOV|HAVEV) DET _"
-"""The beginning of a question about another thing than the previous count: "... and what does the notice say?"."""
+"""The beginning of a question about something other than the previous count: "... and what does the notice say?"."""
 
 _COMMANDS = (
     "(SWITCH|CARRY|TURN|AIM|PAN|SHOW) (BACK|AROUND|over|across|straight|right|back|up|down)* (to|at|on_to|onto|towards)"

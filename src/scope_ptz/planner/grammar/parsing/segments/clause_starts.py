@@ -1,4 +1,4 @@
-"""The forms of words that begin a clause."""
+"""Patterns and lists of words that begin a clause."""
 
 from __future__ import annotations
 
@@ -168,11 +168,11 @@ PLACE_LEAD = (
     r"PREP) to? (LEFT|RIGHT|UP|DOWN|FREE)|CAMERA NUM|(in|on|at|behind|between|near|under|beside|among) (DET|"
     r"NUM)* (FREE|PREP|DET|NUM|VISIBLE)+|(FILLER)* for (NUM|DET|FRACTION|AMOUNTISH)* (SECONDS|MINUTES)"
 )
-"""A place before a comma belongs to the clause that follows."""
+"""Places and durations that belong to the clause after the comma that follows them."""
 
 
 WITHOUT_MOVING = (
     r"without (any|DET|FILLER)* (PAN-ING|TILT-ING|ZOOM-ING|TURN-ING|CARRY-ING|SWITCH-ING|PAN|TILT|ZOOM|movement) (DET|CAMERA|it|"
     r"VIEWNOUN|ZOOMNOUN|PAN|TILT|at_all|anything|FILLER|OR|ZOOM-ING|PAN-ING|TILT-ING)* (COMMA|STOP|AND|THEN|BUT|\Z)"
 )
-"""Words that forbid a move beside a command: "without zooming", "without moving the camera"."""
+"""Words that accompany a command and forbid a move: "without zooming", "without moving the camera"."""

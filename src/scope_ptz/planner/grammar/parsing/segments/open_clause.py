@@ -17,7 +17,7 @@ from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
 
 
 class OpenClause:
-    """The words of an instruction, the clauses before a position, and the words of the clause at this position."""
+    """The words of an instruction, the clauses completed so far, and the words of the clause being read."""
 
     def __init__(self, lexemes: Sequence[Lexeme]) -> None:
         self.lexemes = tuple(lexemes)
@@ -25,7 +25,7 @@ class OpenClause:
         self.now: list[Lexeme] = []
         self.link, self.marker = "", ""
         self.opener: Lexeme | None = None
-        self.order: tuple[Lexeme, ...] = ()  # "one by one" before a clause, which is read after its other words
+        self.order: tuple[Lexeme, ...] = ()  # "one by one" before a clause, to be appended to its words
 
     def _is_asking(self) -> bool:
         return bool(self.now) and bool(search(r"(TELL|TELL-ING|WRAPPER|see|check) (me|us|FILLER|SELF)* \Z", self.now))

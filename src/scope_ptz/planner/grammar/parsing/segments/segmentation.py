@@ -187,7 +187,7 @@ class _Splitter(ClauseBoundaries):
         return i + 1
 
     def _after_topic(self, i: int) -> int | None:
-        """Handle a mark after a label, a heading or words for the whole clause, and return the next position; None for others."""
+        """Handle a separator after a label, a heading or words about the whole clause. Return the next position, or None."""
         lexeme = self.lexemes[i]
         is_colon = lexeme.has("COLON")
         if is_colon and self._is_label(i):
@@ -259,7 +259,7 @@ class _Splitter(ClauseBoundaries):
         return follows_and and is_last and bool(rest) and self._is_verb(i + 1) and verb_form(rest[0].word) == "base"
 
     def _after_order_word(self, i: int) -> int | None:
-        """Handle a word that says in which order commands are carried out, and return the next position; None for other words."""
+        """Handle a word that states the order of commands, and return the next position; None for other words."""
         lexeme = self.lexemes[i]
         if lexeme.word == "after" and self.out and not self.now and self._is_afterwards(i):
             self.link = "then"

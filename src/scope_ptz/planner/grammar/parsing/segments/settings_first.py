@@ -24,7 +24,7 @@ _IF_ANY = ("one", "any", "some")
 
 
 def with_settings_first(clauses: Sequence[Clause]) -> list[Clause]:
-    """Return the clauses of an instruction with the moves before the question, if its words say that they serve it."""
+    """Return clauses with the moves placed before the question if the instruction says that they serve it."""
     clauses = _without_empty_conditions(clauses)
     for start in range(1, len(clauses)):
         asked, settings = clauses[:start], clauses[start:]
@@ -34,7 +34,7 @@ def with_settings_first(clauses: Sequence[Clause]) -> list[Clause]:
 
 
 def _without_empty_conditions(clauses: Sequence[Clause]) -> list[Clause]:
-    """Drop "if there is one" after a question that asks for more than a yes or no: every answer says when there is none."""
+    """Drop "if there is one" after a question that does not ask for yes or no, because its answer says if there is none."""
     out: list[Clause] = []
     for i, clause in enumerate(clauses):
         ends = i + 1 == len(clauses) or clauses[i + 1].link in {".", ":"}
@@ -47,13 +47,13 @@ def _without_empty_conditions(clauses: Sequence[Clause]) -> list[Clause]:
 
 
 def _is_asked(clauses: Sequence[Clause]) -> bool:
-    """Return whether clauses ask something, without a move or a condition among them."""
+    """Return whether clauses begin with a question and contain no condition."""
     first = clauses[0]
     return not any(clause.marker for clause in clauses) and (first.is_question or match_start(_ASKS, first.lexemes) is not None)
 
 
 def _serving(asked: Sequence[Clause], settings: Sequence[Clause]) -> list[Clause]:
-    """Return the clauses that set the camera for a question; none if their words do not say that they do."""
+    """Return the clauses that set the camera for a question; empty if their words do not say that they do."""
     settings = list(settings)
     if any(clause.marker or clause.is_question for clause in settings):
         return []
