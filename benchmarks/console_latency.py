@@ -1,4 +1,4 @@
-"""Measure the live picture in Chromium: frames per second and the time from exposure to canvas, idle and during instructions.
+"""Measure the live view in Chromium: frames per second and the time from exposure to canvas, idle and during instructions.
 
 Also measure how long the stop button takes during instructions.
 

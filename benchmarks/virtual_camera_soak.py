@@ -137,7 +137,7 @@ def report(results: dict[str, Any]) -> None:
             figures.append(f"longest gap {1000 * stream['longest_gap_s']:.0f} ms")
         if stream["median_age_s"] is not None:
             figures.append(f"age {1000 * stream['median_age_s']:.0f} ms, 99% {1000 * stream['p99_age_s']:.0f} ms")
-        figures.append(f"{stream['late_frames']} of {stream['frames_with_age']} late, {stream['out_of_order']} out of order")
+        figures.append(f"{stream['skipped_frames']} of {stream['frames_with_age']} late, {stream['out_of_order']} out of order")
         print(f"{name}: {'; '.join(figures)} {stream['failure']}".rstrip())
     server = results["server"]
     oldest_ms = 1000 * server["oldest_sent_s"]

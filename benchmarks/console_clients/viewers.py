@@ -1,4 +1,4 @@
-"""Viewers of the live picture by WebSocket and by Motion JPEG."""
+"""Viewers of the live video by WebSocket and by Motion JPEG."""
 
 from __future__ import annotations
 

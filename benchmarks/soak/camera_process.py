@@ -47,8 +47,8 @@ async def serve_camera(scene: str) -> None:
     background = [asyncio.create_task(work) for work in (loop.watch_loop(), release_memory_regularly())]
     async with serve(devices, truth=True, rate_hz=RATE_HZ) as (camera,):
         (listener,) = listen(camera.host, [0])
-        async with RtspServer(camera.source, realm=camera.unit.realm).listen(listener) as rtsp:
-            camera.unit.rtsp_port = listener.getsockname()[1]
+        async with RtspServer(camera.source, realm=camera.vapix.realm).listen(listener) as rtsp:
+            camera.vapix.rtsp_port = listener.getsockname()[1]
             print(json.dumps({"url": camera.url, "rtsp_url": camera.rtsp_url}), flush=True)
             while await asyncio.to_thread(sys.stdin.readline):
                 sent = rtsp.statistics
@@ -59,7 +59,7 @@ async def serve_camera(scene: str) -> None:
                     "dropped": sent.dropped,
                     "oldest_sent_s": sent.oldest_s,
                     "vanished": sent.sessions,
-                    "skipped_ticks": camera.source.late_frames,
+                    "skipped_ticks": camera.source.skipped_frames,
                     "prefetched": reading.done,
                     "machine_pause_s": machine.longest_s(),
                     "loop_pause_s": loop.longest_s(),

@@ -53,7 +53,7 @@ class Stream:
             "worst_10_s_frames_per_s": min((sum(k <= at < k + 10 for at, _ in inside) / 10 for k in windows), default=None),
             "median_age_s": statistics.median(ages) if ages else None,
             "p99_age_s": ages[int(0.99 * (len(ages) - 1))] if ages else None,
-            "late_frames": sum(age > LATE_S for age in ages),
+            "skipped_frames": sum(age > LATE_S for age in ages),
             "frames_with_age": len(ages),
             "out_of_order": self.out_of_order,
             "failure": self.failure,

@@ -27,9 +27,9 @@ class ActorBodies:
         index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
         key = (actor.id, index)
         if key not in self._bodies:
-            finished = tuple(m.name for m in bpy.data.materials)
+            existing = tuple(m.name for m in bpy.data.materials)
             built = actor.build(index / GAIT_PHASES)
-            self._stage.finish(skip=finished)
+            self._stage.finish(skip=existing)
             for obj in built.objects:
                 obj[INSTANCE_PROP] = actor.id
                 obj.pass_index = actor.number
@@ -46,9 +46,9 @@ class ActorBodies:
         t = time_s % actor.period_s
         if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
             return None
-        position, bearing_deg, walked_m = position_at(actor, t)
+        position, bearing_deg, travelled_m = position_at(actor, t)
         if phase is None:
-            phase = (walked_m / actor.stride_m) % 1.0 if actor.stride_m else 0.0
+            phase = (travelled_m / actor.stride_m) % 1.0 if actor.stride_m else 0.0
         built = self.body(actor, phase)
         self._stage.put(built, position, bearing_deg)
         set_visible(built, True)
@@ -71,21 +71,21 @@ class ActorBodies:
         self._stage.put(built, (0.0, 0.0, 0.0), 0.0)
         bpy.context.view_layer.update()
         corners = np.array([obj.matrix_world @ v.co for obj in built.objects if obj.type == "MESH" for v in obj.data.vertices])
-        reach = np.abs(corners).max(axis=0)
-        return float(2 * reach[0]), float(2 * reach[1]), float(corners[:, 2].max())
+        half_size = np.abs(corners).max(axis=0)
+        return float(2 * half_size[0]), float(2 * half_size[1]), float(corners[:, 2].max())
 
 
 def position_at(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
-    """Return the actor's position (m), bearing (degrees) and distance walked (m) at a time on its path."""
-    walked_m = 0.0
+    """Return the actor's position (m), bearing (degrees) and distance travelled (m) at a time on its path."""
+    travelled_m = 0.0
     last = len(actor.waypoints) - 2
     for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
         length_m = math.dist(a[1:], b[1:])
         if t <= b[0] or k == last:
             fraction = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
             x, y, z = (a[i] + (b[i] - a[i]) * fraction for i in (1, 2, 3))
-            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked_m + length_m * fraction
-        walked_m += length_m
+            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), travelled_m + length_m * fraction
+        travelled_m += length_m
     raise ValueError(f"the path of {actor.id} must have at least two waypoints")
 
 

@@ -16,7 +16,7 @@ from scope_studio.kit.core.stage import Viewpoint
 VERTICAL_TILT_DEG = 89.9
 """Tilt in degrees beyond which a camera's bearing is taken from its up vector, because its axis is almost vertical."""
 
-OTHER_PROJECTION_HFOV_DEG = 60.0
+NON_PERSPECTIVE_HFOV_DEG = 60.0
 """Horizontal field of view in degrees for orthographic and panoramic cameras, which are rendered in perspective."""
 
 
@@ -42,7 +42,7 @@ def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
     if not objects:
         raise ValueError(f"{path} has no camera. Add a camera to its scene in Blender and save the file")
     active = scene.camera if scene.camera in objects else objects[0]
-    cameras = [_camera(o, name, scene) for o, name in zip(objects, _kebab_names([o.name for o in objects]), strict=True)]
+    cameras = [_describe_camera(o, name, scene) for o, name in zip(objects, _kebab_names([o.name for o in objects]), strict=True)]
     description = {
         "name": _kebab(Path(path).stem),
         "title": Path(path).name,
@@ -60,7 +60,7 @@ def set_time(time_s: float) -> None:
     scene.frame_set(math.floor(frame), subframe=frame - math.floor(frame))
 
 
-def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
+def _describe_camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
     """Return the description of a camera as plain data."""
     matrix = camera.matrix_world
     axes = matrix.to_3x3().normalized()
@@ -78,17 +78,17 @@ def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict
 
 
 def _kebab(text: str) -> str:
-    """Convert a text to kebab case."""
+    """Convert text to kebab case."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "camera"
 
 
-def _kebab_names(texts: list[str]) -> list[str]:
-    """Return a kebab-case name for each text. Duplicate names get a number."""
+def _kebab_names(titles: list[str]) -> list[str]:
+    """Return a kebab-case name for each title. Duplicate names get a number."""
     names: list[str] = []
-    for text in texts:
-        name, number = _kebab(text), 2
+    for title in titles:
+        name, number = _kebab(title), 2
         while name in names:
-            name, number = f"{_kebab(text)}-{number}", number + 1
+            name, number = f"{_kebab(title)}-{number}", number + 1
         names.append(name)
     return names
 
@@ -102,7 +102,7 @@ def _pan_tilt(direction: Vector) -> tuple[float, float]:
 def _hfov_deg(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
     """Return the horizontal field of view of a camera at the aspect ratio of the file's render settings."""
     if data.type != "PERSP":
-        return OTHER_PROJECTION_HFOV_DEG
+        return NON_PERSPECTIVE_HFOV_DEG
     width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
     if data.sensor_fit == "VERTICAL" or (data.sensor_fit == "AUTO" and height > width):
         angle = data.angle_y if data.sensor_fit == "VERTICAL" else data.angle

@@ -13,7 +13,7 @@ from scope_studio.kit.core.stage import Instance, Stage
 
 
 def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
-    """Return a scene's viewpoints, presets, instances with world boxes, texts in world coordinates, actors and absent objects."""
+    """Return a scene's viewpoints, presets, instances with bounding boxes, text, actors and absent objects."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     corners: dict[str, np.ndarray] = {}
@@ -100,7 +100,7 @@ def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: 
 
 
 def _texts(instance: Instance) -> list[dict[str, Any]]:
-    """Return the descriptions of the texts on an instance, in world coordinates."""
+    """Return descriptions of the text on an instance, in world coordinates."""
     matrix = instance.built.root.matrix_world
     scale = matrix.to_scale()[0]
     turn = matrix.to_quaternion()

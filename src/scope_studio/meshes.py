@@ -14,7 +14,7 @@ def write(stage: Stage, out: Path) -> None:
     """Write the distinct meshes and their placements to an .npz file.
 
     The file contains ``vertices-K`` (n, 3) float32 and ``triangles-K`` (m, 3) int32 for each mesh K, ``uses`` (k, 2) int32 with the
-    instance number and mesh number of each placement, and ``matrices`` (k, 4, 4) float64 with its world transform.
+    instance number and mesh index of each placement, and ``matrices`` (k, 4, 4) float64 with its world transform.
     """
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()

@@ -17,7 +17,7 @@ from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 Progress = Callable[[int, int], None]
-"""A function that is called with the number of finished steps of an operation and the total."""
+"""A function that is called with the number of finished steps of an operation and their total number."""
 
 
 class Studio:
@@ -59,8 +59,8 @@ class Studio:
         """Build a scene in an empty Blender file and return its name, title, number of instances and render device.
 
         Args:
-            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file with
-                ``build(stage)``.
+            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file that
+                defines ``build(stage)``.
         """
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
@@ -101,7 +101,7 @@ class Studio:
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
-        """Write the instance numbers (uint16) and distances in metres (float32, 0 = sky) of a view to an .npz file."""
+        """Write the instance mask (uint16) and the distances in metres (float32, 0 = sky) of a view to an .npz file."""
         with self._show_actors(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
@@ -112,7 +112,7 @@ class Studio:
         )
 
     def _show_actors(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Show the moving actors at a scene time while the context is active. If the time is None, build no actor."""
+        """Show the moving actors at a scene time while the context is active; none if it is None. Set the time of a .blend file."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
         return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.show_at(time_s)

@@ -1,4 +1,4 @@
-"""Render views from a viewpoint with Cycles: denoised images, instance numbers and distances."""
+"""Render views from a viewpoint with Cycles: denoised images, instance masks and distances."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_studio.kit.core.stage import Viewpoint
 GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
 """Interfaces through which Cycles can use a GPU, in order of preference."""
 
-SKY_M = 1e9
+SKY_DEPTH_M = 1e9
 """Depth in metres above which a pixel is sky. Cycles reports 1e10 where a ray hits nothing."""
 
 
@@ -29,7 +29,7 @@ def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, see
     scene.cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     scene.cycles.filter_width = 1.5
     scene.render.film_transparent = alpha
-    _passes(False)
+    _enable_passes(False)
     settings = scene.render.image_settings
     settings.media_type = "IMAGE"
     settings.file_format = "PNG"
@@ -47,13 +47,13 @@ def truth(viewpoint: Viewpoint, projection: dict[str, float], out: Path) -> None
 
 
 def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return instance numbers (H, W) uint16 and distances (H, W) float32 in metres (0 = sky) at the pixel centres."""
+    """Return the instance mask (H, W) uint16 and distances (H, W) float32 in metres (0 = sky) at the pixel centres."""
     scene = _prepare(viewpoint, projection, 1, 0)
     scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type = "BOX"
     scene.cycles.filter_width = 0.01
     scene.render.film_transparent = False
-    _passes(True)
+    _enable_passes(True)
     settings = scene.render.image_settings
     settings.media_type = "MULTI_LAYER_IMAGE"
     settings.file_format = "OPEN_EXR_MULTILAYER"
@@ -70,7 +70,7 @@ def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np
         scene.cycles.max_bounces = bounces
     ids = np.rint(next(v for k, v in channels.items() if k.endswith("Object Index.X"))).astype(np.uint16)
     depth = next(v for k, v in channels.items() if k.endswith("Depth.Z")).astype(np.float32)
-    sky = depth > SKY_M
+    sky = depth > SKY_DEPTH_M
     if projection["kind"] == "perspective":
         depth = depth * _ray_lengths(projection)
     return ids, np.where(sky, 0.0, depth).astype(np.float32)
@@ -154,8 +154,8 @@ def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
     return existing
 
 
-def _passes(on: bool) -> None:
-    """Turn the passes for instance numbers and depth on or off."""
+def _enable_passes(on: bool) -> None:
+    """Turn the passes for the instance mask and depth on or off."""
     layer = bpy.context.view_layer
     layer.use_pass_object_index = on
     layer.use_pass_z = on

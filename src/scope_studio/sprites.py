@@ -14,7 +14,7 @@ from scope_studio import render
 from scope_studio.actor_bodies import ActorBodies, set_visible
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
-GROUND_M = 60.0
+SHADOW_PLANE_M = 60.0
 """Side length in metres of the plane that receives the shadow."""
 
 
@@ -63,7 +63,7 @@ def _shadow_plane() -> Iterator[bpy.types.Object]:
     for obj in hidden:
         obj.hide_render = True
     mesh = bpy.data.meshes.new("shadow catcher")
-    h = GROUND_M / 2
+    h = SHADOW_PLANE_M / 2
     mesh.from_pydata([(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)])
     ground = bpy.data.objects.new("shadow catcher", mesh)
     ground.is_shadow_catcher = True

@@ -1,7 +1,7 @@
 """The worker process inside Blender. It reads requests from stdin and writes replies, both as JSON lines.
 
 Run this file by its path, either with a Python that has ``bpy`` or as ``blender --background --python worker.py``. Every reply
-starts with ``MARK``, because Blender prints to stdout while it starts. Its later output goes to stderr.
+starts with ``REPLY_PREFIX``, because Blender prints to stdout while it starts. Its later output goes to stderr.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-MARK = "@scope "
+REPLY_PREFIX = "@scope "
 
 
 def register_packages() -> None:
@@ -45,7 +45,7 @@ class Channel:
 
     def send(self, message: dict[str, Any]) -> None:
         """Write one message as a marked JSON line."""
-        self._out.write(f"{MARK}{json.dumps(message)}\n")
+        self._out.write(f"{REPLY_PREFIX}{json.dumps(message)}\n")
         self._out.flush()
 
     def serve(self, operations: dict[str, Callable[..., Any]]) -> None:

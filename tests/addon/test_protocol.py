@@ -23,7 +23,7 @@ from scope_addon.protocol.png import png_of_rgba
 from scope_addon.protocol.server import ServerProcess
 from scope_addon.protocol.server_client import ServerClient
 from scope_addon.protocol.steps import End, Step
-from scope_addon.protocol.tasks import Tasks
+from scope_addon.protocol.tasks import RequestThread
 from scope_addon.protocol.view import View, bearing_tilt_deg, parse_size, parse_view
 from scope_ptz.blender.addon_zip import addon_folder
 from scope_ptz.geometry.sphere import camera_axes
@@ -160,7 +160,7 @@ def test_a_refused_instruction_gives_a_message(served: Served, tmp_path: Path) -
 
 
 def test_tasks_report_results_and_failures(served: Served) -> None:
-    tasks, results = Tasks(parse_address(served.root), "blender-test"), []
+    tasks, results = RequestThread(parse_address(served.root), "blender-test"), []
     tasks.add(lambda client: client.request("GET", "/pairs"), lambda reply, problem: results.append((reply, problem)))
     tasks.add(lambda client: client.request("GET", "/cameras/nowhere"), lambda reply, problem: results.append((reply, problem)))
     tasks.add(lambda client: client.request("GET", "/pairs")["x"], lambda reply, problem: results.append((reply, problem)))

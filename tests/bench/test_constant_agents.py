@@ -16,7 +16,7 @@ from scope_ptz.bench.scoring.constant_agents import (
     expects_reply,
     find_accepting_tasks,
     find_passed_tasks,
-    looking_episode,
+    observing_episode,
     passes_without_answer,
 )
 from scope_ptz.bench.scoring.verdict import score_episode
@@ -64,7 +64,7 @@ def test_the_level_of_the_same_tasks_is_computed_once() -> None:
 def test_synthetic_runs_pass_the_checks_that_real_runs_pass() -> None:
     """One perception call covers every task whose evidence is a single view, but not tasks with several views."""
     tasks = [task for task in load_split("core") if not isinstance(task.expected, ActionOnly)]
-    covered = [passes_without_answer(task, looking_episode(task)) for task in tasks]
+    covered = [passes_without_answer(task, observing_episode(task)) for task in tasks]
     one_view = [sum(view.must_look for view in task.evidence) == 1 and task.behaviour.framing is None for task in tasks]
     assert [task.id for task, passes, one in zip(tasks, covered, one_view, strict=True) if one and not passes] == []
 
@@ -72,7 +72,7 @@ def test_synthetic_runs_pass_the_checks_that_real_runs_pass() -> None:
 def test_answering_none_passes_absences_but_not_their_twins() -> None:
     tasks = load_split("core")
     reply = ConstantReply("None.")
-    none = find_passed_tasks(tasks, find_accepting_tasks(tasks, [reply]), looks=True)[reply]
+    none = find_passed_tasks(tasks, find_accepting_tasks(tasks, [reply]), observes=True)[reply]
     by_id = {task.id: task for task in tasks}
     absences = {task.id for task in tasks if isinstance(task.expected, NoneThere)}
     assert len(none & absences) > 60
@@ -104,7 +104,7 @@ async def test_the_real_tools_give_the_same_verdicts(text: str) -> None:
     ][::6]
     scenes = open_scenes(["highway-works"])
     runner = ProgramRunner(scenes["highway-works"], ground_truth_tools(scenes), FRAME)
-    passed = find_passed_tasks(tasks, find_accepting_tasks(tasks, [ConstantReply(text)]), looks=True)[ConstantReply(text)]
+    passed = find_passed_tasks(tasks, find_accepting_tasks(tasks, [ConstantReply(text)]), observes=True)[ConstantReply(text)]
     for task in tasks:
         episode = await runner.run(task, with_one_perception_call(task), text)
         assert (score_episode(task, episode).headline == "correct") <= (task.id in passed), task.id

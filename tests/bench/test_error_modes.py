@@ -14,7 +14,7 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Number, Text
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Item, RequiredCall, Task
-from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, count_assigned_modes, mutate
+from scope_ptz.taskgen.gold.mutations import FaultContext, GoldRun, count_assigned_modes, mutate
 from tests.bench.sample_runs import (
     FRAME,
     GO_BRIDGE,
@@ -33,12 +33,12 @@ from tests.bench.sample_runs import (
 
 SAMPLES = samples()
 BY_NAME = {scored_task.id.removeprefix("scope1-test-"): scored_task for scored_task, _ in SAMPLES}
-SETTING = FaultSetting(PRESETS, FRAME)
+CONTEXT = FaultContext(PRESETS, FRAME)
 
 
 def gold() -> list[GoldRun]:
     candidates = (
-        mutate(scored_task, episode, mode, SETTING, random.Random(seed))
+        mutate(scored_task, episode, mode, CONTEXT, random.Random(seed))
         for scored_task, episode in SAMPLES
         for mode in ErrorMode
         for seed in range(4)

@@ -4,11 +4,11 @@ import json
 import sys
 import time
 
-MARK = "@scope "
+REPLY_PREFIX = "@scope "
 
 
 def say(message: dict[str, object]) -> None:
-    sys.stdout.write(f"{MARK}{json.dumps(message)}\n")
+    sys.stdout.write(f"{REPLY_PREFIX}{json.dumps(message)}\n")
     sys.stdout.flush()
 
 

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scope_ptz.blender.extents import Body, Ints, extent, extents
+from scope_ptz.blender.extents import InstanceMesh, Ints, extent, extents
 from scope_ptz.simulator.models import SceneViewpoint
 
 QUAD: Ints = np.array([[0, 1, 2], [1, 3, 2]])
 
 
-def rectangle(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Body:
+def rectangle(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> InstanceMesh:
     """Return a rectangle in a plane of constant y (vertical) or constant z (horizontal)."""
     corners = [(a, y[0], b) for b in z for a in x] if y[0] == y[1] else [(a, b, z[0]) for b in y for a in x]
-    return Body(7, np.array(corners, dtype=float), QUAD)
+    return InstanceMesh(7, np.array(corners, dtype=float), QUAD)
 
 
 def solid_angle_of_rectangle(a: float, b: float, distance: float) -> float:
@@ -36,7 +36,7 @@ def test_a_thin_leaning_pole() -> None:
     width, length, lean = 0.06, 6.0, math.radians(25)
     along, across = np.array([math.sin(lean), 0, math.cos(lean)]), np.array([math.cos(lean), 0, -math.sin(lean)])
     corners = np.array([across * u * width / 2 + along * v * length / 2 + (0, 25, 0) for v in (-1, 1) for u in (-1, 1)])
-    assert extent(Body(1, corners, QUAD)).solid_angle_sr == pytest.approx(
+    assert extent(InstanceMesh(1, corners, QUAD)).solid_angle_sr == pytest.approx(
         solid_angle_of_rectangle(width / 2, length / 2, 25), rel=0.02
     )
 
@@ -50,7 +50,7 @@ def test_ground_that_fills_half_of_the_sphere() -> None:
 
 def test_overlapping_triangles_count_once() -> None:
     one = rectangle((-1, 1), (10, 10), (-1, 1))
-    twice = Body(7, np.concatenate([one.vertices, one.vertices * 1.5]), np.concatenate([QUAD, QUAD + 4]))
+    twice = InstanceMesh(7, np.concatenate([one.vertices, one.vertices * 1.5]), np.concatenate([QUAD, QUAD + 4]))
     assert extent(twice).solid_angle_sr == pytest.approx(extent(one).solid_angle_sr, rel=2e-3)
 
 

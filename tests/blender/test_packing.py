@@ -38,7 +38,7 @@ def smooth_noise(height: int, width: int) -> NDArray[np.uint8]:
 
 
 @pytest.mark.parametrize("suffix", [".png", ".webp"])
-def test_instance_numbers_are_stored_exactly(tmp_path: Path, suffix: str) -> None:
+def test_instance_ids_are_stored_exactly(tmp_path: Path, suffix: str) -> None:
     numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
     path = tmp_path / f"ids{suffix}"
     write_ids(path, numbers)
@@ -80,7 +80,7 @@ def test_an_invalid_picture_is_a_pack_error(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", [".png", ".webp"])
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.5])
-def test_truncated_instance_numbers_are_a_pack_error(tmp_path: Path, suffix: str, share: float) -> None:
+def test_truncated_instance_ids_are_a_pack_error(tmp_path: Path, suffix: str, share: float) -> None:
     numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
     path = tmp_path / f"ids{suffix}"
     write_ids(path, numbers)
@@ -90,7 +90,7 @@ def test_truncated_instance_numbers_are_a_pack_error(tmp_path: Path, suffix: str
         read_ids(path)
 
 
-def test_missing_instance_numbers_are_a_pack_error(tmp_path: Path) -> None:
+def test_missing_instance_ids_are_a_pack_error(tmp_path: Path) -> None:
     for name in ("ids.png", "ids.webp"):
         with pytest.raises(PackError, match="cannot be decoded"):
             read_ids(tmp_path / name)

@@ -93,7 +93,7 @@ class PageWithErrors:
     foreign: list[str] = field(default_factory=list)
 
     def open(self) -> Page:
-        """Open the console in a new tab and wait for its live picture."""
+        """Open the console in a new tab and wait for its live view."""
         page = self.context.new_page()
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.problems.append(str(error)))

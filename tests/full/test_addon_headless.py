@@ -96,9 +96,9 @@ def test_only_a_changed_scene_is_drawn_again(blender: DrivenBlender, site_server
             return client.get(f"/cameras/{CAMERA}/frame", params={"format": "png"}).content
 
         first = take()
-        picture_count = blender("session.executor.pictures")
+        picture_count = blender("session.executor.picture_count")
         assert take() == first
-        assert blender("session.executor.pictures") == picture_count
+        assert blender("session.executor.picture_count") == picture_count
         blender("bpy.data.objects['box'].location.__setattr__('z', 3.0)")
         blender("bpy.context.view_layer.update()")
         assert take() != first

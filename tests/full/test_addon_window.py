@@ -60,7 +60,9 @@ def site_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def blender(home: Path, display: str, site_server: Served) -> Iterator[DrivenBlender]:
     with blender_in_window(home, display) as blender_process:
         blender_process("[setattr(scene.scope, 'width', 480), setattr(scene.scope, 'height', 270)]")
-        blender_process(f"[setattr({PREFERENCES}, 'use_own', 'ADDRESS'), setattr({PREFERENCES}, 'address', {site_server.root!r})]")
+        blender_process(
+            f"[setattr({PREFERENCES}, 'server_mode', 'ADDRESS'), setattr({PREFERENCES}, 'address', {site_server.root!r})]"
+        )
         assert blender_process("run('connect')") == ["FINISHED"]
         blender_process.wait_for("session.state == 'connected'")
         blender_process("run('look')")
@@ -77,7 +79,7 @@ def test_a_question_is_answered_in_the_window(blender: DrivenBlender, display: s
     blender.wait_for("session.run is None")
     assert blender("session.problem") == ""
     assert blender("session.end")[0] == "Answered"
-    assert blender("session.executor.pictures") > 0
+    assert blender("session.executor.picture_count") > 0
     assert blender("cameras.view_through(scene, scene.camera, '')[3]") == pytest.approx(-30.0, abs=0.01)
     blender.wait_for("not session.executor.camera.gliding")
     screenshot(display, tmp_path / "after.png")

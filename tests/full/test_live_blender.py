@@ -25,7 +25,7 @@ from scope_ptz.settings import load_settings
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.models import SceneFile
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.views import instance_numbers
+from scope_ptz.simulator.views import instance_ids
 
 pytestmark = pytest.mark.full
 
@@ -113,7 +113,7 @@ def test_actors_have_the_same_position_in_the_pack_and_in_live_blender(
         worker.request("truth", request)
         with np.load(tmp_path / "t.npz") as file:
             live = file["ids"]
-        stored = instance_numbers(baked_scene, "mast", view, time_s)
+        stored = instance_ids(baked_scene, "mast", view, time_s)
         number = baked_scene.file.actors[0].number
         assert box_ious(stored, live, 100)[number] > 0.85
 

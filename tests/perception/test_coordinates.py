@@ -128,7 +128,7 @@ def test_invalid_locations_are_dropped_and_counted() -> None:
     things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
     found = locations_in_frame([RawLocation(t) for t in things], get_convention("thousand"), SENT)
     assert len(found.boxes) == 1
-    for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 no place"):
+    for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 without coordinates"):
         assert what in found.notes[0]
 
 

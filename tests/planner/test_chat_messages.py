@@ -143,9 +143,12 @@ def test_observations_are_concise() -> None:
     result = {"count": 500, "boxes": boxes, "source": "eyes", "view": "current", "pose": POSE, "message": "500"}
     told = json.loads(observation(outcome("count_objects", result=result)))
     assert (told["count"], len(told["boxes_xyxy"]), told["boxes_not_listed"]) == (500, MAX_BOXES, 500 - MAX_BOXES)
-    brief = json.loads(observation(outcome("count_objects", result=result), brief=True))
+    brief = json.loads(observation(outcome("count_objects", result=result), is_shortened=True))
     assert brief == {"count": 500, "view": "current", "pose": POSE}
-    assert json.loads(observation(outcome("count_objects", result={**result, "complete": False}), brief=True))["complete"] is False
+    assert (
+        json.loads(observation(outcome("count_objects", result={**result, "complete": False}), is_shortened=True))["complete"]
+        is False
+    )
     huge = outcome("query_answer", result={"message": "ha " * 1_000_000, "source": "eyes", "pose": POSE})
     assert len(observation(huge)) < 5000
 

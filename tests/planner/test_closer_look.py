@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.geometry import Pose
-from scope_ptz.planner.grammar.execution.closer_look import is_too_small, offer_text, offered, thing_of, without_close_up
+from scope_ptz.planner.grammar.execution.closer_look import is_too_small, offer_in, offer_text, thing_of, without_close_up
 from scope_ptz.planner.grammar.execution.run_state import Offer
 from tests.planner.stage import Stage
 
@@ -126,9 +126,9 @@ def test_reports_of_a_vision_model(text: str) -> None:
 
 @given(st.text(min_size=1), st.text(min_size=1))
 def test_an_offer_can_be_read_back(thing: str, question: str) -> None:
-    assert offered("It is too small. " + offer_text(Offer(thing, question, Pose()))) == (thing, question)
+    assert offer_in("It is too small. " + offer_text(Offer(thing, question, Pose()))) == (thing, question)
 
 
 @given(st.text())
 def test_other_replies_offer_nothing(text: str) -> None:
-    assert offered(text) is None
+    assert offer_in(text) is None

@@ -13,13 +13,13 @@ from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.grammar import GrammarPlanner
 from scope_ptz.planner.plan import plan
 from scope_ptz.planner.profile import INSTRUCTION_EDITS, PROMPT_EDITS, InstructionRow, Sensitivity, load_rows, measure_sensitivity
-from scope_ptz.planner.profile.first_calls import PRESETS, FirstCall, is_expected_call, is_inverted
+from scope_ptz.planner.profile.first_calls import PRESETS, CallRecord, is_expected_call, is_inverted
 from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 pytestmark = pytest.mark.anyio
 PROMPT = load_prompt()
 ROWS = load_rows()
-TURN = InstructionRow(instruction="pan left 20", kind="move", calls=(FirstCall(name="adjust_ptz", arguments={"pan_deg": -20}),))
+TURN = InstructionRow(instruction="pan left 20", kind="move", calls=(CallRecord(name="adjust_ptz", arguments={"pan_deg": -20}),))
 
 
 class Altered(Planner):
@@ -44,7 +44,7 @@ async def measure(
 def test_the_grammar_plans_the_packaged_instructions_as_expected(row: InstructionRow) -> None:
     made = plan(row.instruction, PRESETS)
     assert [call.name for call in made.calls] == [call.name for call in row.calls]
-    assert is_expected_call(row, FirstCall(name=made.calls[0].name, arguments=made.calls[0].arguments))
+    assert is_expected_call(row, CallRecord(name=made.calls[0].name, arguments=made.calls[0].arguments))
 
 
 def test_the_instructions_are_balanced_between_directions() -> None:
@@ -131,14 +131,14 @@ async def test_a_failing_server_does_not_count_as_a_changed_choice() -> None:
 
 
 def test_inversion_and_rates() -> None:
-    assert is_inverted(TURN, [FirstCall(name="adjust_ptz", arguments={"pan_deg": 20})])
-    assert not is_inverted(TURN, [FirstCall(name="adjust_ptz", arguments={"pan_deg": -90})])
-    assert not is_inverted(TURN, [FirstCall(name="go_home")])
+    assert is_inverted(TURN, [CallRecord(name="adjust_ptz", arguments={"pan_deg": 20})])
+    assert not is_inverted(TURN, [CallRecord(name="adjust_ptz", arguments={"pan_deg": -90})])
+    assert not is_inverted(TURN, [CallRecord(name="go_home")])
     out = InstructionRow(
-        instruction="zoom out", kind="zoom", calls=(FirstCall(name="adjust_ptz", arguments={"zoom_limit": "out"}),)
+        instruction="zoom out", kind="zoom", calls=(CallRecord(name="adjust_ptz", arguments={"zoom_limit": "out"}),)
     )
-    assert is_inverted(out, [FirstCall(name="adjust_ptz", arguments={"zoom_factor": 2})])
-    assert not is_inverted(out, [FirstCall(name="adjust_ptz", arguments={"zoom_percent": -50})])
+    assert is_inverted(out, [CallRecord(name="adjust_ptz", arguments={"zoom_factor": 2})])
+    assert not is_inverted(out, [CallRecord(name="adjust_ptz", arguments={"zoom_percent": -50})])
     assert Rate.over([]) == Rate(count=0, of=0, share=None, low=None, high=None)
     rate = Rate.over([True, False, False, False])
     assert rate.low is not None
@@ -148,14 +148,16 @@ def test_inversion_and_rates() -> None:
 
 def test_expected_texts_may_be_lists_of_words() -> None:
     words = {"question": {"contains": ["gantry sign"]}, "view": "current"}
-    row = InstructionRow(instruction="read it", kind="object", calls=(FirstCall(name="query_answer", arguments=words),))
-    assert is_expected_call(row, FirstCall(name="query_answer", arguments={"question": "What does it say?"}))
-    assert not is_expected_call(row, FirstCall(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
+    row = InstructionRow(instruction="read it", kind="object", calls=(CallRecord(name="query_answer", arguments=words),))
+    assert is_expected_call(row, CallRecord(name="query_answer", arguments={"question": "What does it say?"}))
+    assert not is_expected_call(row, CallRecord(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
     row = InstructionRow(
-        instruction="go", kind="object", calls=(FirstCall(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),)
+        instruction="go",
+        kind="object",
+        calls=(CallRecord(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),),
     )
-    assert is_expected_call(row, FirstCall(name="zoom_to_object", arguments={"description": "the white van"}))
-    assert not is_expected_call(row, FirstCall(name="zoom_to_object", arguments={"description": "the lorry"}))
-    wrong = InstructionRow(instruction="go", kind="move", calls=(FirstCall(name="adjust_ptz", arguments={"speed": 1}),))
-    assert not is_expected_call(wrong, FirstCall(name="adjust_ptz", arguments={"pan_deg": 1}))
-    assert not is_inverted(wrong, [FirstCall(name="adjust_ptz", arguments={"pan_deg": 1})])
+    assert is_expected_call(row, CallRecord(name="zoom_to_object", arguments={"description": "the white van"}))
+    assert not is_expected_call(row, CallRecord(name="zoom_to_object", arguments={"description": "the lorry"}))
+    wrong = InstructionRow(instruction="go", kind="move", calls=(CallRecord(name="adjust_ptz", arguments={"speed": 1}),))
+    assert not is_expected_call(wrong, CallRecord(name="adjust_ptz", arguments={"pan_deg": 1}))
+    assert not is_inverted(wrong, [CallRecord(name="adjust_ptz", arguments={"pan_deg": 1})])

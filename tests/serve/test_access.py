@@ -42,7 +42,7 @@ def carl(guarded: Served, tokens: dict[str, str], quick: None) -> Iterator[tuple
 
 
 def live(served: Served, headers: dict[str, str]) -> ClientConnection:
-    """Open the WebSocket of the live picture."""
+    """Open the WebSocket of the live video."""
     address = f"ws://127.0.0.1:{served.port}/api/v1/cameras/{CAMERA}/live?width=160"
     return connect(address, additional_headers=headers, proxy=None, max_size=2**24)
 
@@ -106,7 +106,7 @@ def test_a_removed_token_ends_its_streams(guarded: Served, carl: tuple[str, Toke
         assert client.get("/me").status_code == 401
     until(lambda: guarded.site.stations[CAMERA].live.watchers == 0)
     guarded.call(guarded.site.stations[CAMERA].stop)
-    until(lambda: guarded.site.stations[CAMERA].running is None)
+    until(lambda: guarded.site.stations[CAMERA].current_run is None)
     guarded.call(guarded.site.stations[CAMERA].control.clear)
 
 
@@ -128,12 +128,12 @@ def test_a_waiting_request_of_a_removed_token_is_refused(guarded: Served, carl: 
         body = {"camera": OTHER, "instruction": "track the ball for 300 seconds"}
         asking = threading.Thread(target=lambda: replies.append(client.post("/ask", json=body)), daemon=True)
         asking.start()
-        until(lambda: guarded.site.stations[OTHER].running is not None)
+        until(lambda: guarded.site.stations[OTHER].current_run is not None)
         file.remove("carl")
         asking.join(LIMIT_S)
     assert (replies[0].status_code, replies[0].json()["error"]["code"]) == (401, "sign_in")
     guarded.call(guarded.site.stations[OTHER].stop)
-    until(lambda: guarded.site.stations[OTHER].running is None)
+    until(lambda: guarded.site.stations[OTHER].current_run is None)
     guarded.call(guarded.site.stations[OTHER].control.clear)
 
 

@@ -81,7 +81,7 @@ def test_a_run_is_followed_by_events_and_resumed_by_their_ids(client: httpx2.Cli
     del served.site.runner._handles[run]
     assert events_of(client, run) == live
     assert events_of(client, run, last=5) == live[6:]
-    lines = (served.site.journal.root / run / "trace.jsonl").read_text().splitlines()
+    lines = (served.site.library.root / run / "trace.jsonl").read_text().splitlines()
     assert [json.loads(line) for line in lines] == [data for _, _, data in live]
 
 
@@ -227,8 +227,8 @@ def test_conversations_remember_their_own_turns_only(client: httpx2.Client, serv
     run = ask(client, "zoom out again", conversation=one)
     (first, *_) = events_of(client, run["id"])
     assert [turn["instruction"] for turn in first[2]["conversation"]] == ["zoom in 2x"]
-    served.call(served.site.journal.settle)
-    served.site.journal._turns.clear()  # as after a restart
+    served.call(served.site.library.wait_for_indexing)
+    served.site.library._turns.clear()  # as after a restart
     run = ask(client, "go home", conversation=one)
     (first, *_) = events_of(client, run["id"])
     assert [turn["instruction"] for turn in first[2]["conversation"]] == ["zoom in 2x", "zoom out again"]
@@ -255,7 +255,7 @@ def test_pictures_with_and_without_marks(client: httpx2.Client, served: Served) 
     (name,) = [name for name, picture in pictures.items() if picture["tool"] == "count_objects"]
     assert len(pictures[name]["marks"]) > 0
     plain = client.get(f"/runs/{run}/pictures/{name}")
-    assert plain.content == (served.site.journal.root / run / name).read_bytes()
+    assert plain.content == (served.site.library.root / run / name).read_bytes()
     marked = client.get(f"/runs/{run}/pictures/{name}", params={"marks": True})
     images = [cv2.imdecode(np.frombuffer(each.content, np.uint8), cv2.IMREAD_COLOR) for each in (plain, marked)]
     assert images[0] is not None and images[1] is not None
@@ -270,7 +270,7 @@ def test_pictures_with_and_without_marks(client: httpx2.Client, served: Served) 
 
 def test_runs_are_listed_filtered_kept_and_exported(client: httpx2.Client, served: Served) -> None:
     run = ask(client, "pan left 7 degrees")["id"]
-    served.call(served.site.journal.settle)
+    served.call(served.site.library.wait_for_indexing)
     found = client.get("/runs", params={"text": "left 7", "camera": CAMERA, "outcome": "answered"}).json()
     assert [each["id"] for each in found["runs"]] == [run]
     assert found["count"] == 1

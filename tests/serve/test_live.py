@@ -191,7 +191,7 @@ async def test_a_camera_failure_is_reported_and_retried(monkeypatch: pytest.Monk
 async def test_an_interruption_is_reported_until_frames_arrive_again(
     monkeypatch: pytest.MonkeyPatch, analytic_scene: Scene
 ) -> None:
-    monkeypatch.setattr("scope_ptz.serve.site.live_picture.CHECK_S", 0.01)
+    monkeypatch.setattr("scope_ptz.serve.site.live_picture.CHECK_INTERVAL_S", 0.01)
 
     class Interrupted(SimulatedCamera):
         frames_problem = ""

@@ -321,7 +321,7 @@ def test_replies_and_logs_contain_no_secrets(guarded: Served, tokens: dict[str, 
         client.post(f"/cameras/{CAMERA}/home")
         run = client.post("/ask", json={"camera": CAMERA, "instruction": "go home"}).json()["id"]
         replies = [client.get(path).text for path in ("/me", "/cameras", f"/cameras/{CAMERA}", "/runs", f"/runs/{run}/details")]
-    folder = guarded.site.journal.root / run
+    folder = guarded.site.library.root / run
     stored = [path.read_text(errors="replace") for path in folder.rglob("*.json*")]
     for text in (*replies, *stored, caplog.text, json.dumps(replies)):
         assert not any(secret in text for name, secret in tokens.items() if name != "path")

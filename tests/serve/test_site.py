@@ -148,7 +148,7 @@ def test_a_locked_store_loses_no_run(scenes: None, tmp_path: Path) -> None:
         assert client.get(f"/runs/{run['id']}").json()["outcome"] == "answered"
         other.execute("ROLLBACK")
         other.close()
-        served.call(served.site.journal.settle, 30.0)
+        served.call(served.site.library.wait_for_indexing, 30.0)
         assert client.get(f"/runs/{run['id']}/details").json()["run"]["outcome"] == "answered"
 
 
@@ -158,10 +158,10 @@ def test_a_damaged_scene_or_a_full_disk_gives_an_error_reply(scenes: None, tmp_p
         serving(SiteOptions(root), Access("127.0.0.1", limits=RateLimits(None)), {CAMERA: SPEC}) as served,
         served.client() as client,
     ):
-        served.site.runner._journal.root = tmp_path / "runs" / "store.sqlite"  # a folder cannot be created inside a file
+        served.site.runner._library.root = tmp_path / "runs" / "store.sqlite"  # a folder cannot be created inside a file
         reply = client.post("/runs", json={"camera": CAMERA, "instruction": "go home"})
         assert (reply.status_code, reply.json()["error"]["code"]) == (507, "cannot_be_written")
-        served.site.runner._journal.root = root
+        served.site.runner._library.root = root
         assert client.post("/ask", json={"camera": CAMERA, "instruction": "go home"}).json()["outcome"] == "answered"
 
 

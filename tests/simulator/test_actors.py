@@ -10,7 +10,7 @@ from scope_ptz.simulator.actors import actor_extent, appearances, path_position
 from scope_ptz.simulator.models import ActorSheet, SceneActor
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
-from scope_ptz.simulator.views import instance_numbers, picture
+from scope_ptz.simulator.views import instance_ids, picture
 from tests.support.synthetic_pack import ACTOR_NUMBER, ACTOR_RADIUS_M, HEIGHT, PERIOD_S, VIEWPOINTS, WIDTH, actor_ball, perfect_view
 
 
@@ -24,7 +24,7 @@ def test_actor_pixels_are_those_of_a_perfect_camera(
     analytic_scene: Scene, viewpoint: str, pan: float, tilt: float, zoom: float, time_s: float
 ) -> None:
     view = _view(pan, tilt, zoom)
-    got = instance_numbers(analytic_scene, viewpoint, view, time_s) == ACTOR_NUMBER
+    got = instance_ids(analytic_scene, viewpoint, view, time_s) == ACTOR_NUMBER
     perfect = perfect_view(viewpoint, view, time_s, coloured=False)[1] == ACTOR_NUMBER
     assert perfect.sum() > 300
     assert (got & perfect).sum() / (got | perfect).sum() > 0.94
@@ -46,7 +46,7 @@ def test_actor_behind_something_is_hidden(analytic_scene: Scene) -> None:
     view = _view(0.0, -10.0, 1.0)
     hidden = 0
     for time_s in np.arange(1.1, 7.0, 0.4):
-        got = instance_numbers(analytic_scene, "roof", view, float(time_s))
+        got = instance_ids(analytic_scene, "roof", view, float(time_s))
         perfect = perfect_view("roof", view, float(time_s), coloured=False)[1]
         whole = perfect_view("roof", view, float(time_s), only=[], coloured=False)[1]
         share, true_share = ((n == ACTOR_NUMBER).sum() / max(1, (whole == ACTOR_NUMBER).sum()) for n in (got, perfect))
@@ -129,7 +129,7 @@ def test_a_soft_shadow_darkens_the_ground_and_is_not_part_of_the_actor(
     assert changed.any()
     ratio = shaded[changed].astype(float).sum() / still[changed].sum()
     assert ratio == pytest.approx(0.5, abs=0.03)
-    numbers = instance_numbers(scene, "mast", view, 4.0)
+    numbers = instance_ids(scene, "mast", view, 4.0)
     assert ACTOR_NUMBER not in numbers
     # The shadow lies on the ground, so neither the sky nor the block that stands behind it is darkened.
     assert not changed[: HEIGHT // 4].any()

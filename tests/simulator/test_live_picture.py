@@ -1,4 +1,4 @@
-"""Requirements of live pictures: prefetching, bounded memory, blended tiles, and actors that keep their heading."""
+"""Requirements of live video: prefetching, bounded memory, blended tiles, and actors that keep their heading."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ def test_weights_of_sprites_add_up(analytic_scene: Scene) -> None:
     shares = set()
     for time_s in np.arange(1.1, 7.0, 0.05):
         for actor in composited_actors(analytic_scene, viewpoint, float(time_s)):
-            choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+            choice = viewpoint.sprite_selector(actor.actor, actor.sheet)
             found = choice.choose(Aspect(actor.offset_m, choice.heading(actor.path_s)), actor.phase)
             assert sum(weighted.weight for weighted in found) == pytest.approx(1.0)
             shares.add(len(found))
@@ -271,7 +271,7 @@ def test_the_cyclist_on_the_crossing_stays_upright() -> None:
     viewpoint = scene.viewpoint("crossing")
     for time_s in (8.5, 8.7, 8.76, 10.9):
         actor = next(a for a in composited_actors(scene, viewpoint, time_s) if a.actor.category == "cyclist")
-        choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+        choice = viewpoint.sprite_selector(actor.actor, actor.sheet)
         best = choice.choose(Aspect(actor.offset_m, choice.heading(actor.path_s)), actor.phase)[0]
         assert abs((best.sprite.pan_deg - np.degrees(np.arctan2(*actor.offset_m[:2])) + 180) % 360 - 180) < 15
 

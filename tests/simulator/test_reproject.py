@@ -57,7 +57,7 @@ def test_colour_is_what_a_perfect_camera_sees(analytic_scene: Scene, pose: tuple
 
 
 @pytest.mark.parametrize("pose", POSES)
-def test_instance_numbers_are_what_a_perfect_camera_sees(analytic_scene: Scene, pose: tuple[float, float, float]) -> None:
+def test_instance_ids_are_what_a_perfect_camera_sees(analytic_scene: Scene, pose: tuple[float, float, float]) -> None:
     view = _view(*pose)
     _, perfect, _ = perfect_view("mast", view, coloured=False)
     got = id_view(analytic_scene.viewpoint("mast"), view)

@@ -66,7 +66,7 @@ def test_objects_cut_off_by_the_frame_are_not_occluded(analytic_scene: Scene) ->
     ball = _seen(analytic_scene, view)[1]
     perfect = measure(perfect_view("mast", view, coloured=False)[1], view)
     whole = analytic_scene.viewpoint("mast").extents[1].solid_angle_sr
-    assert ball.visible_fraction == pytest.approx(perfect.solid_angle_sr[perfect.numbers == 1][0] / whole, abs=0.02)
+    assert ball.visible_fraction == pytest.approx(perfect.solid_angle_sr[perfect.ids == 1][0] / whole, abs=0.02)
     assert 0.4 < ball.visible_fraction < 0.7
     assert ball.cut
     assert not ball.occluded

@@ -66,7 +66,7 @@ Window = tuple[slice, slice]
 def cast(
     origin: Floats, rays: Floats, solids: list[tuple[Solid, Window]], *, coloured: bool = True
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16], Floats]:
-    """Return colours (h, w, 3), instance numbers (h, w) and distances (h, w) along unit rays (h, w, 3), all in world axes.
+    """Return colours (h, w, 3), instance IDs (h, w) and distances (h, w) along unit rays (h, w, 3), all in world axes.
 
     Each solid comes with the window of the picture that contains it.
     """

@@ -95,7 +95,7 @@ def perfect_view(
     smooth: int = 1,
     coloured: bool = True,
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16], Floats]:
-    """Return ray-cast colours, instance numbers and distances. ``time_s`` adds the actor; a pixel has ``smooth`` squared rays."""
+    """Return ray-cast colours, instance IDs and distances. ``time_s`` adds the actor; a pixel has ``smooth`` squared rays."""
     position, bearing = VIEWPOINTS[viewpoint]
     solids = list(SOLIDS if only is None else only)
     if time_s is not None and (ball := actor_ball(time_s)) is not None:

@@ -15,7 +15,7 @@ from scope_ptz.simulator.pack import load_scene
 from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, render_card
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.gold.gold_runs import create_gold_runs, write_gold
-from scope_ptz.taskgen.gold.mutations import FaultSetting
+from scope_ptz.taskgen.gold.mutations import FaultContext
 from scope_ptz.taskgen.picture_audit import DRAW, QuestionDraw, draw_questions, score_answers
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 from tests.bench.sample_runs import FRAME, PRESETS, samples
@@ -33,7 +33,7 @@ def dataset(tmp_path: Path) -> Path:
     report.tried["reference"] = report.passed["reference"] = len(TASKS)
     report.tried["stay"] = 7
     (folder / PROOF).write_text(json.dumps({"published": report.as_dict(), "unseen": ValidationReport().as_dict()}))
-    write_gold(create_gold_runs(SAMPLES, {"test": FaultSetting(PRESETS, FRAME)}, seed=1, per_mode=3), folder / GOLD)
+    write_gold(create_gold_runs(SAMPLES, {"test": FaultContext(PRESETS, FRAME)}, seed=1, per_mode=3), folder / GOLD)
     write_manifest(folder, [*paths, folder / PROOF, folder / GOLD], [load_scene("highway-works")], seed=1, unseen=[7])
     return folder
 

@@ -13,7 +13,7 @@ from scope_ptz.bench.scoring import error_modes
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, create_gold_runs, read_gold, write_gold
-from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun
+from scope_ptz.taskgen.gold.mutations import FaultContext, GoldRun
 from tests.bench.sample_runs import FRAME, PRESETS, samples
 
 SAMPLES = samples()
@@ -22,7 +22,7 @@ TASKS = [task for task, _ in SAMPLES]
 
 @pytest.fixture(scope="module")
 def gold() -> list[GoldRun]:
-    return create_gold_runs(SAMPLES, {"test": FaultSetting(PRESETS, FRAME)}, seed=1)
+    return create_gold_runs(SAMPLES, {"test": FaultContext(PRESETS, FRAME)}, seed=1)
 
 
 def test_every_error_mode_is_added_and_recognised(gold: list[GoldRun]) -> None:
@@ -62,9 +62,9 @@ def test_a_run_with_wrong_perception_gets_no_further_fault() -> None:
         type(c)(**{n: getattr(c, n) for n in type(c).__slots__} | {"result": {**(c.result or {}), "count": 9}}) for c in run.calls
     ]
     run_with_error = type(run)(**{n: getattr(run, n) for n in type(run).__slots__} | {"calls": tuple(calls)})
-    setting = {"test": FaultSetting(PRESETS, FRAME)}
-    assert create_gold_runs([(task, run)], setting, seed=1)
-    assert create_gold_runs([(task, run_with_error)], setting, seed=1) == []
+    contexts = {"test": FaultContext(PRESETS, FRAME)}
+    assert create_gold_runs([(task, run)], contexts, seed=1)
+    assert create_gold_runs([(task, run_with_error)], contexts, seed=1) == []
 
 
 @pytest.mark.parametrize("damage", ["cut", "task", "text"])

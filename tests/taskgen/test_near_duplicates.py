@@ -9,7 +9,9 @@ COUNT, OTHER = (task for task, _ in samples()[:2])
 
 
 def test_the_same_question_about_the_same_view_is_found_in_any_wording() -> None:
-    near = KnownTasks([COUNT]).nearest(COUNT.model_copy(update={"id": "scope1-test-001", "instruction": "Over to highway: cones?"}))
+    near = KnownTasks([COUNT]).most_similar(
+        COUNT.model_copy(update={"id": "scope1-test-001", "instruction": "Over to highway: cones?"})
+    )
     assert near is not None and (near.task, near.similarity) == (COUNT.id, 1.0)
 
 
@@ -17,10 +19,10 @@ def test_similar_words_are_found_only_within_a_world() -> None:
     instruction = "Go to the highway preset and count all of the red cones that you see."
     known = KnownTasks([OTHER.model_copy(update={"instruction": instruction})])
     similar = COUNT.model_copy(update={"instruction": "Please " + instruction.lower()})
-    near = known.nearest(similar)
+    near = known.most_similar(similar)
     assert near is not None and 0.75 <= near.similarity < 1
-    assert known.nearest(similar.model_copy(update={"variation": 3})) is None
-    assert known.nearest(COUNT.model_copy(update={"instruction": "Pan left by 40 degrees and read the sign there."})) is None
+    assert known.most_similar(similar.model_copy(update={"variation": 3})) is None
+    assert known.most_similar(COUNT.model_copy(update={"instruction": "Pan left by 40 degrees and read the sign there."})) is None
 
 
 def test_similarity_is_jaccard() -> None:

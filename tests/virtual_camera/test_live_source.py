@@ -1,4 +1,4 @@
-"""One live picture for all streams."""
+"""One live video source for all streams."""
 
 from __future__ import annotations
 

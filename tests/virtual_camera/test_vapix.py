@@ -23,7 +23,7 @@ from scope_ptz.virtual_camera.vapix.parameters import param, parameters
 from scope_ptz.virtual_camera.vapix.ptz import ptz, ptz_config, ptz_queue
 from scope_ptz.virtual_camera.vapix.queries import QUERIES
 from scope_ptz.virtual_camera.vapix.replies import Client, Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 ROOT, GUARD = Client("root", Role.ADMINISTRATOR), Client("guard", Role.OPERATOR)
 LIMITS = Limits()
@@ -47,21 +47,21 @@ def time(monkeypatch: pytest.MonkeyPatch) -> HandClock:
 
 
 @pytest.fixture
-def unit(analytic_scene: Scene, time: HandClock) -> VapixUnit:
-    return VapixUnit(VirtualDevice(analytic_scene, width=320, height=180))
+def vapix(analytic_scene: Scene, time: HandClock) -> VapixCamera:
+    return VapixCamera(VirtualDevice(analytic_scene, width=320, height=180))
 
 
-def send(unit: VapixUnit, client: Client = ROOT, **arguments: str) -> Reply:
-    return ptz(unit, Arguments(arguments), client)
+def send(vapix: VapixCamera, client: Client = ROOT, **arguments: str) -> Reply:
+    return ptz(vapix, Arguments(arguments), client)
 
 
-def arrive(unit: VapixUnit, time: HandClock, seconds: float = 60.0) -> Pose:
+def arrive(vapix: VapixCamera, time: HandClock, seconds: float = 60.0) -> Pose:
     time.now += seconds
-    return unit.device.pose()
+    return vapix.device.pose()
 
 
-def position(unit: VapixUnit) -> dict[str, str]:
-    return dict(line.split("=", 1) for line in send(unit, query="position").body.splitlines())
+def position(vapix: VapixCamera) -> dict[str, str]:
+    return dict(line.split("=", 1) for line in send(vapix, query="position").body.splitlines())
 
 
 NAMES = st.sampled_from([*moves.COMMANDS, "query", "speed", "camera", "info", "group", "format", "imagewidth", "focus", "x"])
@@ -76,13 +76,13 @@ TEXTS = st.one_of(
 
 
 @pytest.fixture(scope="module")
-def shared_unit(analytic_scene: Scene) -> VapixUnit:
-    return VapixUnit(VirtualDevice(analytic_scene, width=320, height=180, time_scale=1e6))
+def shared_unit(analytic_scene: Scene) -> VapixCamera:
+    return VapixCamera(VirtualDevice(analytic_scene, width=320, height=180, time_scale=1e6))
 
 
 @pytest.mark.full
 @given(arguments=st.dictionaries(NAMES, TEXTS, max_size=4))
-def test_any_request_gets_a_documented_reply(shared_unit: VapixUnit, arguments: dict[str, str]) -> None:
+def test_any_request_gets_a_documented_reply(shared_unit: VapixCamera, arguments: dict[str, str]) -> None:
     reply = ptz(shared_unit, Arguments(arguments), ROOT)
     assert (reply.status, reply.body == "") in ((204, True), (200, False))
     pose = shared_unit.device.pose()
@@ -91,7 +91,7 @@ def test_any_request_gets_a_documented_reply(shared_unit: VapixUnit, arguments: 
 
 @given(arguments=st.dictionaries(st.sampled_from(["setserverpresetname", "setserverpresetno", "removeserverpresetno", "home",
        "renameserverpresetno", "newname", "removeserverpresetname", "removeallserverpresets"]), TEXTS, max_size=3))  # fmt: skip
-def test_any_configuration_keeps_the_presets_whole(shared_unit: VapixUnit, arguments: dict[str, str]) -> None:
+def test_any_configuration_keeps_the_presets_whole(shared_unit: VapixCamera, arguments: dict[str, str]) -> None:
     reply = ptz_config(shared_unit, Arguments(arguments))
     assert reply.status == 204 or reply.body.startswith("Error:")
     listed = send(shared_unit, query="presetposcam").body.splitlines()
@@ -115,7 +115,7 @@ def test_the_ends_of_the_speed_scale() -> None:
 
 
 @given(pan=st.floats(-170, 170), tilt=st.floats(-55, 25), zoom=st.integers(1, 9999))
-def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixUnit, pan: float, tilt: float, zoom: int) -> None:
+def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixCamera, pan: float, tilt: float, zoom: int) -> None:
     assert send(shared_unit, pan=str(pan), tilt=str(tilt), zoom=str(zoom)).status == 204
     while shared_unit.device.is_moving():
         pass
@@ -146,75 +146,75 @@ def test_a_position_that_is_read_can_be_sent_back(shared_unit: VapixUnit, pan: f
         ({"timestamp": "1"}, "no command"),
     ],
 )
-def test_errors_are_successes_of_http(unit: VapixUnit, arguments: dict[str, str], problem: str) -> None:
-    reply = ptz(unit, Arguments(arguments), ROOT)
+def test_errors_are_successes_of_http(vapix: VapixCamera, arguments: dict[str, str], problem: str) -> None:
+    reply = ptz(vapix, Arguments(arguments), ROOT)
     assert reply.status == 200
     assert reply.body.startswith("Error: ")
     assert problem in reply.body
     assert reply.body.count("\n") == 1
-    assert not unit.device.is_moving()
+    assert not vapix.device.is_moving()
 
 
-def test_values_beyond_a_limit_are_clamped(unit: VapixUnit, time: HandClock) -> None:
-    assert send(unit, pan="5000", tilt="-5000", zoom="99999").status == 204
-    assert arrive(unit, time) == Pose(179, -60, 5)
-    send(unit, rpan="360", rtilt="-360", rzoom="-9999")
-    assert arrive(unit, time) == Pose(179, -60, 1)
+def test_values_beyond_a_limit_are_clamped(vapix: VapixCamera, time: HandClock) -> None:
+    assert send(vapix, pan="5000", tilt="-5000", zoom="99999").status == 204
+    assert arrive(vapix, time) == Pose(179, -60, 5)
+    send(vapix, rpan="360", rtilt="-360", rzoom="-9999")
+    assert arrive(vapix, time) == Pose(179, -60, 1)
 
 
-def test_axes_of_separate_requests_move_together(unit: VapixUnit, time: HandClock) -> None:
-    send(unit, pan="90")
+def test_axes_of_separate_requests_move_together(vapix: VapixCamera, time: HandClock) -> None:
+    send(vapix, pan="90")
     time.now += 0.1
-    send(unit, tilt="-20")
+    send(vapix, tilt="-20")
     time.now += 0.1
-    send(unit, zoom="9999")
-    assert arrive(unit, time) == Pose(90, -20, 5)
+    send(vapix, zoom="9999")
+    assert arrive(vapix, time) == Pose(90, -20, 5)
 
 
-def test_the_move_speed_is_kept_and_slows_pan_and_tilt_only(unit: VapixUnit, time: HandClock) -> None:
-    start = unit.device.pose()
-    send(unit, speed="40", rpan="60", zoom="9999")
-    assert send(unit, query="speed").body == "speed=40\n"
-    halfway = arrive(unit, time, 5.0)
+def test_the_move_speed_is_kept_and_slows_pan_and_tilt_only(vapix: VapixCamera, time: HandClock) -> None:
+    start = vapix.device.pose()
+    send(vapix, speed="40", rpan="60", zoom="9999")
+    assert send(vapix, query="speed").body == "speed=40\n"
+    halfway = arrive(vapix, time, 5.0)
     assert halfway.zoom == pytest.approx(5)
     assert halfway.pan_deg - start.pan_deg == pytest.approx(30, abs=1)
 
 
-def test_continuous_moves_of_pan_and_zoom_are_independent(unit: VapixUnit, time: HandClock) -> None:
-    device = unit.device
-    send(unit, continuouspantiltmove="100,-40")
+def test_continuous_moves_of_pan_and_zoom_are_independent(vapix: VapixCamera, time: HandClock) -> None:
+    device = vapix.device
+    send(vapix, continuouspantiltmove="100,-40")
     assert device.commanded_velocity == Velocity(100, -6, 0)
-    send(unit, continuouszoommove="50")
+    send(vapix, continuouszoommove="50")
     assert device.commanded_velocity == Velocity(100, -6, 0.75)
-    send(unit, continuouspantiltmove="0,0")
+    send(vapix, continuouspantiltmove="0,0")
     assert device.commanded_velocity == Velocity(0, 0, 0.75)
     time.now += 0.5
-    send(unit, continuouszoommove="0")
-    stopped = arrive(unit, time)
-    assert arrive(unit, time) == stopped
+    send(vapix, continuouszoommove="0")
+    stopped = arrive(vapix, time)
+    assert arrive(vapix, time) == stopped
     assert stopped.zoom > 1.0
 
 
-def test_a_stop_ends_a_continuous_move(unit: VapixUnit, time: HandClock) -> None:
-    send(unit, continuouspantiltmove="10,0")
+def test_a_stop_ends_a_continuous_move(vapix: VapixCamera, time: HandClock) -> None:
+    send(vapix, continuouspantiltmove="10,0")
     time.now += 1
-    send(unit, move="stop")
+    send(vapix, move="stop")
     time.now += 1
-    stopped = unit.device.pose()
-    assert arrive(unit, time) == stopped
-    assert not unit.device.is_moving()
+    stopped = vapix.device.pose()
+    assert arrive(vapix, time) == stopped
+    assert not vapix.device.is_moving()
 
 
 @given(x=st.integers(0, 320), y=st.integers(0, 180), zoom=st.integers(1, 9999))
-def test_a_centred_pixel_is_in_the_centre(shared_unit: VapixUnit, x: int, y: int, zoom: int) -> None:
-    unit, device = shared_unit, shared_unit.device
-    send(unit, pan="20", tilt="-15", zoom=str(zoom))
+def test_a_centred_pixel_is_in_the_centre(shared_unit: VapixCamera, x: int, y: int, zoom: int) -> None:
+    vapix, device = shared_unit, shared_unit.device
+    send(vapix, pan="20", tilt="-15", zoom=str(zoom))
     while device.is_moving():
         pass
     before = device.pose()
     view = Perspective(before.pan_deg, before.tilt_deg, device.optics.hfov_deg(before.zoom), 320, 180)
     aimed_at = view.directions((x / 320, y / 180))
-    assert send(unit, center=f"{x * 4},{y * 4}", imagewidth="1280", imageheight="720").status == 204
+    assert send(vapix, center=f"{x * 4},{y * 4}", imagewidth="1280", imageheight="720").status == 204
     while device.is_moving():
         pass
     after = device.pose()
@@ -222,97 +222,97 @@ def test_a_centred_pixel_is_in_the_centre(shared_unit: VapixUnit, x: int, y: int
     assert after.zoom == before.zoom
 
 
-def test_areazoom_narrows_the_field_of_view(unit: VapixUnit, time: HandClock) -> None:
-    optics = unit.device.optics
-    send(unit, areazoom="160,90,200")
-    pose = arrive(unit, time)
-    assert (pose.pan_deg, pose.tilt_deg) == pytest.approx((unit.device.home.pan_deg, unit.device.home.tilt_deg))
+def test_areazoom_narrows_the_field_of_view(vapix: VapixCamera, time: HandClock) -> None:
+    optics = vapix.device.optics
+    send(vapix, areazoom="160,90,200")
+    pose = arrive(vapix, time)
+    assert (pose.pan_deg, pose.tilt_deg) == pytest.approx((vapix.device.home.pan_deg, vapix.device.home.tilt_deg))
     assert optics.focal(pose.zoom) == pytest.approx(2 * optics.focal(1.0))
-    send(unit, areazoom="160,90,50")
-    assert arrive(unit, time).zoom == pytest.approx(1.0)
+    send(vapix, areazoom="160,90,50")
+    assert arrive(vapix, time).zoom == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("word", moves.DIRECTIONS)
-def test_steps_go_where_they_say(unit: VapixUnit, time: HandClock, word: str) -> None:
-    start, (right, up) = unit.device.pose(), moves.DIRECTIONS[word]
-    send(unit, move=word)
-    end = arrive(unit, time)
+def test_steps_go_where_they_say(vapix: VapixCamera, time: HandClock, word: str) -> None:
+    start, (right, up) = vapix.device.pose(), moves.DIRECTIONS[word]
+    send(vapix, move=word)
+    end = arrive(vapix, time)
     assert end.pan_deg - start.pan_deg == pytest.approx(right * 0.25 * 71)
     assert (end.tilt_deg > start.tilt_deg) - (end.tilt_deg < start.tilt_deg) == up
 
 
-def test_limits_and_calibration_agree_with_the_camera(unit: VapixUnit) -> None:
-    limits = dict(line.split("=") for line in send(unit, query="limits").body.splitlines())
+def test_limits_and_calibration_agree_with_the_camera(vapix: VapixCamera) -> None:
+    limits = dict(line.split("=") for line in send(vapix, query="limits").body.splitlines())
     assert {name: float(value) for name, value in limits.items()} == {
         "MinPan": -179, "MaxPan": 179, "MinTilt": -60, "MaxTilt": 30, "MinZoom": 1, "MaxZoom": 9999, "MinFieldAngle": 140,
         "MaxFieldAngle": 710, "MinFocus": 1, "MaxFocus": 9999, "MinIris": 1, "MaxIris": 9999,
     }  # fmt: skip
-    found = json.loads(send(unit, query="attributes", group="zoom", format="json").body)["Camera 1"]
+    found = json.loads(send(vapix, query="attributes", group="zoom", format="json").body)["Camera 1"]
     assert "speeds" not in found
     for row in found["zoomSteps"]:
         assert float(row["zoom"]) == pytest.approx(scales.magnification(int(row["value"]), LIMITS), abs=1e-6)
     assert {row["value"] for row in found["zoomSteps"]} >= {"1", "9999"}
-    speeds = json.loads(send(unit, query="attributes", group="speed", format="json").body)["Camera 1"]["speeds"]
+    speeds = json.loads(send(vapix, query="attributes", group="speed", format="json").body)["Camera 1"]["speeds"]
     assert speeds[-1] == {"value": "100", "speed": "100"}
-    plain = send(unit, query="attributes").body
+    plain = send(vapix, query="attributes").body
     assert "speeds=value=1 | speed=0.05," in plain
 
 
-def test_focus_and_iris_are_set_and_read_back(unit: VapixUnit, time: HandClock) -> None:
+def test_focus_and_iris_are_set_and_read_back(vapix: VapixCamera, time: HandClock) -> None:
     def position() -> dict[str, str]:
-        return dict(line.split("=") for line in send(unit, query="position").body.splitlines())
+        return dict(line.split("=") for line in send(vapix, query="position").body.splitlines())
 
     assert (position()["autofocus"], position()["autoiris"]) == ("on", "on")
     before = int(position()["focus"])
-    assert send(unit, rfocus="-500", riris="1000").status == 204
+    assert send(vapix, rfocus="-500", riris="1000").status == 204
     time.now += 10
     assert int(position()["focus"]) == pytest.approx(before - 500, abs=1)
     assert int(position()["iris"]) == pytest.approx(6000, abs=1)
     assert (position()["autofocus"], position()["autoiris"]) == ("off", "off")
-    send(unit, focus="9999", iris="-3")
+    send(vapix, focus="9999", iris="-3")
     time.now += 10
     assert (position()["focus"], position()["iris"]) == ("9999", "1")
-    send(unit, autofocus="on", autoiris="on")
+    send(vapix, autofocus="on", autoiris="on")
     time.now += 10
     assert int(position()["focus"]) == before
-    assert send(unit, autofocus="off", focus="near").body.startswith("Error")
+    assert send(vapix, autofocus="off", focus="near").body.startswith("Error")
     assert position()["autofocus"] == "on"  # a request with a wrong argument changes nothing
 
 
-def test_presets_are_saved_renamed_listed_and_removed(unit: VapixUnit, time: HandClock) -> None:
-    send(unit, pan="45", tilt="-3", zoom="5000")
-    there = arrive(unit, time)
-    assert ptz_config(unit, Arguments({"setserverpresetname": "North, Gate 2", "home": "yes"})).status == 204
-    assert unit.device.home == there
-    number = unit.device.find_preset("North, Gate 2").number
-    assert f"presetposno{number}=North, Gate 2" in send(unit, query="presetposcam").body
-    data = json.loads(send(unit, query="presetposcamdata", format="json").body)["Camera 1"]["presets"]
+def test_presets_are_saved_renamed_listed_and_removed(vapix: VapixCamera, time: HandClock) -> None:
+    send(vapix, pan="45", tilt="-3", zoom="5000")
+    there = arrive(vapix, time)
+    assert ptz_config(vapix, Arguments({"setserverpresetname": "North, Gate 2", "home": "yes"})).status == 204
+    assert vapix.device.home == there
+    number = vapix.device.find_preset("North, Gate 2").number
+    assert f"presetposno{number}=North, Gate 2" in send(vapix, query="presetposcam").body
+    data = json.loads(send(vapix, query="presetposcamdata", format="json").body)["Camera 1"]["presets"]
     assert f"presetposno{number}=North, Gate 2:tilt=-3.000000:pan=45.000000:zoom=5000" in data
-    assert ptz_config(unit, Arguments({"renameserverpresetno": str(number), "newname": "South"})).status == 204
-    assert parameters(unit)[f"PTZ.Preset.P0.Position.P{number}.Name"] == "South"
-    assert parameters(unit)["PTZ.Preset.P0.HomePosition"] == str(number)
-    assert ptz_config(unit, Arguments({"setserverpresetno": "77"})).status == 204
-    assert unit.device.preset(77).name == "p77"
-    assert ptz_config(unit, Arguments({"removeserverpresetno": "77"})).status == 204
-    assert ptz_config(unit, Arguments({"removeserverpresetname": "South"})).status == 204
-    assert send(unit, gotoserverpresetname="South").body.startswith("Error:")
+    assert ptz_config(vapix, Arguments({"renameserverpresetno": str(number), "newname": "South"})).status == 204
+    assert parameters(vapix)[f"PTZ.Preset.P0.Position.P{number}.Name"] == "South"
+    assert parameters(vapix)["PTZ.Preset.P0.HomePosition"] == str(number)
+    assert ptz_config(vapix, Arguments({"setserverpresetno": "77"})).status == 204
+    assert vapix.device.preset(77).name == "p77"
+    assert ptz_config(vapix, Arguments({"removeserverpresetno": "77"})).status == 204
+    assert ptz_config(vapix, Arguments({"removeserverpresetname": "South"})).status == 204
+    assert send(vapix, gotoserverpresetname="South").body.startswith("Error:")
 
 
 @pytest.mark.parametrize("name", ["", " ", "a:b", 'a"b', "a\nb", "x" * 32])
-def test_bad_preset_names(unit: VapixUnit, name: str) -> None:
-    before = unit.device.presets()
-    assert ptz_config(unit, Arguments({"setserverpresetname": name})).body.startswith("Error:")
-    assert unit.device.presets() == before
+def test_bad_preset_names(vapix: VapixCamera, name: str) -> None:
+    before = vapix.device.presets()
+    assert ptz_config(vapix, Arguments({"setserverpresetname": name})).body.startswith("Error:")
+    assert vapix.device.presets() == before
 
 
-def test_parameters_by_group(unit: VapixUnit) -> None:
-    everything = param(unit, Arguments({"action": "list"}), ROOT).body.splitlines()
+def test_parameters_by_group(vapix: VapixCamera) -> None:
+    everything = param(vapix, Arguments({"action": "list"}), ROOT).body.splitlines()
     assert all(line.startswith("root.") and "=" in line for line in everything)
     for group, inside in (("root.PTZ", "PTZ."), ("PTZ", "PTZ."), ("root.Brand.ProdNbr", "Brand.ProdNbr=M5075-G")):
-        rows = param(unit, Arguments({"action": "list", "group": group}), ROOT).body.splitlines()
+        rows = param(vapix, Arguments({"action": "list", "group": group}), ROOT).body.splitlines()
         assert rows
         assert all(row.startswith(f"root.{inside}") for row in rows)
-    both = param(unit, Arguments({"action": "list", "group": "root.Brand,root.IOPort"}), ROOT).body
+    both = param(vapix, Arguments({"action": "list", "group": "root.Brand,root.IOPort"}), ROOT).body
     assert "root.Brand.Brand=AXIS" in both
     assert "root.IOPort.I0" in both
     assert sum(line.startswith("root.PTZ.Support.S1.") for line in everything) == 35
@@ -328,30 +328,30 @@ def test_parameters_by_group(unit: VapixUnit) -> None:
         {"action": "update", "PTZ.Various.V1.CtlQueueing": "maybe"},
     ],
 )
-def test_parameter_errors(unit: VapixUnit, arguments: dict[str, str]) -> None:
-    reply = param(unit, Arguments(arguments), ROOT)
+def test_parameter_errors(vapix: VapixCamera, arguments: dict[str, str]) -> None:
+    reply = param(vapix, Arguments(arguments), ROOT)
     assert reply.status == 200
     assert reply.body.startswith("# Error: ")
 
 
-def test_the_control_queue_is_off_until_it_is_switched_on(unit: VapixUnit) -> None:
-    assert ptz_queue(unit, Arguments({"control": "request"}), ROOT).body.startswith("Error:")
-    assert send(unit, GUARD, rpan="1").status == 204
+def test_the_control_queue_is_off_until_it_is_switched_on(vapix: VapixCamera) -> None:
+    assert ptz_queue(vapix, Arguments({"control": "request"}), ROOT).body.startswith("Error:")
+    assert send(vapix, GUARD, rpan="1").status == 204
     switch = Arguments({"action": "update", "root.PTZ.Various.V1.CtlQueueing": "true"})
-    assert param(unit, switch, GUARD).status == 403
-    assert param(unit, switch, ROOT).body == "OK\n"
-    assert "no client has control" in send(unit, GUARD, rpan="1").body
-    assert ptz_queue(unit, Arguments({"control": "request"}), GUARD).body == (
+    assert param(vapix, switch, GUARD).status == 403
+    assert param(vapix, switch, ROOT).body == "OK\n"
+    assert "no client has control" in send(vapix, GUARD, rpan="1").body
+    assert ptz_queue(vapix, Arguments({"control": "request"}), GUARD).body == (
         '<a name="1"></a><a name="60"></a><a name="20"></a>\n'
     )
-    assert send(unit, GUARD, rpan="1").status == 204
-    assert send(unit, ROOT, query="position").body.startswith("pan=")
-    assert "'guard' has control" in send(unit, ROOT, rpan="1").body
-    ptz_queue(unit, Arguments({"control": "request"}), ROOT)  # an administrator goes first
-    assert send(unit, ROOT, rpan="1").status == 204
-    assert "'root' has control" in send(unit, GUARD, rpan="1").body
-    ptz_queue(unit, Arguments({"control": "drop"}), ROOT)
-    assert send(unit, GUARD, rpan="1").status == 204
+    assert send(vapix, GUARD, rpan="1").status == 204
+    assert send(vapix, ROOT, query="position").body.startswith("pan=")
+    assert "'guard' has control" in send(vapix, ROOT, rpan="1").body
+    ptz_queue(vapix, Arguments({"control": "request"}), ROOT)  # an administrator goes first
+    assert send(vapix, ROOT, rpan="1").status == 204
+    assert "'root' has control" in send(vapix, GUARD, rpan="1").body
+    ptz_queue(vapix, Arguments({"control": "drop"}), ROOT)
+    assert send(vapix, GUARD, rpan="1").status == 204
 
 
 def test_control_ends_without_commands_and_places_without_polls() -> None:
@@ -389,16 +389,16 @@ def test_control_ends_without_commands_and_places_without_polls() -> None:
         ("POST", b'{"method": "getApiList", "apiVersion": "9.0"}', 2003),
     ],
 )
-def test_json_errors(unit: VapixUnit, answer: object, method: str, body: bytes, code: int) -> None:
-    reply = answer(unit, method, body)  # type: ignore[operator]
+def test_json_errors(vapix: VapixCamera, answer: object, method: str, body: bytes, code: int) -> None:
+    reply = answer(vapix, method, body)  # type: ignore[operator]
     assert reply.status == 200
     assert json.loads(reply.body)["error"]["code"] == code
 
 
-def test_json_replies_repeat_the_context(unit: VapixUnit) -> None:
+def test_json_replies_repeat_the_context(vapix: VapixCamera) -> None:
     request = {"apiVersion": "1.0", "context": "abc", "method": "getProperties", "params": {"propertyList": ["ProdNbr"]}}
-    found = json.loads(basic_device_info(unit, "POST", json.dumps(request).encode()).body)
+    found = json.loads(basic_device_info(vapix, "POST", json.dumps(request).encode()).body)
     assert found["context"] == "abc"
     assert found["data"] == {"propertyList": {"ProdNbr": "M5075-G"}}
-    listed = json.loads(api_discovery(unit, "POST", b'{"method": "getApiList"}').body)["data"]["apiList"]
+    listed = json.loads(api_discovery(vapix, "POST", b'{"method": "getApiList"}').body)["data"]["apiList"]
     assert "ptz-control" in {api["id"] for api in listed}

@@ -13,11 +13,11 @@ from .errors import AddOnError
 from .server_client import ServerClient, quote_part
 from .steps import End, Step, parse_end, parse_step
 
-_PICTURE = re.compile(r"(?:frames|pictures)/[A-Za-z0-9._-]{1,60}")
+_PICTURE_PATH = re.compile(r"(?:frames|pictures)/[A-Za-z0-9._-]{1,60}")
 
 
 class StepStarted(NamedTuple):
-    """The planner has started a step. ``step`` is the number of the step."""
+    """The planner has chosen the tool calls of step number ``step``."""
 
     step: int
 
@@ -38,7 +38,7 @@ RunEvent = Step | End | StepStarted | PictureStored | Problem
 
 
 class InstructionRun:
-    """An instruction and its run.
+    """An instruction, and its run on the server.
 
     Args:
         address: The server.
@@ -111,7 +111,7 @@ class InstructionRun:
 
     def _fetch(self, client: ServerClient, picture: str) -> None:
         """Download a picture with its detections marked. Ignore a picture that is not available."""
-        if not _PICTURE.fullmatch(picture):
+        if not _PICTURE_PATH.fullmatch(picture):
             return
         try:
             data = client.request_bytes("GET", f"/runs/{quote_part(self._run_id)}/pictures/{picture}?marks=true")

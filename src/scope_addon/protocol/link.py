@@ -41,7 +41,7 @@ class CameraLink:
         address: The server.
         camera: The name of the camera on the server.
         client: The name of this client.
-        description: The open scene.
+        description: The description of the open scene.
     """
 
     def __init__(self, address: Address, camera: str, client: str, description: Description) -> None:
@@ -52,7 +52,7 @@ class CameraLink:
         self._outbox: queue.SimpleQueue[Callable[[ServerClient], None] | None] = queue.SimpleQueue()
         self._stopping = threading.Event()
         self.requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
-        self.updates = 0
+        self.sent_updates = 0
         """Number of descriptions that the server has received through ``update``."""
         self.connected = False
         self.ended = False
@@ -88,7 +88,7 @@ class CameraLink:
 
         def send(client: ServerClient) -> None:
             client.request("PUT", f"{self._path}/scene", description)
-            self.updates += 1
+            self.sent_updates += 1
 
         self._outbox.put(send)
 
@@ -106,7 +106,7 @@ class CameraLink:
                     break
                 self.connected = True
                 if event is not None and event.name == "request":
-                    self.requests.put(_request(event.data))
+                    self.requests.put(_parse_request(event.data))
             self._fail("The server ended the connection.")
         except AddOnError as error:
             self._fail(str(error))
@@ -147,7 +147,7 @@ class CameraLink:
             self.problem = problem
 
 
-def _request(data: Any) -> Request:
+def _parse_request(data: Any) -> Request:
     try:
         number, operation, arguments = data["number"], data["operation"], data["arguments"]
     except (KeyError, TypeError):

@@ -32,16 +32,16 @@ class ServerProcess:
     """
 
     def __init__(self, program: str, pairs: list[str], runs_dir: Path) -> None:
-        found = shutil.which(str(Path(program).expanduser()))
-        if found is None:
+        executable = shutil.which(str(Path(program).expanduser()))
+        if executable is None:
             raise AddOnError(
                 f"The program '{program}' was not found. Install it with pip install 'scope-ptz[serve]', and set its path in the "
                 "preferences of the add-on."
             )
-        command = [found, "serve", "--camera", CAMERA, "--port", "0", "--json", "--until-eof", "--runs-dir", str(runs_dir)]
+        command = [executable, "serve", "--camera", CAMERA, "--port", "0", "--json", "--until-eof", "--runs-dir", str(runs_dir)]
         for pair in pairs:
             command += ["--pair", pair]
-        # Blender's own Python settings must not reach the program, which runs another Python.
+        # Blender's own Python settings must not reach the program, which runs a different Python.
         environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
         self._errors: list[str] = []
         self.url = ""
@@ -60,7 +60,7 @@ class ServerProcess:
                 errors="replace",
             )
         except OSError as error:
-            raise AddOnError(f"The server cannot be started with {found}: {error.strerror}.") from error
+            raise AddOnError(f"The server cannot be started with {executable}: {error.strerror}.") from error
         self._threads = [
             threading.Thread(target=self._read_output, name="scope-server", daemon=True),
             threading.Thread(target=self._read_errors, name="scope-server-errors", daemon=True),

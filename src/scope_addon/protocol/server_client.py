@@ -17,7 +17,7 @@ from .errors import AddOnError, ServerRefusedError
 TIMEOUT_S = 60.0
 """Seconds after which a request without a reply fails."""
 
-SILENCE_S = 40.0
+STREAM_TIMEOUT_S = 40.0
 """Seconds without data after which a stream is considered lost. Servers send a heartbeat at least every 15 s."""
 
 MAX_REPLY_BYTES = 64 * 1024 * 1024
@@ -91,10 +91,10 @@ class ServerClient:
         """
         try:
             connection = self._open()
-            connection.timeout = SILENCE_S
+            connection.timeout = STREAM_TIMEOUT_S
             connection.request("GET", self._path(path), headers={**self._headers(), "Accept": "text/event-stream"})
             if connection.sock is not None:
-                connection.sock.settimeout(SILENCE_S)
+                connection.sock.settimeout(STREAM_TIMEOUT_S)
             reply = connection.getresponse()
             if reply.status != 200:
                 raise _refusal(reply.status, reply.read(MAX_REPLY_BYTES))

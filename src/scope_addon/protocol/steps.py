@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-MAX_TEXT_CHARS = 300  # longer texts are truncated in the sidebar
+MAX_TEXT_CHARS = 300  # longer text is truncated in the sidebar
 
-OUTCOMES = {
+OUTCOME_LABELS = {
     "answered": "Answered",
     "clarification": "Needs clarification",
     "refused": "Refused",
@@ -74,7 +74,9 @@ def parse_end(record: dict[str, Any]) -> End:
         if name in timings
     ]
     outcome = str(record["outcome"])
-    return End(OUTCOMES.get(outcome, outcome), str(record["text"])[:4000], (*parts, Timing("total", float(timings["total_s"]))))
+    return End(
+        OUTCOME_LABELS.get(outcome, outcome), str(record["text"])[:4000], (*parts, Timing("total", float(timings["total_s"])))
+    )
 
 
 def _format_value(value: object) -> str:

@@ -1,4 +1,4 @@
-"""Send short requests to the server in the background. The main thread collects the results."""
+"""A thread that sends short requests to the server. The main thread collects the results."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ Callback = Callable[[Any, str], None]
 """A function that the main thread calls with the result and the error message, which is empty on success."""
 
 
-class Tasks:
-    """A thread that sends requests one after another.
+class RequestThread:
+    """A thread that runs tasks one after another. A task is a function that sends requests.
 
     Args:
         address: The server.
@@ -40,7 +40,7 @@ class Tasks:
             self._finished.get()()
 
     def stop(self) -> None:
-        """End the thread after the current task."""
+        """End the thread after all queued tasks."""
         self._queue.put(None)
 
     def join(self, timeout_s: float) -> None:

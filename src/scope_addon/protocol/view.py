@@ -17,7 +17,7 @@ class View(NamedTuple):
     Attributes:
         viewpoint: The name of the camera with the same optical centre.
         position_m: The position.
-        bearing_deg: The direction as an angle from the scene's y axis, clockwise from above.
+        bearing_deg: The direction as an angle from the scene's y axis, clockwise as seen from above.
         tilt_deg: The tilt; positive is up.
         hfov_deg: The horizontal field of view.
     """
@@ -35,7 +35,7 @@ class View(NamedTuple):
         return (cp, -sp, 0.0), (-sp * st, -cp * st, ct), (sp * ct, cp * ct, st)
 
     def interpolate(self, end: View, fraction: float) -> View:
-        """Interpolate between this view and ``end``, along the shorter turn. A fraction of 1 returns exactly ``end``."""
+        """Interpolate between this view and ``end``, turning the shorter way. A fraction of 1 returns exactly ``end``."""
         if fraction >= 1.0 or end.viewpoint != self.viewpoint:
             return end
         turn = (end.bearing_deg - self.bearing_deg + 180.0) % 360.0 - 180.0

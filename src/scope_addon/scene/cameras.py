@@ -18,7 +18,7 @@ PRESET, DESCRIPTION, VIEWPOINT, VIEW_CAMERA = "scope_preset", "scope_description
 """Names of the custom properties of presets saved through SCOPE, and of the camera that SCOPE moves."""
 
 COLLECTION = "SCOPE presets"
-OTHER_PROJECTION_HFOV_DEG = 60.0  # used for orthographic and panoramic cameras, which SCOPE shows in perspective
+NON_PERSPECTIVE_HFOV_DEG = 60.0  # used for orthographic and panoramic cameras, which SCOPE shows in perspective
 VIEWPOINT_TOLERANCE_M = 0.001  # a saved preset that is farther than this from its camera gets its own viewpoint
 
 
@@ -105,7 +105,7 @@ def find_preset(scene: Any, name: str) -> Any:
 
 
 def aim(camera: Any, view: View) -> None:
-    """Move a camera object to a view, in perspective."""
+    """Set a camera object to a view, with a perspective projection."""
     right, up, ahead = view.axes()
     axes = Matrix((right, up, tuple(-value for value in ahead))).transposed()
     camera.matrix_world = Matrix.Translation(view.position_m) @ axes.to_4x4()
@@ -163,7 +163,7 @@ def _direction(matrix: Any) -> tuple[float, float]:
 def _hfov_deg(data: Any, render: Any) -> float:
     """Return the horizontal field of view at the aspect ratio of the render settings, as for `blender:FILE.blend` cameras."""
     if data.type != "PERSP":
-        return OTHER_PROJECTION_HFOV_DEG
+        return NON_PERSPECTIVE_HFOV_DEG
     width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
     if data.sensor_fit == "VERTICAL" or (data.sensor_fit == "AUTO" and height > width):
         angle = data.angle_y if data.sensor_fit == "VERTICAL" else data.angle
@@ -183,12 +183,12 @@ def _kebab(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "camera"
 
 
-def _kebab_names(texts: list[str], taken: set[str]) -> list[str]:
-    """Return a kebab-case name for each text, as for `blender:FILE.blend` cameras. Duplicate names get a number."""
+def _kebab_names(titles: list[str], taken: set[str]) -> list[str]:
+    """Return a kebab-case name for each title, as for `blender:FILE.blend` cameras. Duplicate names get a number."""
     names: list[str] = []
-    for text in texts:
-        name, number = _kebab(text), 2
+    for title in titles:
+        name, number = _kebab(title), 2
         while name in names or name in taken:
-            name, number = f"{_kebab(text)}-{number}", number + 1
+            name, number = f"{_kebab(title)}-{number}", number + 1
         names.append(name)
     return names

@@ -47,7 +47,7 @@ def on_update(_scene: Any, graph: Any = None) -> None:
 
 
 @persistent
-def on_frame(_scene: Any, _graph: Any = None) -> None:
+def on_frame_change(_scene: Any, _graph: Any = None) -> None:
     """Handle a change of the animation's current frame. Blender also calls this when SCOPE renders a picture."""
     if not _state["own"]:
         record_change()
@@ -56,12 +56,15 @@ def on_frame(_scene: Any, _graph: Any = None) -> None:
 def add_handlers() -> None:
     """Start detecting changes."""
     bpy.app.handlers.depsgraph_update_post.append(on_update)
-    bpy.app.handlers.frame_change_post.append(on_frame)
+    bpy.app.handlers.frame_change_post.append(on_frame_change)
 
 
 def remove_handlers() -> None:
     """Stop detecting changes."""
-    for handlers, handler in ((bpy.app.handlers.depsgraph_update_post, on_update), (bpy.app.handlers.frame_change_post, on_frame)):
+    for handlers, handler in (
+        (bpy.app.handlers.depsgraph_update_post, on_update),
+        (bpy.app.handlers.frame_change_post, on_frame_change),
+    ):
         if handler in handlers:
             handlers.remove(handler)
 

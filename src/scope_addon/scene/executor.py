@@ -16,10 +16,10 @@ from . import cameras, changes, pictures
 from .view_camera import ViewCamera
 
 MAX_PAUSE_S = 0.5
-"""Maximum pause in seconds after a picture. A pause of half the picture's duration keeps Blender's window responsive."""
+"""Maximum pause in seconds after a picture. A pause of half the time that the picture took keeps Blender's window responsive."""
 
 DESCRIBE_INTERVAL_S = 1.0
-"""Interval in seconds at which the cameras of the scene are checked for changes by the user."""
+"""Interval in seconds between checks for changes that the user has made to the cameras of the scene."""
 
 
 class Executor:
@@ -32,11 +32,11 @@ class Executor:
 
     def __init__(self, link: CameraLink, description: dict[str, Any]) -> None:
         self._link, self._description = link, description
-        self._pictures: deque[Request] = deque()
+        self._picture_requests: deque[Request] = deque()
         self._pause_until_s = self._next_description_s = 0.0
-        self.picture_s = 0.0
-        """Duration of the last picture in seconds."""
-        self.pictures = 0
+        self.last_picture_s = 0.0
+        """Time in seconds that the last picture took."""
+        self.picture_count = 0
         """Number of pictures so far."""
         with changes.own_change():
             self.camera = ViewCamera(bpy.context.scene)
@@ -47,12 +47,12 @@ class Executor:
         while not self._link.requests.empty():
             request = self._link.requests.get()
             if request.operation == "frame":
-                self._pictures.append(request)
+                self._picture_requests.append(request)
             else:
                 self._link.reply(request, self._reply_to(request))
                 redraw = True
-        if self._pictures and time.monotonic() >= self._pause_until_s:
-            request = self._pictures.popleft()
+        if self._picture_requests and time.monotonic() >= self._pause_until_s:
+            request = self._picture_requests.popleft()
             self._link.reply(request, self._reply_to(request))
         if self.camera.gliding:
             with changes.own_change():
@@ -117,9 +117,9 @@ class Executor:
             camera = self.camera.settle(view)
             bpy.context.view_layer.update()
             encode = pictures.take(scene, camera, size, source)
-        self.picture_s = time.monotonic() - began_s
-        self._pause_until_s = time.monotonic() + min(MAX_PAUSE_S, self.picture_s / 2)
-        self.pictures += 1
+        self.last_picture_s = time.monotonic() - began_s
+        self._pause_until_s = time.monotonic() + min(MAX_PAUSE_S, self.last_picture_s / 2)
+        self.picture_count += 1
         return Picture(encode, version)
 
     def _describe_if_due(self) -> None:

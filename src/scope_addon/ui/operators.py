@@ -36,7 +36,7 @@ class SCOPE_OT_connect(_Operator):
 
     def work(self, context):
         settings = preferences(context)
-        if settings.use_own == "START":
+        if settings.server_mode == "START":
             session.start_server(settings.program, settings.pairs.split())
         else:
             session.connect(settings.address, settings.token, settings.camera)

@@ -27,7 +27,7 @@ def remove() -> None:
 
 
 def text() -> tuple[str, str]:
-    """Return the heading and the text; both are empty if nothing is shown."""
+    """Return the heading and the body; both are empty if nothing is shown."""
     if session.run is not None:
         last = session.steps[-1].text if session.steps else session.activity
         return session.run.instruction, last

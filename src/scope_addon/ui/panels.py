@@ -102,9 +102,9 @@ class SCOPE_PT_steps(_Panel, bpy.types.Panel):
             column.separator()
             _draw_lines(column, context, step.text)
         if session.end is not None:
-            row = layout.column(align=True)
+            column = layout.column(align=True)
             for timing in session.end.timings:
-                split = row.split(factor=0.6)
+                split = column.split(factor=0.6)
                 split.label(text=timing.part)
                 split.label(text=f"{timing.duration_s:.2f} s")
         layout.operator("scope.picture", icon="IMAGE_DATA")
@@ -143,8 +143,8 @@ class SCOPE_PT_pictures(_Panel, bpy.types.Panel):
         column.prop(settings, "height")
         if session.state == "connected":
             layout.operator("scope.look", icon="OUTLINER_OB_CAMERA")
-        if session.executor is not None and session.executor.pictures:
-            layout.label(text=f"Pictures: {session.executor.pictures} (the last took {session.executor.picture_s:.2f} s)")
+        if session.executor is not None and session.executor.picture_count:
+            layout.label(text=f"Pictures: {session.executor.picture_count} (the last took {session.executor.last_picture_s:.2f} s)")
 
 
 def _draw_lines(layout: Any, context: Any, text: str, icon: str = "NONE") -> None:

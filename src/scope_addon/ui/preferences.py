@@ -23,7 +23,7 @@ class ScopePreferences(bpy.types.AddonPreferences):
 
     bl_idname = PACKAGE
 
-    use_own: bpy.props.EnumProperty(
+    server_mode: bpy.props.EnumProperty(
         name="Server",
         items=(
             ("START", "Start a server", "Start the scope program on this machine, and stop it when Blender exits"),
@@ -53,8 +53,8 @@ class ScopePreferences(bpy.types.AddonPreferences):
         """Draw the preferences."""
         layout = self.layout
         layout.use_property_split = True
-        layout.prop(self, "use_own")
-        if self.use_own == "START":
+        layout.prop(self, "server_mode")
+        if self.server_mode == "START":
             layout.prop(self, "program")
             layout.prop(self, "pairs")
         else:

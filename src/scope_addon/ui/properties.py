@@ -3,7 +3,7 @@
 
 import bpy
 
-_pair_items: list = []  # Blender requires that the texts of dynamic menus stay in memory
+_pair_items: list = []  # Blender requires the strings of dynamic menus to stay in memory
 
 
 def set_pairs(names: list) -> None:

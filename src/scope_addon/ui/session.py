@@ -18,13 +18,13 @@ from ..protocol.link import CameraLink
 from ..protocol.server import CAMERA, ServerProcess
 from ..protocol.server_client import quote_part
 from ..protocol.steps import End, Step
-from ..protocol.tasks import Tasks
+from ..protocol.tasks import RequestThread
 from ..scene import cameras
 from ..scene.executor import Executor
 from . import picture_view, properties
 
 CONNECTED_INTERVAL_S, STARTING_INTERVAL_S = 0.02, 0.1
-"""Interval of the timer in seconds: while connected, and while the server starts."""
+"""Intervals of the timer in seconds, while connected and while the server starts."""
 
 MAX_STEPS = 60  # the sidebar shows only the latest steps of a run
 START_TIMEOUT_S = 60.0
@@ -47,13 +47,13 @@ class Session:
         self.run: InstructionRun | None = None
         self.executor: Executor | None = None
         self._server: ServerProcess | None = None
-        self._server_since_s = 0.0
+        self._server_start_s = 0.0
         self._link: CameraLink | None = None
-        self._tasks: Tasks | None = None
+        self._tasks: RequestThread | None = None
         self._address: Address | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._presets_requested = False
-        self._updates = 0
+        self._seen_updates = 0
 
     @property
     def state(self) -> str:
@@ -77,7 +77,7 @@ class Session:
         self.problem = ""
         cameras.describe(bpy.context.scene)  # raises an error for a scene without a camera before the server starts
         runs = Path(bpy.utils.user_resource("DATAFILES", path="scope_runs", create=True))
-        self._server, self._server_since_s, self.camera = ServerProcess(program, pairs, runs), time.monotonic(), CAMERA
+        self._server, self._server_start_s, self.camera = ServerProcess(program, pairs, runs), time.monotonic(), CAMERA
 
     def connect(self, url: str, token: str, camera: str) -> None:
         """Connect the open scene to a server.
@@ -135,27 +135,27 @@ class Session:
 
     def go_to_preset(self, name: str) -> None:
         """Go to a preset, in the background."""
-        self._task("POST", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}/go")
+        self._request("POST", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}/go")
 
     def go_home(self) -> None:
         """Go to the view of the scene's own camera, in the background."""
-        self._task("POST", f"/cameras/{quote_part(self.camera)}/home")
+        self._request("POST", f"/cameras/{quote_part(self.camera)}/home")
 
     def save_preset(self, name: str) -> None:
         """Save the view of SCOPE's camera as a preset, in the background."""
-        self._task("PUT", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}", {"description": ""})
+        self._request("PUT", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}", {"description": ""})
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset, in the background."""
-        self._task("DELETE", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}")
+        self._request("DELETE", f"/cameras/{quote_part(self.camera)}/presets/{quote_part(name)}")
 
     def scene_changed(self) -> None:
-        """Send the description of the scene after the add-on has changed its cameras."""
+        """Send the new description of the scene, after the add-on has changed the cameras."""
         if self.executor is not None:
             self.executor.describe_now()
 
     def file_opened(self) -> None:
-        """Connect the scene of the file that was opened."""
+        """If connected, reconnect with the scene of the file that was opened."""
         if self._link is not None and self._address is not None:
             address, self.executor = self._address, None
             self._link.stop()
@@ -166,7 +166,7 @@ class Session:
                 self.problem = str(error)
 
     def tick(self) -> float | None:
-        """Process new events. Return the seconds until the next call; None if no more calls are needed."""
+        """Process new events. Return the time in seconds until the next call; None if no more calls are needed."""
         redraw = self._watch_server()
         if self._link is not None:
             redraw |= self._watch_link(self._link)
@@ -183,7 +183,7 @@ class Session:
         if server is None or self._link is not None:
             return False
         problem = server.problem
-        if not problem and time.monotonic() - self._server_since_s > START_TIMEOUT_S:
+        if not problem and time.monotonic() - self._server_start_s > START_TIMEOUT_S:
             problem = f"The server did not start within {START_TIMEOUT_S:g} s."
         if problem:
             self.disconnect()
@@ -199,13 +199,13 @@ class Session:
     def _open(self, address: Address) -> None:
         self._connect_link(address)
         self._address = address
-        self._tasks = Tasks(address, self.client)
+        self._tasks = RequestThread(address, self.client)
 
     def _connect_link(self, address: Address) -> None:
         description = cameras.describe(bpy.context.scene)
         self._link = CameraLink(address, self.camera, self.client, description)
         self._link.start()
-        self.executor, self._presets_requested, self._updates = Executor(self._link, description), False, 0
+        self.executor, self._presets_requested, self._seen_updates = Executor(self._link, description), False, 0
 
     def _watch_link(self, link: CameraLink) -> bool:
         if link.ended:
@@ -217,11 +217,11 @@ class Session:
             return True
         if link.connected and not self._presets_requested:
             self._presets_requested = True
-            self._task("GET", "/pairs", done=self._set_pairs)
+            self._request("GET", "/pairs", done=self._set_pairs)
             self._refresh_presets()
             return True
-        if link.updates != self._updates:  # the server has received the scene's new cameras
-            self._updates = link.updates
+        if link.sent_updates != self._seen_updates:  # the server has received the scene's new cameras
+            self._seen_updates = link.sent_updates
             self._refresh_presets()
         return self.executor is not None and self.executor.tick()
 
@@ -246,7 +246,7 @@ class Session:
         return redraw
 
     def _refresh_presets(self) -> None:
-        self._task("GET", f"/cameras/{quote_part(self.camera)}/presets", done=self._set_presets)
+        self._request("GET", f"/cameras/{quote_part(self.camera)}/presets", done=self._set_presets)
 
     def _set_presets(self, reply: Any) -> None:
         self.presets = [str(preset["name"]) for preset in reply]
@@ -254,7 +254,7 @@ class Session:
     def _set_pairs(self, reply: Any) -> None:
         properties.set_pairs([str(name) for name in reply])
 
-    def _task(self, method: str, path: str, body: object = None, done: Any = None) -> None:
+    def _request(self, method: str, path: str, body: object = None, done: Any = None) -> None:
         if self._tasks is None:
             raise AddOnError("Connect to a server first.")
 

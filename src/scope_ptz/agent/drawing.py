@@ -130,8 +130,8 @@ class Canvas:
         """Draw text on a rounded background, and return the width of the background.
 
         Args:
-            x: Position of the left end, right end or middle, depending on ``anchor``.
-            y: Position of the vertical middle.
+            x: Position of the left end, right end or centre, depending on ``anchor``.
+            y: Position of the vertical centre.
             text: The text.
             size: Font size.
             fill: Background colour.

@@ -202,8 +202,8 @@ def _row_height(row: list[_Tile]) -> float:
 
 def _draw_row(canvas: Canvas, row: list[_Tile], y: float) -> None:
     height = _picture_height(row)
-    used = sum(tile.aspect for tile in row) * height + GAP * (len(row) - 1)
-    x = (WIDTH - used) / 2
+    row_width = sum(tile.aspect for tile in row) * height + GAP * (len(row) - 1)
+    x = (WIDTH - row_width) / 2
     for tile in row:
         width = tile.aspect * height
         _draw_tile(canvas, tile, x, y, width, height)
@@ -216,8 +216,8 @@ def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, he
     canvas.picture(tile.image, x + 1, y + 1, width - 2, height - 1, radius=11)
     _draw_boxes(canvas, panel, x, y, width, height)
     pose = panel.pose.as_dict()
-    where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · {pose['zoom']:.1f}x"
-    readout = "full scene" if panel.is_panorama else where
+    pose_text = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · {pose['zoom']:.1f}x"
+    readout = "full scene" if panel.is_panorama else pose_text
     canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", text_colour=TEXT_COLOUR, padding=10)
     if panel.badge:
         fill, text_colour = (AMBER, BACKGROUND) if panel.boxes else ("#0E131AC8", TEXT_COLOUR)

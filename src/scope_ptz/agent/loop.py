@@ -57,7 +57,7 @@ class Agent:
         snapshots: bool = True,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
-        guarded: bool = True,
+        enforce_call_limits: bool = True,
     ) -> None:
         """Create an agent.
 
@@ -72,12 +72,12 @@ class Agent:
                 stored.
             tools: The tools that the planner can call.
             run_tool: A function that runs the calls instead of ``tools.run``, for example a wrapper that observes them.
-            guarded: Whether to end the run when the planner keeps repeating a wrong call, and to limit the calls in a step. False
-                for replays, because traces from older versions may contain such steps.
+            enforce_call_limits: Whether to end the run when the planner keeps repeating a wrong call, and to limit the calls in a
+                step. False for replays, because traces from older versions may contain such steps.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
-        self.tools, self.run_tool, self.guarded = tools, run_tool, guarded
+        self.tools, self.run_tool, self.enforce_call_limits = tools, run_tool, enforce_call_limits
 
     async def run(
         self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None
@@ -104,11 +104,11 @@ class Agent:
             raise InputError("The instruction is empty. State what the camera should do.")
         if len(instruction) > MAX_INSTRUCTION_CHARS:
             raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters. Shorten it.")
-        return await _Episode(self, instruction, conversation, listener).run()
+        return await _ActiveRun(self, instruction, conversation, listener).run()
 
 
-class _Episode:
-    """One run of an agent, with its state."""
+class _ActiveRun:
+    """A run in progress, with its state."""
 
     def __init__(self, agent: Agent, instruction: str, conversation: tuple[PastTurn, ...], listener: Listener) -> None:
         self.agent, self.instruction, self.conversation, self.emit = agent, instruction, conversation, listener
@@ -212,7 +212,7 @@ class _Episode:
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
-            if self.agent.guarded and self.calls.bad_call_repeats >= MAX_REPEATED_BAD_CALLS:
+            if self.agent.enforce_call_limits and self.calls.bad_call_repeats >= MAX_REPEATED_BAD_CALLS:
                 return RunEnd("planner_error", f"The planner made the same wrong call {MAX_REPEATED_BAD_CALLS} times in a row.")
         return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 
@@ -227,7 +227,7 @@ class _Episode:
             decision = await planner.step(state)
         if not isinstance(decision, CallTools | Finish):
             raise PlannerError(f"A planner must return CallTools or Finish; this one returned {type(decision).__name__}.")
-        if self.agent.guarded:
+        if self.agent.enforce_call_limits:
             decision = _limit_calls(decision)
         self.usage += decision.usage
         if decision.served is not None:

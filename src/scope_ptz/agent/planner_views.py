@@ -13,7 +13,7 @@ from scope_ptz.tools.context import ImageStore
 MAX_SIDE_PX = 1280  # larger frames are scaled down, as vision models would do anyway
 
 
-def fitting_size(width: int, height: int) -> Size:
+def picture_size(width: int, height: int) -> Size:
     """Return the width and height of a planner's picture of a frame. No side is longer than ``MAX_SIDE_PX`` pixels."""
     scale = min(1.0, MAX_SIDE_PX / max(width, height))
     return round(width * scale), round(height * scale)
@@ -21,7 +21,7 @@ def fitting_size(width: int, height: int) -> Size:
 
 async def picture(frame: Frame, caption: str) -> Picture:
     """Return a frame as a captioned JPEG for a planner, at most ``MAX_SIDE_PX`` pixels wide and high."""
-    encoded = await encode_frame(frame, fitting_size(frame.width, frame.height))
+    encoded = await encode_frame(frame, picture_size(frame.width, frame.height))
     return Picture(data_url=encoded.data_url, caption=caption)
 
 

@@ -74,7 +74,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         NoImages(),
         budgets=Budgets(max_steps=trace.started.budgets.max_steps),
         snapshots=False,
-        guarded=False,
+        enforce_call_limits=False,
     )
     repeated: list[Called] = []
 
@@ -168,7 +168,11 @@ class RecordedPerception(Perception):
     def _next_reply(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
         # Concurrent calls may arrive in an order that differs from the recorded one, but they all belong to one step.
         step = self._replies[0][0] if self._replies else 0
-        matches = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
+        matches = (
+            i
+            for i, (recorded_step, reply) in enumerate(self._replies)
+            if recorded_step == step and (reply.kind, reply.asked) == (kind, asked)
+        )
         index = next(matches, None)
         if index is None:
             raise PerceptionError(f"The recording contains no reply to {kind} '{asked}' at {frame.time_s:.2f} s.")

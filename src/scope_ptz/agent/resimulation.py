@@ -70,7 +70,7 @@ async def resimulate(
         budgets=Budgets(max_steps=trace.started.budgets.max_steps),
         labels=trace.started.labels,
         snapshots=snapshots,
-        guarded=False,
+        enforce_call_limits=False,
     )
     records: list[Started | Decided | Called | Ended] = []
     await agent.run(trace.started.instruction, listener=records.append)
@@ -167,12 +167,12 @@ def picture_pairs(recorded: Trace, repeated: Trace) -> Iterator[tuple[str, str, 
     for before, now in zip(recorded.decisions, repeated.decisions, strict=False):
         if before.view is not None:
             yield f"before step {before.step}", before.view, now.view or ""
-    for call, again in zip(recorded.calls, repeated.calls, strict=False):
+    for call, repeated_call in zip(recorded.calls, repeated.calls, strict=False):
         where = f"in call {call.index + 1} of step {call.step}"
         names = _picture_names(call)
-        others = _picture_names(again)
+        repeated_names = _picture_names(repeated_call)
         for number, name in enumerate(names):
-            yield where, name, others[number] if number < len(others) else ""
+            yield where, name, repeated_names[number] if number < len(repeated_names) else ""
 
 
 def _picture_names(call: Called) -> list[str]:

@@ -94,11 +94,11 @@ class Stopwatch:
     def read(self) -> Timings:
         """Return the times so far, including measurements in progress."""
         now = perf_counter()
-        stage_times = {
+        part_times = {
             f"{part}_s": round(seconds + (now - self._part_starts_s[part] if self._active[part] else 0.0), 6)
             for part, seconds in self._part_times_s.items()
         }
-        return Timings(**stage_times, total_s=round(now - self._began, 6), first_token_s=round(self._first_tokens_s, 6))
+        return Timings(**part_times, total_s=round(now - self._began, 6), first_token_s=round(self._first_tokens_s, 6))
 
 
 class TimedCamera(CameraWrapper):

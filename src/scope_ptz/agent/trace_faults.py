@@ -16,7 +16,7 @@ from scope_ptz.planner.base import CallTools, Finish, Usage
 
 POSE_TOLERANCE = 1e-6
 """Maximum difference between equal poses (degrees, or magnification) and between equal scene times (seconds)."""
-CLOCK_SLACK_S = 0.05
+CLOCK_TOLERANCE_S = 0.05
 """Seconds by which a sum of measured times may exceed the total time, because the clock is read several times."""
 INTERRUPTED_OUTCOMES = frozenset({"budget", "cancelled", "camera_error"})
 """Outcomes of runs that can end in the middle of a step, so that calls in the last step may be missing."""
@@ -96,8 +96,8 @@ def _end_faults(trace: Trace, ended: Ended) -> Iterator[str]:
     if ended.steps > trace.started.budgets.max_steps:
         yield f"the run has {ended.steps} steps, but its limit is {trace.started.budgets.max_steps}"
     if ended.outcome in _FINISHED_OUTCOMES and all(called.outcome.error is None for called in trace.calls):
-        before = trace.calls[-1].pose if trace.calls else trace.started.pose
-        if not is_same_pose(before, ended.pose):
+        last_pose = trace.calls[-1].pose if trace.calls else trace.started.pose
+        if not is_same_pose(last_pose, ended.pose):
             yield "the pose at the end differs from the pose after the last call"
     for called in trace.calls:
         stated = (called.outcome.result or {}).get("pose")
@@ -135,8 +135,8 @@ def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
         if decided.decision.served is not None:
             used += usage_of_failures(decided.decision.served.attempts)
     total = ended.usage
-    missing = used.input_tokens > total.input_tokens or used.output_tokens > total.output_tokens
-    if missing or (
+    exceeds_total = used.input_tokens > total.input_tokens or used.output_tokens > total.output_tokens
+    if exceeds_total or (
         ended.outcome in _FINISHED_OUTCOMES and (used.input_tokens, used.output_tokens) != (total.input_tokens, total.output_tokens)
     ):
         yield "the tokens at the end differ from those of the decisions"
@@ -144,13 +144,13 @@ def _count_faults(trace: Trace, ended: Ended) -> Iterator[str]:
 
 def _time_faults(trace: Trace, ended: Ended) -> Iterator[str]:
     timings, count = ended.timings, len(trace.decisions) + len(trace.calls)
-    slack_s = CLOCK_SLACK_S * (1 + count)
+    tolerance_s = CLOCK_TOLERANCE_S * (1 + count)
     planner_s = sum(decided.planner_s for decided in trace.decisions)
-    if planner_s > timings.planner_s + slack_s:
+    if planner_s > timings.planner_s + tolerance_s:
         yield "the planner took longer in its steps than in the whole run"
     longest_s = max(timings.planner_s, timings.perception_s, timings.camera_s, timings.render_s)
     calls_s = max((called.timings.total_s for called in trace.calls), default=0.0)
-    if max(longest_s, calls_s) > timings.total_s + slack_s:
+    if max(longest_s, calls_s) > timings.total_s + tolerance_s:
         yield "a part of the run took longer than the whole run"
     if any(b.scene_time_s < a.scene_time_s - POSE_TOLERANCE for a, b in zip(trace.calls, trace.calls[1:], strict=False)):
         yield "scene time runs backwards between calls"

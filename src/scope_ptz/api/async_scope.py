@@ -244,7 +244,7 @@ class AsyncScope:
         return await self._run_tool(ZoomResult, "zoom_to_object", description=description)
 
     async def track_object(self, description: str, duration_s: float = 10.0) -> TrackResult:
-        """Keep a moving object in the middle of the view for some time. See ``Scope.track_object``."""
+        """Keep a moving object in the centre of the view for a given time. See ``Scope.track_object``."""
         return await self._run_tool(TrackResult, "track_object", description=description, duration_s=duration_s)
 
     def tool_schemas(self, form: SchemaForm = "chat") -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.api.borrowed import BorrowedPerception, BorrowedPlanner
 from scope_ptz.api.event_loop import run_in_thread
-from scope_ptz.api.options import ServedModels
+from scope_ptz.api.options import ModelServerOptions
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import OutputError, TraceError
 from scope_ptz.factory.models import ModelOptions
@@ -89,7 +89,7 @@ def read_results(path: Path) -> Evaluation:
 def _options(request: EvaluationRequest) -> EvaluationOptions:
     from scope_ptz.factory.evaluate import BUILT_IN_AGENT, EvaluationOptions
 
-    served = ServedModels(
+    served = ModelServerOptions(
         pair=request.pair,
         planner_url=request.planner_url,
         planner_model=request.planner_model,

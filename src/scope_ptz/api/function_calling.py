@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 from anyio import to_thread
 
-from scope_ptz.agent.planner_views import fitting_size
+from scope_ptz.agent.planner_views import picture_size
 from scope_ptz.camera.guard.guarded_camera import KeepOutError
 from scope_ptz.errors import InputError, PerceptionError, ScopeError, ToolCallError, UnknownNameError
 from scope_ptz.perception.models.encoding import encode
@@ -118,5 +118,5 @@ def _read_call(name: str, arguments: Arguments) -> ToolCall:
 def _picture(open_picture: Callable[[str], Image.Image], name: str) -> Picture:
     with open_picture(name) as opened:
         image = np.asarray(opened.convert("RGB"))
-    encoded = encode(image, fitting_size(image.shape[1], image.shape[0]))
+    encoded = encode(image, picture_size(image.shape[1], image.shape[0]))
     return Picture(data_url=encoded.data_url, caption=f"The picture {name}:")

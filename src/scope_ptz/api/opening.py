@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import Budgets
 from scope_ptz.api.async_scope import AsyncScope
-from scope_ptz.api.options import ServedModels, SessionOptions, StrPath
+from scope_ptz.api.options import ModelServerOptions, SessionOptions, StrPath
 from scope_ptz.api.scope import Scope
 from scope_ptz.api.sessions import new_session
 from scope_ptz.builtin_names import DEFAULT_SCENE
@@ -177,7 +177,7 @@ def _session_options(
         camera=camera,
         planner=planner,
         perception=perception,
-        served=ServedModels(**served),
+        served=ModelServerOptions(**served),
         viewpoint=viewpoint,
         preset=preset,
         time_s=time_s,

@@ -20,7 +20,7 @@ StrPath = str | PathLike[str]
 
 
 @dataclass(frozen=True, slots=True)
-class ServedModels:
+class ModelServerOptions:
     """Options for served models: addresses, served names, keys and request options, as described in ``scope_ptz.open``."""
 
     pair: str | None = None
@@ -65,8 +65,8 @@ class ServedModels:
             perception_model=self.perception_model,
             planner_key_file=_path(self.planner_key_file),
             perception_key_file=_path(self.perception_key_file),
-            planner_options=_pairs(self.planner_options),
-            perception_options=_pairs(self.perception_options),
+            planner_options=_to_option_strings(self.planner_options),
+            perception_options=_to_option_strings(self.perception_options),
             reader=self.reader,
             detector=self.detector,
             timeout_s=self.timeout_s,
@@ -82,7 +82,7 @@ class SessionOptions:
     camera: Camera | str
     planner: Planner | str | None = None
     perception: Perception | str | None = None
-    served: ServedModels = field(default_factory=ServedModels)
+    served: ModelServerOptions = field(default_factory=ModelServerOptions)
     viewpoint: str | None = None
     preset: str | None = None
     time_s: float | None = None
@@ -106,6 +106,6 @@ def _path(given: StrPath | None) -> Path | None:
     return None if given is None else Path(given)
 
 
-def _pairs(options: Mapping[str, Any] | None) -> tuple[str, ...]:
+def _to_option_strings(options: Mapping[str, Any] | None) -> tuple[str, ...]:
     """Convert options to ``NAME=JSON`` strings, which the factory parses back to the same values."""
     return tuple(f"{name}={json.dumps(value)}" for name, value in (options or {}).items())

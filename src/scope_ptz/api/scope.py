@@ -406,7 +406,7 @@ class Scope:
         return self._call(partial(self._session.zoom_to_object, description))
 
     def track_object(self, description: str, duration_s: float = 10.0) -> TrackResult:
-        """Keep a moving object in the middle of the view for a given time.
+        """Keep a moving object in the centre of the view for a given time.
 
         Args:
             description: What to track, for example "the white van".

@@ -28,11 +28,11 @@ DIGEST_CHARS = 16
 """Length of the tasks' digest in hexadecimal characters."""
 
 
-def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """Create the run card for a session by a person, who is both planner and perception. ``by`` is the person's name."""
-    person = ModelCard(name=by, provider="person")
+def human_run_card(person_name: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+    """Create the run card for a session by a person, who is both planner and perception."""
+    person = ModelCard(name=person_name, provider="person")
     return RunCard(
-        run_id=f"human-{by}",
+        run_id=f"human-{person_name}",
         started=started,
         package_version=__version__,
         engine_version="none",

@@ -31,7 +31,7 @@ from scope_ptz.simulator.layers import encode_depth, read_colour
 from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pack import Scene
 
-CHECKS, CHECK_SEED = 2, 1
+VIEWS_TO_CHECK, CHECK_SEED = 2, 1
 """Number of views to compare with live renders at the end of a bake, per viewpoint and zoom level (widest and zoomed in), and the
 seed for their poses."""
 
@@ -108,12 +108,12 @@ def bake(
         baker = _Baker(worker, cache, scene, description, quality)
         baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in names]
         (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1, exclude={"captured"}) + "\n")
-        packs = Scene(out_dir)
+        baked_scene = Scene(out_dir)
         for name in names:
-            packs.viewpoint(name).check_files()
-        poses = draw_poses(packs, CHECK_SEED, CHECKS * len(names), CHECKS * len(names), names)
+            baked_scene.viewpoint(name).check_files()
+        poses = draw_poses(baked_scene, CHECK_SEED, VIEWS_TO_CHECK * len(names), VIEWS_TO_CHECK * len(names), names)
         width = quality.check_width
-        reports = verify(packs, worker, poses, progress, samples=quality.check_samples, width=width, height=width * 9 // 16)
+        reports = verify(baked_scene, worker, poses, progress, samples=quality.check_samples, width=width, height=width * 9 // 16)
     return BakeResult(tuple(baked), tuple(reports))
 
 
@@ -133,7 +133,7 @@ def scene_file(description: dict[str, Any], version: str) -> SceneFile:
 
 
 class _Baker:
-    """Bakes viewpoints with one worker and one folder of unfinished parts."""
+    """Bakes viewpoints with one worker and one cache of parts."""
 
     def __init__(
         self, worker: BlenderWorker, cache: PartCache, scene: SceneFile, description: dict[str, Any], quality: Quality
@@ -145,25 +145,25 @@ class _Baker:
 
     def bake_viewpoint(self, viewpoint: SceneViewpoint, folder: Path) -> BakedViewpoint:
         quality, name = self._quality, viewpoint.name
-        wide = Panorama.of(quality.ids_width, self._band)
-        ids, _ = self._render_truth(name, "ids", panorama_request(wide.projection))
-        coarse = Panorama.of(quality.depth_width, self._band)
-        _, metres = self._render_truth(name, "depth", panorama_request(coarse.projection))
+        ids_panorama = Panorama.of(quality.ids_width, self._band)
+        ids, _ = self._render_truth(name, "ids", panorama_request(ids_panorama.projection))
+        depth_panorama = Panorama.of(quality.depth_width, self._band)
+        _, metres = self._render_truth(name, "depth", panorama_request(depth_panorama.projection))
         silhouettes = self._measure_extents(viewpoint)
-        panorama = Panorama.of(quality.base_width, self._band)
-        base = render_base(self._worker, self._cache, name, panorama, quality.base_samples)
-        tile_targets = targets(self._scene, viewpoint, ids, wide.projection)
+        base_panorama = Panorama.of(quality.base_width, self._band)
+        base = render_base(self._worker, self._cache, name, base_panorama, quality.base_samples)
+        tile_targets = targets(self._scene, viewpoint, ids, ids_panorama.projection)
         views = [
             cell.view(quality.tile_density_px_per_deg)
             for cell in join_in_rows(select_most_useful(cover(tile_targets), tile_targets, quality.max_cells))
         ]
         tiles = self._render_tiles(name, "tiles", views)
         if quality.wider_tiles:
-            wider_cells = busiest_cells(ids, wide.projection, quality.wider_tiles)
+            wider_cells = busiest_cells(ids, ids_panorama.projection, quality.wider_tiles)
             tiles += self._render_tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in wider_cells])
         actors = [a for actor in self._scene.actors if (a := self._render_actor(viewpoint, actor)) is not None]
         rendered = RenderedViewpoint(
-            panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes
+            base_panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes
         )
         manifest = write_pack(folder, self._scene, viewpoint, rendered, quality, PACK_BYTES, self._cache.steps(f"{name}/pack", 3))
         uncovered = tuple(t.name for t in tile_targets if not covers(views, t))
@@ -194,12 +194,12 @@ class _Baker:
             self._worker.request("meshes", {"out": str(path)})
 
         def measure(path: Path) -> None:
-            silhouettes = extents(meshes, viewpoint, self._cache.follow(f"{viewpoint.name}/extents"))
+            silhouettes = extents(meshes, viewpoint, self._cache.step_callback(f"{viewpoint.name}/extents"))
             path.write_text(json.dumps([e.model_dump() for e in silhouettes]))
 
         meshes = self._cache.part("meshes", ".npz", {}, dump)
-        place = viewpoint.model_dump(mode="json")
-        file = self._cache.part(f"{viewpoint.name}/extents", ".json", place, measure)
+        parameters = viewpoint.model_dump(mode="json")
+        file = self._cache.part(f"{viewpoint.name}/extents", ".json", parameters, measure)
         return [Extent.model_validate(e) for e in json.loads(file.read_text())]
 
     def _render_tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
@@ -229,7 +229,7 @@ class _Baker:
             folder = stamp.with_suffix("")
             folder.mkdir(exist_ok=True)
             parameters = {"actor": actor.id, "viewpoint": viewpoint, "frames": requests, "samples": samples, "out_dir": str(folder)}
-            self._worker.request("sprites", parameters, progress=self._cache.follow(f"{viewpoint}/{actor.id}"))
+            self._worker.request("sprites", parameters, progress=self._cache.step_callback(f"{viewpoint}/{actor.id}"))
             stamp.write_text("done\n")
 
         stamp = self._cache.part(f"{viewpoint}/{actor.id}", ".done", {"frames": requests, "samples": samples}, produce)

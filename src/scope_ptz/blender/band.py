@@ -49,7 +49,7 @@ class Strip:
 
 @dataclass(frozen=True, slots=True)
 class Panorama:
-    """A panorama's size and band. The band ends at whole degrees, and each pixel spans equal angles in pan and tilt."""
+    """A panorama's size and band. The band extends to whole degrees, and each pixel spans equal angles in pan and tilt."""
 
     width: int
     height: int

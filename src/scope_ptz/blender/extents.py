@@ -24,11 +24,11 @@ WIDE_DEG = 60.0
 
 NEAR_M = 1e-3  # distance of the plane at which triangles are clipped
 FRACTION_BITS = 4  # fractional bits of OpenCV's fixed-point coordinates
-HULL_POINTS = 24  # maximum number of points in an outline
+MAX_HULL_POINTS = 24  # maximum number of points in an outline
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class InstanceMesh:
     """An instance's mesh: vertices ``(n, 3)`` in the viewpoint's coordinates, and triangles ``(m, 3)`` as vertex indices."""
 
     number: int
@@ -36,72 +36,72 @@ class Body:
     triangles: Ints
 
 
-def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
+def extents(meshes_file: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
     """Return the extent of every instance in a file that the worker's operation ``meshes`` wrote."""
-    bodies = read_bodies(meshes, viewpoint)
+    instance_meshes = read_meshes(meshes_file, viewpoint)
     found = []
-    for k, body in enumerate(bodies):
-        found.append(extent(body))
-        progress(k + 1, len(bodies))
+    for k, mesh in enumerate(instance_meshes):
+        found.append(extent(mesh))
+        progress(k + 1, len(instance_meshes))
     return found
 
 
-def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
-    """Return the meshes of all instances in a viewpoint's coordinates, sorted by number."""
+def read_meshes(meshes_file: Path, viewpoint: SceneViewpoint) -> list[InstanceMesh]:
+    """Return the meshes of all instances in a viewpoint's coordinates, sorted by instance ID."""
     bearing = math.radians(viewpoint.pan0_bearing_deg)
     c, s = math.cos(bearing), math.sin(bearing)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    with np.load(meshes) as file:
+    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    with np.load(meshes_file) as file:
         shapes = {
             int(k.removeprefix("vertices-")): (file[k], file[k.replace("vertices", "triangles")])
             for k in file
             if k.startswith("vertices-")
         }
         uses, matrices = file["uses"], file["matrices"]
-    bodies = []
+    instance_meshes = []
     for number in sorted({int(n) for n in uses[:, 0]}):
         vertices, triangles, base = [], [], 0
         for (_, shape), matrix in zip(uses[uses[:, 0] == number], matrices[uses[:, 0] == number], strict=True):
             points, faces = shapes[int(shape)]
             world = points.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-            vertices.append((world - viewpoint.position_m) @ turn.T)
+            vertices.append((world - viewpoint.position_m) @ rotation.T)
             triangles.append(faces.astype(np.int64) + base)
             base += len(points)
-        bodies.append(Body(number, np.concatenate(vertices), np.concatenate(triangles)))
-    return bodies
+        instance_meshes.append(InstanceMesh(number, np.concatenate(vertices), np.concatenate(triangles)))
+    return instance_meshes
 
 
-def extent(body: Body) -> Extent:
+def extent(mesh: InstanceMesh) -> Extent:
     """Return an instance's solid angle, convex outline and distance."""
-    used = body.vertices[np.unique(body.triangles)]
+    used = mesh.vertices[np.unique(mesh.triangles)]
     rays = used / np.linalg.norm(used, axis=1, keepdims=True)
-    middle = rays.mean(axis=0)
+    centre = rays.mean(axis=0)
     for _ in range(3):  # approximates the axis of the smallest cone around the rays
-        middle = middle / max(np.linalg.norm(middle), 1e-9)
-        farthest = rays[np.argmin(rays @ middle)]
-        middle = middle + 0.25 * (farthest - middle)
-    middle = middle / np.linalg.norm(middle)
-    reach_deg = math.degrees(math.acos(np.clip(np.min(rays @ middle), -1, 1)))
-    pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+        centre = centre / max(np.linalg.norm(centre), 1e-9)
+        farthest = rays[np.argmin(rays @ centre)]
+        centre = centre + 0.25 * (farthest - centre)
+    centre = centre / np.linalg.norm(centre)
+    radius_deg = math.degrees(math.acos(np.clip(np.min(rays @ centre), -1, 1)))
+    pan, tilt = (float(v) for v in pan_tilt_deg(centre))
     axes = camera_axes(pan, tilt)
-    solid_angle = _narrow_solid_angle(body, axes) if reach_deg < WIDE_DEG else _wide_solid_angle(body)
+    solid_angle = _narrow_solid_angle(mesh, axes) if radius_deg < WIDE_DEG else _wide_solid_angle(mesh)
     return Extent(
-        number=body.number,
+        number=mesh.number,
         solid_angle_sr=float(f"{solid_angle:.6g}"),
-        hull=_hull(rays, axes) if reach_deg < 85.0 else [],
-        distance_m=round(max(_nearest_m(body), 1e-3), 3),
+        hull=_hull(rays, axes) if radius_deg < 85.0 else [],
+        distance_m=round(max(_nearest_m(mesh), 1e-3), 3),
     )
 
 
-def _narrow_solid_angle(body: Body, axes: Floats) -> float:
-    local = body.vertices @ axes.T
+def _narrow_solid_angle(mesh: InstanceMesh, axes: Floats) -> float:
+    local = mesh.vertices @ axes.T
     flat = local[:, :2] / local[:, 2:]
-    used = flat[np.unique(body.triangles)]
+    used = flat[np.unique(mesh.triangles)]
     # The longest axis is aligned with the raster, so that a leaning pole covers more of it.
     _, lengthwise = np.linalg.eigh(np.cov(used.T))
     flat, used = flat @ lengthwise, used @ lengthwise
     low, high = used.min(axis=0), used.max(axis=0)
-    coarse, fine = (_rasterised_solid_angle(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
+    coarse, fine = (_rasterised_solid_angle(flat[mesh.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
     return _remove_fill_bias(coarse, fine)
 
 
@@ -132,17 +132,17 @@ def _rasterised_solid_angle(triangles: Floats, low: Floats, high: Floats, side: 
     return float((mask * weight).sum() * pitch[0] * pitch[1])
 
 
-def _wide_solid_angle(body: Body) -> float:
+def _wide_solid_angle(mesh: InstanceMesh) -> float:
     totals = [0.0, 0.0]
     low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     for pan, tilt in ((0, 0), (90, 0), (180, 0), (-90, 0), (0, 90), (0, -90)):
-        local = body.vertices @ camera_axes(pan, tilt).T
-        corners = _clip_behind_camera(local[body.triangles])
+        local = mesh.vertices @ camera_axes(pan, tilt).T
+        corners = _clip_behind_camera(local[mesh.triangles])
         flat = corners[..., :2] / corners[..., 2:]
-        touching = np.all(flat.max(axis=1) > low, axis=1) & np.all(flat.min(axis=1) < high, axis=1)
-        if touching.any():
+        overlapping = np.all(flat.max(axis=1) > low, axis=1) & np.all(flat.min(axis=1) < high, axis=1)
+        if overlapping.any():
             for k, side in enumerate((RASTER_PX, 2 * RASTER_PX)):
-                totals[k] += _rasterised_solid_angle(flat[touching], low, high, side)
+                totals[k] += _rasterised_solid_angle(flat[overlapping], low, high, side)
     return _remove_fill_bias(*totals)
 
 
@@ -168,7 +168,7 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
     outline = cv2.convexHull(flat)
     tolerance = 1e-4 * float(np.ptp(flat, axis=0).max())
     simple = outline
-    while len(simple) > HULL_POINTS:
+    while len(simple) > MAX_HULL_POINTS:
         tolerance *= 2
         simple = cv2.approxPolyDP(outline, tolerance, closed=True)
     plane = simple.reshape(-1, 2).astype(np.float64)
@@ -176,9 +176,9 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
     return [(round(float(p), 3), round(float(t), 3)) for p, t in zip(pan, tilt, strict=True)]
 
 
-def _nearest_m(body: Body) -> float:
+def _nearest_m(mesh: InstanceMesh) -> float:
     """Return the distance from the origin to the nearest point on any triangle."""
-    a, b, c = (body.vertices[body.triangles[:, k]] for k in range(3))
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     nearest = min(_edge_distance(a, b), _edge_distance(b, c), _edge_distance(c, a))
     normal = np.cross(b - a, c - a)
     area2 = np.einsum("ij,ij->i", normal, normal)

@@ -9,7 +9,7 @@ from typing import Any
 from scope_ptz.geometry import Limits, Optics
 from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
 
-ZOOM_RANGE = 5.0
+MIN_ZOOM_RANGE = 5.0
 """Minimum ratio between the combined camera's highest and lowest zoom."""
 
 
@@ -20,7 +20,7 @@ class FileCameras:
     Attributes:
         scene: The cameras as viewpoints, each with one preset; the active camera has the home preset. There are no instances.
         optics: The optics. Zoom 1 is the widest field of view among the cameras.
-        limits: The limits. Pan is endless, tilt ranges from -90 to 90 degrees, and zoom includes every camera's field of view.
+        limits: The limits. Pan is endless, tilt is -90 to 90 degrees, and the zoom range covers every camera's field of view.
     """
 
     scene: SceneFile
@@ -33,7 +33,7 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
     cameras = description["cameras"]
     widest_deg = max(camera["hfov_deg"] for camera in cameras)
     zooms = [_half_width(widest_deg) / _half_width(camera["hfov_deg"]) for camera in cameras]
-    max_zoom = max(ZOOM_RANGE, *zooms)
+    max_zoom = max(MIN_ZOOM_RANGE, *zooms)
     closest_deg = 2 * math.degrees(math.atan(_half_width(widest_deg) / max_zoom))
     presets = [
         ScenePreset(
@@ -55,5 +55,5 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
 
 
 def _half_width(hfov_deg: float) -> float:
-    """Return half the width of the plane that a picture shows at distance 1."""
+    """Return half the width of the area in view at distance 1."""
     return math.tan(math.radians(hfov_deg) / 2)

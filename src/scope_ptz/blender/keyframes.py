@@ -24,8 +24,8 @@ If this gives too many keyframes, both steps are increased.
 GAIT_PHASES = 8  # number of pictures of a walker at each position
 MIN_SIDE_PX = 6.0  # actors that stay smaller at the closest zoom are not rendered
 MAX_SIDE_PX = 420  # maximum side of a picture
-SAMPLES = 1200  # number of points along a path
-MARGIN = 1.06  # ratio of a view's size to the actor's
+PATH_SAMPLES = 1200  # number of points along a path
+MARGIN = 1.06  # ratio of a view's size to the actor's size
 
 Floats = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def keyframes(
         coarseness *= 1.15
     frames = []
     for k, others in chosen.items():
-        view = _view(_corners(actor, samples, k, sun), viewpoint, band)
+        view = _enclosing_view(_corners(actor, samples, k, sun), viewpoint, band)
         if view is not None:
             x, y, z = (round(float(v), 4) for v in samples.positions[k])
             times = tuple(round(float(samples.times[other]), 4) for other in others)
@@ -95,7 +95,7 @@ class _PathSamples:
     @classmethod
     def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _PathSamples:
         waypoints = np.array(actor.waypoints)
-        times = np.linspace(waypoints[0, 0], waypoints[-1, 0], SAMPLES)
+        times = np.linspace(waypoints[0, 0], waypoints[-1, 0], PATH_SAMPLES)
         positions = np.stack([np.interp(times, waypoints[:, 0], waypoints[:, k]) for k in (1, 2, 3)], axis=-1)
         leg = np.clip(np.searchsorted(waypoints[:, 0], times, side="right") - 1, 0, len(waypoints) - 2)
         step = np.diff(waypoints[:, 1:], axis=0)[leg]
@@ -105,7 +105,7 @@ class _PathSamples:
         return cls(times, positions, bearings, bearings - bearings_from_viewpoint, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Return the samples that differ visibly from the previous one, at least one for each leg of the path.
+        """Return samples that each differ visibly from the one before, with at least one for each leg of the path.
 
         Keys are sample indices. Each value lists other samples that share the picture: the start of the leg for the leg's first
         chosen sample, and the end of the leg for the last one.
@@ -152,8 +152,8 @@ def _corners(actor: SceneActor, samples: _PathSamples, k: int, sun: Floats | Non
     return np.concatenate([corners, high - sun * (height / sun[2])])
 
 
-def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
-    """Return a view that just contains all corners; None if it leaves the band or is too small, or if the camera is too close."""
+def _enclosing_view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
+    """Return a view that just contains all corners; None if it extends beyond the band, is too small or is too close."""
     offset = corners - np.array(viewpoint.position_m)
     aim = offset.mean(axis=0)
     for _ in range(3):
@@ -163,8 +163,8 @@ def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective
         if local[:, 2].min() <= 0.05 * np.linalg.norm(aim):
             return None
         flat = local[:, :2] / local[:, 2:]
-        middle = (flat.min(axis=0) + flat.max(axis=0)) / 2
-        aim = axes.T @ np.array([middle[0], middle[1], 1.0])
+        centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
+        aim = axes.T @ np.array([centre[0], centre[1], 1.0])
     half = np.abs(flat).max(axis=0) * MARGIN
     if half.max() > 1.2 or 2 * half.max() * TELE_FOCAL_PX < MIN_SIDE_PX:
         return None

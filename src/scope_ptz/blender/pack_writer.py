@@ -23,7 +23,7 @@ from scope_ptz.simulator.models import ActorSheet, Depth, Extent, Layer, Manifes
 COLOUR_SUFFIX = ".avif"
 """Suffix of picture files. AVIF files are a quarter smaller than WebP files with the same structural similarity."""
 
-NUMBERS_SUFFIX = ".webp"  # suffix of the files with instance numbers and depth, which are lossless
+NUMBERS_SUFFIX = ".webp"  # suffix of the files with instance IDs and depth, which are lossless
 SPRITE_ENCODING_QUALITY = 62
 MAX_BASE_ENCODING_QUALITY = 94
 MIN_BASE_ENCODING_QUALITY, MIN_TILE_ENCODING_QUALITY = 74, 48
@@ -37,7 +37,7 @@ MANIFEST_BYTES = 400_000  # bytes reserved for the manifest
 
 @dataclass(frozen=True, slots=True)
 class RenderedTile:
-    """A rendered tile: its view, its picture ``(H, W, 3)`` and its instance numbers ``(H, W)``."""
+    """A rendered tile: its view, its picture ``(H, W, 3)`` and its instance IDs ``(H, W)``."""
 
     view: Perspective
     colour: NDArray[np.uint8]

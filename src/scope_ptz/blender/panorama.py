@@ -1,4 +1,4 @@
-"""Render panoramas in strips. The strips are joined, and smoothed where the projection stretches them."""
+"""Render panoramas in strips, join the strips, and smooth the rows that the projection stretches."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panoram
         size = strip.width, strip.last_row - strip.first_row
         projection = panorama_request(Equirectangular(-180.0, 360.0, strip.top_tilt_deg, strip.bottom_tilt_deg, *size))
 
-        count = samples if not _is_plain(strip) else max(2, samples // 2)
+        count = samples if not _needs_fewer_samples(strip) else max(2, samples // 2)
 
         def produce(path: Path, projection: dict[str, Any] = projection, count: int = count) -> None:
             worker.request(
@@ -49,7 +49,7 @@ def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panoram
     return smooth_rows(join_strips(panorama, strips, pictures), panorama)
 
 
-def _is_plain(strip: Strip) -> bool:
+def _needs_fewer_samples(strip: Strip) -> bool:
     """Return whether a strip needs fewer samples: the sky has no noise, and the ground near the nadir is smoothed later."""
     return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 

@@ -18,8 +18,8 @@ def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
 
     If ``mask`` is given, only its pixels count.
 
-    Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window and
-    sample covariance. The border, where the window does not fit, is excluded.
+    The method is that of Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a
+    uniform 7x7 window and sample covariance. The border, where the window does not fit, is excluded.
     """
     x, y = _to_grey(a), _to_grey(b)
     size = (WINDOW_PX, WINDOW_PX)
@@ -34,7 +34,7 @@ def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
 
 
 def sharpness(picture: Picture, mask: Mask | None = None) -> float:
-    """Return the variance of the Laplacian of the greyscale picture, over the pixels in ``mask`` if given."""
+    """Return the variance of the Laplacian of the greyscale picture. If ``mask`` is given, only its pixels count."""
     return float(_inner_values(np.asarray(cv2.Laplacian(_to_grey(picture), cv2.CV_64F)), mask).var())
 
 
@@ -46,7 +46,7 @@ def _inner_values(values: NDArray[np.float64], mask: Mask | None) -> NDArray[np.
 
 
 def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> dict[int, float]:
-    """Return the box IoU by instance number, for instances with more than ``min_pixels`` pixels in the reference ``b``."""
+    """Return the box IoU by instance ID, for instances with more than ``min_pixels`` pixels in the reference ``b``."""
     numbers, counts = np.unique(b[b > 0], return_counts=True)
     return {int(n): _iou(_box(a == n), _box(b == n)) for n, count in zip(numbers, counts, strict=True) if count > min_pixels}
 
@@ -61,9 +61,9 @@ def _box(mask: Mask) -> tuple[int, int, int, int] | None:
 def _iou(a: tuple[int, int, int, int] | None, b: tuple[int, int, int, int] | None) -> float:
     if a is None or b is None:
         return 0.0
-    across, down = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-    both = max(across, 0) * max(down, 0)
-    return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both)
+    overlap_width, overlap_height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    intersection = max(overlap_width, 0) * max(overlap_height, 0)
+    return intersection / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - intersection)
 
 
 def _to_grey(picture: Picture) -> NDArray[np.float64]:

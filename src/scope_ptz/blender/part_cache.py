@@ -1,4 +1,7 @@
-"""An on-disk cache for the parts of a bake. Each part is a file named after its inputs, so that an interrupted bake can resume."""
+"""An on-disk cache for the parts of a bake, so that an interrupted bake can resume.
+
+The name of a part's file contains a digest of the part's inputs.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,8 @@ class PartCache:
 
     def part(self, name: str, suffix: str, parameters: dict[str, Any], produce: Callable[[Path], None]) -> Path:
         """Return a part's file. If it is missing, call ``produce`` with the path to write to."""
-        stamp = digest(json.dumps([name, parameters], sort_keys=True))[:12]
-        path = self.folder / f"{name.replace('/', '-')}-{stamp}{suffix}"
+        key = digest(json.dumps([name, parameters], sort_keys=True))[:12]
+        path = self.folder / f"{name.replace('/', '-')}-{key}{suffix}"
         if not path.exists():
             partial = path.with_name(f"unfinished-{path.name}")
             produce(partial)
@@ -46,7 +49,7 @@ class PartCache:
 
         return step
 
-    def follow(self, part: str) -> Callable[[int, int], None]:
+    def step_callback(self, part: str) -> Callable[[int, int], None]:
         """Return a progress callback for an operation that counts its own steps."""
         started = time.monotonic()
         return lambda done, total: self._progress(part, done, total, time.monotonic() - started)

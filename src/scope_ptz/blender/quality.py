@@ -25,7 +25,7 @@ class Quality:
 
     ``wider_tiles`` is the number of tiles that cover the busiest areas at about a third of the sharp tiles' density, so that the
     surroundings of a sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders
-    with which a finished pack is compared. ``must_meet_tolerances`` is False for drafts, whose differences are only reported.
+    that a finished pack is compared with. ``must_meet_tolerances`` is False for drafts, whose differences are only reported.
     """
 
     name: str

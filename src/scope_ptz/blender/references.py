@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, write_ids
 
-INDEX = "references.json"
+INDEX_FILE = "references.json"
 QUALITY = 97
 """Encoding quality of the pictures. It is high, because compression losses would count as differences from the pack."""
 
 Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
-"""Viewpoint, pose, picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
+"""Viewpoint, pose, picture ``(H, W, 3)`` and instance IDs ``(H, W)``."""
 
 
-def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> None:
+def add_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> None:
     """Add a live render to a reference folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    index = folder / INDEX
+    index = folder / INDEX_FILE
     entries = json.loads(index.read_text()) if index.exists() else []
     name = f"{len(entries):02d}-{viewpoint}"
     write_colour(folder / f"{name}.webp", colour, QUALITY)
@@ -34,6 +34,6 @@ def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.
 
 def references(folder: Path) -> Iterator[Reference]:
     """Yield the live renders in a folder, in the order in which they were added."""
-    for entry in json.loads((folder / INDEX).read_text()):
+    for entry in json.loads((folder / INDEX_FILE).read_text()):
         name = entry["name"]
         yield entry["viewpoint"], Pose(*entry["pose"]), read_colour(folder / f"{name}.webp"), read_ids(folder / f"{name}-ids.webp")

@@ -72,11 +72,12 @@ def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
 
 def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDArray[np.uint8]:
     alpha = picture[..., 3].astype(np.float32) / 255
-    light = 1 - picture[..., :3].max(axis=2).astype(np.float32) / 255
-    shadow = np.where(body, 0.0, light)
-    drawn = np.maximum(1 - (1 - alpha) ** SHADOW_GAMMA - MIN_SHADOW_OPACITY, 0) / (1 - MIN_SHADOW_OPACITY) * _feather(body.shape)
+    darkness = 1 - picture[..., :3].max(axis=2).astype(np.float32) / 255
+    shadow = np.where(body, 0.0, darkness)
+    shadow_alpha = np.maximum(1 - (1 - alpha) ** SHADOW_GAMMA - MIN_SHADOW_OPACITY, 0) / (1 - MIN_SHADOW_OPACITY)
+    shadow_alpha = shadow_alpha * _feather(body.shape)
     result = picture.copy()
-    result[..., 3] = np.rint(255 * (shadow * drawn + (1 - shadow) * alpha)).astype(np.uint8)
+    result[..., 3] = np.rint(255 * (shadow * shadow_alpha + (1 - shadow) * alpha)).astype(np.uint8)
     result[result[..., 3] < 3] = 0
     return result
 
@@ -90,10 +91,10 @@ def _feather(shape: tuple[int, ...]) -> NDArray[np.float32]:
 def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
     """Arrange rectangles in rows, in the given order. Return each rectangle's left and top, and the sheet's size."""
     places: list[tuple[int, int]] = []
-    x = y = shelf = right = 0
+    x = y = row_height = right = 0
     for width, height in sizes:
         if x + width > MAX_SHEET_WIDTH:
-            x, y, shelf = 0, y + shelf, 0
+            x, y, row_height = 0, y + row_height, 0
         places.append((x, y))
-        x, shelf, right = x + width, max(shelf, height), max(right, x + width)
-    return places, (right, y + shelf)
+        x, row_height, right = x + width, max(row_height, height), max(right, x + width)
+    return places, (right, y + row_height)

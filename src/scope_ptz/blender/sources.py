@@ -47,9 +47,9 @@ def scene_file(source: str) -> Path:
     """
     if source.endswith(".py"):
         return Path(source)
-    place = studio_folder() / "scenes" / source.replace("-", "_")
-    single = place.with_suffix(".py")
-    return single if single.is_file() else place / "__init__.py"
+    module = studio_folder() / "scenes" / source.replace("-", "_")
+    single = module.with_suffix(".py")
+    return single if single.is_file() else module / "__init__.py"
 
 
 def scene_names() -> list[str]:
@@ -82,5 +82,5 @@ def _imports(path: Path) -> set[Path]:
 def _module(name: str) -> Path | None:
     if not name.startswith(PACKAGE + "."):
         return None
-    place = studio_folder().joinpath(*name.removeprefix(PACKAGE + ".").split("."))
-    return next((p for p in (place.with_suffix(".py"), place / "__init__.py") if p.is_file()), None)
+    path = studio_folder().joinpath(*name.removeprefix(PACKAGE + ".").split("."))
+    return next((p for p in (path.with_suffix(".py"), path / "__init__.py") if p.is_file()), None)

@@ -40,11 +40,11 @@ Smaller instances could not be counted even at that zoom.
 """
 
 MAX_WIDE_CAPS_PX = 20.0
-"""A text is a target only if its capitals are less than this many pixels high at the widest zoom."""
+"""Text is a target only if its capitals are less than this many pixels high at the widest zoom."""
 
 MIN_TELE_CAPS_PX = 12.0
 MAX_READING_ANGLE_DEG = 58.0
-"""A text is a target only if its capitals are at least ``MIN_TELE_CAPS_PX`` high at the closest zoom. In addition, the angle
+"""Text is a target only if its capitals are at least ``MIN_TELE_CAPS_PX`` high at the closest zoom. In addition, the angle
 between its normal and the line of sight must be at most ``MAX_READING_ANGLE_DEG``.
 """
 
@@ -53,7 +53,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """An instance or text that tiles must cover. ``directions`` has the shape ``(n, 2)``: pan and tilt in degrees."""
+    """An instance or text that the tiles must cover. ``directions`` has the shape ``(n, 2)``: pan and tilt in degrees."""
 
     name: str
     directions: NDArray[np.float64]
@@ -81,12 +81,12 @@ class Cell:
 
 
 def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16], projection: Equirectangular) -> list[Target]:
-    """Return all texts and small instances that can be read or counted only after zooming in.
+    """Return the text that can be read, and the small instances that can be counted, only after zooming in.
 
     Args:
         scene: The scene.
         viewpoint: The panorama's viewpoint.
-        ids: The panorama's instance numbers ``(H, W)``.
+        ids: The panorama's instance IDs ``(H, W)``.
         projection: The panorama's projection.
     """
     found = []
@@ -103,7 +103,7 @@ def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16]
         if _is_small(points, projection):
             pan, tilt = pan_tilt_deg(projection.directions(points))
             found.append(Target(names.get(int(numbers[part[0]]), str(numbers[part[0]])), np.stack([pan, tilt], axis=-1)))
-    found += [Target(t.id, spots) for t in scene.texts if (spots := _text_directions(t, viewpoint)) is not None]
+    found += [Target(t.id, covered) for t in scene.texts if (covered := _text_directions(t, viewpoint)) is not None]
     return found
 
 
@@ -112,8 +112,8 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
     _, tilt = pan_tilt_deg(directions)
     pixel_sr = math.radians(projection.pan_span_deg / projection.width) ** 2
     solid_angle = float(np.cos(np.radians(tilt)).sum()) * pixel_sr
-    middle_pan, middle_tilt = (float(v) for v in pan_tilt_deg(directions.mean(axis=0)))
-    shown = Perspective(middle_pan, middle_tilt, 90.0, 2, 2).points(directions)
+    centre_pan, centre_tilt = (float(v) for v in pan_tilt_deg(directions.mean(axis=0)))
+    shown = Perspective(centre_pan, centre_tilt, 90.0, 2, 2).points(directions)
     if np.isnan(shown).any():
         return False
     shorter, longer = np.sort(2 * np.ptp(shown, axis=0) + math.sqrt(pixel_sr))
@@ -123,7 +123,7 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
 
 
 def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:
-    """Return a text's directions if the text is legible only when zoomed in; otherwise None. Occlusion is ignored."""
+    """Return directions across text if it is legible only when zoomed in; otherwise None. Occlusion is ignored."""
     centre, right, up = (np.array(v) for v in (text.centre_m, text.right, text.up))
     towards = np.array(viewpoint.position_m) - centre
     distance = float(np.linalg.norm(towards))
@@ -152,7 +152,7 @@ def busiest_cells(ids: NDArray[np.uint16], projection: Equirectangular, limit: i
     """Return the cells for wider tiles that contain the greatest total length of instance outlines.
 
     Args:
-        ids: The panorama's instance numbers ``(H, W)``.
+        ids: The panorama's instance IDs ``(H, W)``.
         projection: The panorama's projection.
         limit: Maximum number of cells.
     """
@@ -200,8 +200,8 @@ def join_in_rows(cells: Sequence[Cell]) -> list[Cell]:
         in_row = last is not None and last.tilt_deg == cell.tilt_deg and abs(cell.tilt_deg) < MAX_JOINED_TILT_DEG
         if last is not None and in_row and touching and length < MAX_JOINED:
             span_deg = last.span_pan_deg + cell.span_pan_deg
-            middle_deg = cell.pan_deg + cell.span_pan_deg / 2 - span_deg / 2
-            found[-1] = Cell(middle_deg, cell.tilt_deg, span_deg, cell.span_tilt_deg)
+            centre_deg = cell.pan_deg + cell.span_pan_deg / 2 - span_deg / 2
+            found[-1] = Cell(centre_deg, cell.tilt_deg, span_deg, cell.span_tilt_deg)
             length += 1
         else:
             found.append(cell)
@@ -259,10 +259,10 @@ def _cells(needed: Mask, shift_deg: float, span_pan_deg: float, span_tilt_deg: f
 
 def _best_starts(columns: Mask, span_deg: float) -> list[float]:
     """Return the left edges of the columns to render, in degrees from pan -180, for the offset with the fewest columns."""
-    places = np.flatnonzero(columns) * GRID_DEG
+    pans_deg = np.flatnonzero(columns) * GRID_DEG
     best: list[float] = []
     for offset in np.arange(0.0, span_deg, GRID_DEG):
-        index = np.unique(np.concatenate([((places + d - offset) % 360.0) // span_deg for d in (0.0, 0.99 * GRID_DEG)]))
+        index = np.unique(np.concatenate([((pans_deg + d - offset) % 360.0) // span_deg for d in (0.0, 0.99 * GRID_DEG)]))
         if not best or len(index) < len(best):
             best = [float(offset + i * span_deg) for i in index]
     return best

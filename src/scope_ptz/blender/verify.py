@@ -1,4 +1,4 @@
-"""Compare packs with live Blender renders at the same poses. The poses are random, determined by a seed."""
+"""Compare packs with live Blender renders at the same poses. A seed determines the random poses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.parity import box_ious, sharpness, ssim
 from scope_ptz.blender.part_cache import PartCache, Progress
-from scope_ptz.blender.references import keep_reference
+from scope_ptz.blender.references import add_reference
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, angle_between_deg, direction, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.simulator.layers import read_colour
@@ -34,7 +34,7 @@ FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
 
 @dataclass(frozen=True, slots=True)
 class PoseReport:
-    """The comparison at one pose: SSIM, sharpness relative to the live render, and mean box IoU (None without boxes).
+    """The comparison at one pose: SSIM, sharpness relative to the live render, and mean box IoU (None if there are none).
 
     ``tile_share`` is the fraction of the view that is covered by sufficiently dense tiles. If it is above 0 and the zoom is above
     1, similarity and sharpness refer to that part.
@@ -61,7 +61,7 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
         name = names[k % len(names)]
         fraction = (k + rng.random()) / wide
         pan, tilt = rng.uniform(-179, 179), limits.min_tilt_deg + fraction * (limits.max_tilt_deg - limits.min_tilt_deg)
-        if hard := _hard_place(scene, name, k // len(names), rng, limits):
+        if hard := _hard_direction(scene, name, k // len(names), rng, limits):
             pan, tilt = hard
         poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, 1.0))[0]))
     for k in range(zoomed):
@@ -70,7 +70,7 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
         tiles = [t for t in scene.viewpoint(name).manifest.tiles if t.suits(closest)]
         if tiles:
             tile = rng.choice(tiles)
-            if hard := _hard_place(scene, name, k // len(names), rng, limits):
+            if hard := _hard_direction(scene, name, k // len(names), rng, limits):
                 tile = min(tiles, key=lambda t: float(angle_between_deg(direction(t.pan_deg, t.tilt_deg), direction(*hard))))
             pan, tilt = tile.pan_deg + rng.uniform(-2, 2), tile.tilt_deg + rng.uniform(-2, 2)
             zoom = 2.0 + 3.0 * k / max(1, zoomed - 1)
@@ -78,39 +78,39 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
     return poses
 
 
-def _hard_place(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
-    """Return the pan and tilt of foliage, a sign or the ground, depending on ``turn``.
+def _hard_direction(scene: Scene, viewpoint: str, index: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
+    """Return the pan and tilt of foliage, a sign or the ground, depending on ``index``.
 
-    Return None if ``turn`` is odd or if there is no such place.
+    Return None if ``index`` is odd or if the scene has no such object.
     """
-    place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
-    kind = turn // 2 % 3
-    if turn % 2:
+    camera = next(v for v in scene.file.viewpoints if v.name == viewpoint)
+    kind = index // 2 % 3
+    if index % 2:
         return None
     if kind == 2:
         return rng.uniform(-179, 179), rng.uniform(limits.min_tilt_deg, -35.0)
     if kind == 1:
         parents = {t.parent for t in scene.file.texts}
-        boxes = [i for i in scene.file.instances if i.id in parents]
+        candidates = [i for i in scene.file.instances if i.id in parents]
     else:
-        boxes = [i for i in scene.file.instances if i.category in FOLIAGE]
-    if not boxes:
+        candidates = [i for i in scene.file.instances if i.category in FOLIAGE]
+    if not candidates:
         return None
-    chosen = rng.choice(boxes)
-    middle = (np.array(chosen.box_min_m) + np.array(chosen.box_max_m)) / 2 - np.array(place.position_m)
-    pan, tilt = (float(v) for v in pan_tilt_deg(middle))
-    return float(wrap_pan_deg(pan - place.pan0_bearing_deg)), tilt
+    chosen = rng.choice(candidates)
+    centre = (np.array(chosen.box_min_m) + np.array(chosen.box_max_m)) / 2 - np.array(camera.position_m)
+    pan, tilt = (float(v) for v in pan_tilt_deg(centre))
+    return float(wrap_pan_deg(pan - camera.pan0_bearing_deg)), tilt
 
 
 def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
-    """Compare the pack's view at a pose with a live render: a picture ``(H, W, 3)`` and instance numbers ``(H, W)``."""
+    """Compare the pack's view at a pose with a live render: a picture ``(H, W, 3)`` and instance IDs ``(H, W)``."""
     height, width = ids.shape
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
-    opened = scene.viewpoint(viewpoint)
-    tiled = _tile_mask(opened.manifest.tiles, view)
+    pack = scene.viewpoint(viewpoint)
+    tiled = _tile_mask(pack.manifest.tiles, view)
     mask = tiled if tiled.any() and pose.zoom > 1.0 else None
-    stored = colour_view(opened, view)
-    ious = list(box_ious(id_view(opened, view), ids, MIN_BOX_PIXELS).values())
+    stored = colour_view(pack, view)
+    ious = list(box_ious(id_view(pack, view), ids, MIN_BOX_PIXELS).values())
     return PoseReport(
         viewpoint=viewpoint,
         pose=pose,
@@ -152,7 +152,7 @@ def verify(
             colour, ids = _render_live(worker, name, view, samples, Path(folder))
             reports.append(compare(scene, name, pose, colour, ids))
             if keep is not None:
-                keep_reference(keep, name, pose, colour, ids)
+                add_reference(keep, name, pose, colour, ids)
             step()
     return reports
 

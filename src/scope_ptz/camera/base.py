@@ -93,7 +93,7 @@ class Camera(ABC):
         raise CameraError(f"{self.info.name} cannot be driven at a velocity; move it to a pose.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Centre a point of the current picture, and zoom by a factor (click-to-centre and area zoom).
+        """Centre a point in the current picture, and zoom by a factor (click-to-centre and area zoom).
 
         Args:
             x: Horizontal position of the point, from 0 (left edge) to 1 (right edge).

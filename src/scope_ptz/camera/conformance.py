@@ -114,12 +114,12 @@ class CameraConformance(LensConformance, ABC):
         async with self.camera() as camera:
             limits = camera.info.limits
             centre = middle_pose(camera.info)
-            for beyond in (limits.max_pan_deg + 15, limits.min_pan_deg - 15):
-                target = Pose(beyond, centre.tilt_deg, centre.zoom)
+            for pan_deg in (limits.max_pan_deg + 15, limits.min_pan_deg - 15):
+                target = Pose(pan_deg, centre.tilt_deg, centre.zoom)
                 arrival = await camera.move(target)
                 expected, clamped = limits.clamp(target)
                 self._expect_at(arrival.pose, expected, camera.info)
-                expect(arrival.clamped == clamped, f"pan {beyond}: clamped should be {clamped}, not {arrival.clamped}")
+                expect(arrival.clamped == clamped, f"pan {pan_deg}: clamped should be {clamped}, not {arrival.clamped}")
 
     async def test_frame_geometry_is_consistent(self) -> None:
         async with self.camera() as camera:
@@ -144,25 +144,25 @@ class CameraConformance(LensConformance, ABC):
                     (view.width, view.height) == (frame.width, frame.height),
                     "the projection's size differs from the image's size",
                 )
-                towards = view.directions((0.5, 0.5))
+                centre = view.directions((0.5, 0.5))
                 aim = Perspective(frame.pose.pan_deg, frame.pose.tilt_deg, 30.0, 10, 10).directions((0.5, 0.5))
-                expect(float(towards @ aim) > math.cos(math.radians(0.1)), "the pose does not point at the centre of the frame")
+                expect(float(centre @ aim) > math.cos(math.radians(0.1)), "the pose does not point at the centre of the frame")
 
     async def test_one_pose_gives_one_picture(self) -> None:
         async with self.camera() as camera:
-            there, elsewhere, *_ = target_poses(camera.info)
+            pose, other_pose, *_ = target_poses(camera.info)
             with camera.hold_time():
-                await camera.move(there)
+                await camera.move(pose)
                 first = await camera.frame()
-                await camera.move(elsewhere)
+                await camera.move(other_pose)
                 other = await camera.frame()
-                await camera.move(there)
-                again = await camera.frame()
-            repeat_difference = float(np.abs(first.image.astype(float) - again.image).mean())
+                await camera.move(pose)
+                repeated = await camera.frame()
+            repeat_difference = float(np.abs(first.image.astype(float) - repeated.image).mean())
             move_difference = float(np.abs(first.image.astype(float) - other.image).mean())
             expect(
                 repeat_difference <= self.same_picture_mean_difference,
-                f"after returning to {there}, the picture differs by {repeat_difference:.2f} out of 255",
+                f"after returning to {pose}, the picture differs by {repeat_difference:.2f} out of 255",
             )
             expect(move_difference > repeat_difference, "a move does not change the picture")
 
@@ -175,8 +175,8 @@ class CameraConformance(LensConformance, ABC):
             for name in names:
                 first = await camera.go_to_preset(name)
                 await camera.move(middle_pose(camera.info))
-                again = await camera.go_to_preset(name)
-                self._expect_at(again.pose, first.pose, camera.info)
+                arrival = await camera.go_to_preset(name)
+                self._expect_at(arrival.pose, first.pose, camera.info)
                 self._expect_at(await camera.pose(), first.pose, camera.info)
 
     async def test_unknown_preset_is_rejected(self) -> None:
@@ -195,8 +195,8 @@ class CameraConformance(LensConformance, ABC):
             home = await camera.go_home()
             for target in target_poses(camera.info):
                 await camera.move(target)
-                back = await camera.go_home()
-                self._expect_at(back.pose, home.pose, camera.info)
+                arrival = await camera.go_home()
+                self._expect_at(arrival.pose, home.pose, camera.info)
 
     async def test_home_is_known_before_the_first_move(self) -> None:
         async with self.camera() as camera:

@@ -44,7 +44,7 @@ async def expect_error(error_type: type[Exception], operation: Awaitable[object]
     raise AssertionError(f"expected {error_type.__name__}, but nothing was raised")
 
 
-def expect(condition: bool, otherwise: str) -> None:
-    """Fail with the message ``otherwise`` unless a condition holds."""
+def expect(condition: bool, message: str) -> None:
+    """Fail with the message ``message`` unless a condition holds."""
     if not condition:
-        raise AssertionError(otherwise)
+        raise AssertionError(message)

@@ -32,9 +32,9 @@ class LensConformance(ABC):
             pixel_deg = info.optics.hfov_deg(info.limits.min_zoom) / info.frame_width
             for point in ((0.7, 0.35), (0.2, 0.9), (0.5, 0.5)):
                 await camera.move(middle_pose(info))
-                towards = (await camera.frame()).projection.directions(point)
+                point_direction = (await camera.frame()).projection.directions(point)
                 arrival = await camera.centre_on(*point)
-                off_deg = float(angle_between_deg(direction(arrival.pose.pan_deg, arrival.pose.tilt_deg), towards))
+                off_deg = float(angle_between_deg(direction(arrival.pose.pan_deg, arrival.pose.tilt_deg), point_direction))
                 expect(off_deg <= 2 * self.angle_tolerance_deg + pixel_deg, f"the point {point} is {off_deg:.2f} degrees off")
                 expect(not arrival.clamped, f"centring {point} was reported as clamped: {arrival.clamped}")
                 zoom = arrival.pose.zoom / middle_pose(info).zoom

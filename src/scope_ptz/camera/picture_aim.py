@@ -1,4 +1,4 @@
-"""Compute the pose that centres a point of the picture."""
+"""Compute the pose that centres a point in the picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def check_point(x: float, y: float, zoom_factor: float) -> None:
         InputError: The point is outside the picture, or the factor is not above 0.
     """
     if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
-        raise InputError(f"A point of the picture must be given as fractions of its width and height from 0 to 1; got {x}, {y}.")
+        raise InputError(f"A point in the picture must be given as fractions of its width and height from 0 to 1; got {x}, {y}.")
     if not (zoom_factor > 0 and math.isfinite(zoom_factor)):
         raise InputError(f"The zoom factor must be above 0; got {zoom_factor}.")
 
@@ -24,7 +24,7 @@ def check_point(x: float, y: float, zoom_factor: float) -> None:
 def towards_point(
     optics: Optics, limits: Limits, size: tuple[int, int], pose: Pose, x: float, y: float, zoom_factor: float
 ) -> Pose:
-    """Return the pose that centres a point of the picture taken at ``pose``. The result may be beyond the limits.
+    """Return the pose that centres a point in the picture taken at ``pose``. The result may be beyond the limits.
 
     Args:
         optics: The optics.

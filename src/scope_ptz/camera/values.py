@@ -46,7 +46,7 @@ class CameraInfo:
     dry_run: bool = False
 
     def towards(self, pose: Pose, x: float, y: float, zoom_factor: float = 1.0) -> Pose:
-        """Return the pose that centres a point of the picture taken at ``pose``. The result may be beyond the limits.
+        """Return the pose that centres a point in the picture taken at ``pose``. The result may be beyond the limits.
 
         Args:
             pose: The current pose.

@@ -258,7 +258,7 @@ def profile(
     from scope_ptz.cli.profile import Workload
     from scope_ptz.cli.profile import profile as run
 
-    workload = Workload(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
+    workload = Workload(instructions=instructions, limit=limit, frames=frames, scene=scene, edits_prompts=prompts)
     return run(models.options(pair), workload, as_json=as_json)
 
 
@@ -345,7 +345,7 @@ def scene_list(as_json: JsonOption = False) -> int:
 @command
 def scene_show(
     name: SceneName,
-    everything: Annotated[bool, typer.Option("--all", help="Print the whole card, with all texts, objects and checksums.")] = False,
+    everything: Annotated[bool, typer.Option("--all", help="Print the whole card, with all text, objects and checksums.")] = False,
     contact_sheet: Annotated[
         Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
     ] = None,
@@ -354,7 +354,7 @@ def scene_show(
     ] = None,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print only the card, as a Markdown page.")] = False,
 ) -> None:
-    """Print a scene's card: its viewpoints, presets, objects and texts. Also draw a picture of all presets."""
+    """Print a scene's card: its viewpoints, presets, objects and text. Also draw a picture of all presets."""
     from scope_ptz.cli.scenes import print_markdown, show_scene
 
     if as_markdown:

@@ -45,7 +45,7 @@ class Session:
         self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
         self.opened, self.camera = opened, opened.camera
         self.runs_dir = flags.runs_dir or load_settings().runs_dir
-        self.planned: list[str] = []
+        self.planned_commands: list[str] = []
         """The commands that a dry run has reported since the list was last cleared."""
 
     @classmethod
@@ -57,21 +57,21 @@ class Session:
             models: The options for the planner and perception.
             realtime: Whether moves take as long as with a real camera.
         """
-        choice = await resolve_models(models)
-        planner = make_planner(choice.planner)
-        planned: list[str] = []
-        opened = await flags.open(realtime=realtime, dry_run=planned.append if flags.dry_run else None)
+        resolved = await resolve_models(models)
+        planner = make_planner(resolved.planner)
+        planned_commands: list[str] = []
+        opened = await flags.open(realtime=realtime, dry_run=planned_commands.append if flags.dry_run else None)
         try:
-            if opened.scenes is None and models.perception is None and models.pair is None and choice.perception.spec is None:
+            if opened.scenes is None and models.perception is None and models.pair is None and resolved.perception.spec is None:
                 perception, note = _no_perception(), ""
             else:
-                perception = make_perception(choice.perception, opened.scenes, flags.seed, served_truth=opened.served_truth)
-                note = perception_note(choice.perception)
+                perception = make_perception(resolved.perception, opened.scenes, flags.seed, served_truth=opened.served_truth)
+                note = perception_note(resolved.perception)
         except BaseException:
             await opened.aclose()
             raise
         session = cls(flags, opened, perception, planner, dry_run_note(note) if flags.dry_run else note)
-        session.planned = planned
+        session.planned_commands = planned_commands
         return session
 
     async def run(
@@ -102,14 +102,14 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     if not instruction.strip():
         raise InputError("The instruction is empty. Describe what the camera should do.")
     folder: RunFolder | None = None
-    planned: list[str] = []
+    planned_commands: list[str] = []
 
     async def work() -> None:
-        nonlocal folder, planned
+        nonlocal folder, planned_commands
         with pause_garbage_collection():  # opening a session imports the modules of its planner, camera and perception backend
             session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
         try:
-            planned = session.planned
+            planned_commands = session.planned_commands
             await checkpoint()
             folder = RunFolder.create(session.runs_dir, instruction)
             view: Listener = (lambda _: None) if as_json else LiveView(Console(highlight=False))
@@ -126,7 +126,7 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     if folder is None or not folder.trace.is_file():
         raise KeyboardInterrupt
     with handle_interrupts(signal.SIG_IGN):
-        code = _report(folder, planned if flags.dry_run else None, as_json=as_json)
+        code = _report(folder, planned_commands if flags.dry_run else None, as_json=as_json)
     if next_steps and not as_json and code == 0:
         put(_NEXT_STEPS.format(program=_program()))
     return code
@@ -147,22 +147,26 @@ def make_filmstrip(trace: Trace) -> Path | None:
     return write_filmstrip(trace)
 
 
-def _report(folder: RunFolder, planned: list[str] | None, *, as_json: bool) -> int:
+def _report(folder: RunFolder, planned_commands: list[str] | None, *, as_json: bool) -> int:
     trace = read_trace(folder.path)
     if trace.ended is None:
         return CANCELLED
     filmstrip = make_filmstrip(trace)
     if as_json:
-        dry_run = {} if planned is None else {"dry_run": True, "planned": planned, "note": trace.started.labels.perception_note}
+        dry_run = (
+            {}
+            if planned_commands is None
+            else {"dry_run": True, "planned": planned_commands, "note": trace.started.labels.perception_note}
+        )
         put_json({**summary(trace.calls, trace.ended, folder.path), **dry_run})
     else:
         console = Console(highlight=False)
-        if planned is not None:
-            show_planned(console, planned)
-        note = trace.started.labels.perception_note if filmstrip or planned is not None else ""
+        if planned_commands is not None:
+            show_planned(console, planned_commands)
+        note = trace.started.labels.perception_note if filmstrip or planned_commands is not None else ""
         show_end(console, trace.ended, note, folder.path, filmstrip)
     code = exit_code(trace.ended.outcome)
-    return FAILED if code == 0 and planned is None and has_failed_perception(trace.calls) else code
+    return FAILED if code == 0 and planned_commands is None and has_failed_perception(trace.calls) else code
 
 
 def has_failed_perception(calls: Sequence[Called]) -> bool:

@@ -48,7 +48,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     """
     settings, console = load_settings(), Console(highlight=False)
     _check_scene_name(source)
-    level = named_quality(quality)
+    quality_level = named_quality(quality)
     folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
     _make_folder(folder.parent)
     command = _command(settings, console)
@@ -56,7 +56,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         baked = bake(
             source,
             folder,
-            quality=level,
+            quality=quality_level,
             command=command,
             cache_dir=settings.cache_dir,
             viewpoints=viewpoints or None,
@@ -69,10 +69,10 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
             console.print(Text(f"  not covered by a tile: {', '.join(pack.uncovered)}", style="yellow"))
     shortfalls = _show_comparison(console, baked.reports)
     console.print(Text(f"To see it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True)
-    return FAILED if shortfalls and level.must_meet_tolerances else 0
+    return FAILED if shortfalls and quality_level.must_meet_tolerances else 0
 
 
-def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> int:
+def verify_scene(name: str, seed: int, wide_count: int, zoomed_count: int, renders_folder: Path | None) -> int:
     """Compare a scene's packs with live renders at random poses. Return the exit code, which is 1 if they differ too much."""
     settings, console = load_settings(), Console(highlight=False)
     _check_scene_name(name)
@@ -80,7 +80,7 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
     command = _command(settings, console)
     with _ProgressBars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
         worker.request("load_scene", {"source": name})
-        reports = verify(scene, worker, draw_poses(scene, seed, wide, zoomed), bars, keep=keep)
+        reports = verify(scene, worker, draw_poses(scene, seed, wide_count, zoomed_count), bars, keep=renders_folder)
     return FAILED if _show_comparison(console, reports) else 0
 
 

@@ -89,12 +89,12 @@ def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
 
 
 class _Chat:
-    """A conversation, with its turns so far and the folder of saved pictures, if any."""
+    """A conversation, with its turns so far and, once a picture has been saved, the folder of its pictures."""
 
     def __init__(self, session: Session) -> None:
         self.session, self.console = session, Console(highlight=False)
         self.turns: tuple[PastTurn, ...] = ()
-        self.pictures: RunFolder | None = None
+        self.picture_folder: RunFolder | None = None
         self.idle = Event()
         self._note = session.note  # printed only after the first run
 
@@ -115,26 +115,26 @@ class _Chat:
             pose = (await self.session.camera.pose()).as_dict()
             self.console.print(f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x")
         elif line == "/save":
-            self.pictures = self.pictures or RunFolder.create(self.session.runs_dir, "chat pictures")
-            name = await self.pictures.save_picture(await self.session.camera.frame())
-            self.console.print(Text(f"Saved {self.pictures.path / name}"), soft_wrap=True)
+            self.picture_folder = self.picture_folder or RunFolder.create(self.session.runs_dir, "chat pictures")
+            name = await self.picture_folder.save_picture(await self.session.camera.frame())
+            self.console.print(Text(f"Saved {self.picture_folder.path / name}"), soft_wrap=True)
         else:
             raise InputError(f"There is no command {sanitize(line.split()[0])}. Type /help to list the commands.")
 
     async def _instruct(self, instruction: str) -> None:
         folder = RunFolder.create(self.session.runs_dir, instruction)
-        self.session.planned.clear()
+        self.session.planned_commands.clear()
         try:
-            run = await self.session.run(instruction, folder, LiveView(self.console), self.turns)
+            result = await self.session.run(instruction, folder, LiveView(self.console), self.turns)
         finally:
             folder.discard_if_not_started()
-        self.turns = (*self.turns, run.past_turn())
+        self.turns = (*self.turns, result.past_turn())
         if self.session.flags.dry_run:
-            show_planned(self.console, self.session.planned)
-        if not run.exchanges and run.ended.outcome in ("clarification", "refused"):
-            show_end(self.console, run.ended)
+            show_planned(self.console, self.session.planned_commands)
+        if not result.exchanges and result.ended.outcome in ("clarification", "refused"):
+            show_end(self.console, result.ended)
             return
-        show_end(self.console, run.ended, self._note, folder.path, make_filmstrip(read_trace(folder.path)))
+        show_end(self.console, result.ended, self._note, folder.path, make_filmstrip(read_trace(folder.path)))
         self._note = ""
 
 

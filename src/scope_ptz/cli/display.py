@@ -17,7 +17,7 @@ from scope_ptz.planner.base import CallTools, ToolCall
 
 MAX_PLANNED = 12  # maximum number of dry-run commands to print
 MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
-_OUTCOME_WORDS = {
+_OUTCOME_TITLES = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
     "refused": ("Refused", "bold yellow"),
@@ -40,11 +40,11 @@ class LiveView:
         self._show_status(None)
         match record:
             case Started():
-                self._start(record)
+                self._show_start(record)
             case Decided(decision=CallTools(calls=calls)):
                 self._show_status(calls[0])
             case Called():
-                self._call(record)
+                self._show_call(record)
 
     def _show_status(self, call: ToolCall | None) -> None:
         if self._status is not None:
@@ -55,13 +55,13 @@ class LiveView:
             self._status = self.console.status(line, spinner="dots")
             self._status.start()
 
-    def _start(self, record: Started) -> None:
+    def _show_start(self, record: Started) -> None:
         self.console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(record.instruction)), "bold")))
-        about = f"{record.camera} · planner {record.planner} · perception {record.perception}"
-        self.console.print(Padding(Text(sanitize(about), style="dim"), (0, 0, 0, 2)))
+        components = f"{record.camera} · planner {record.planner} · perception {record.perception}"
+        self.console.print(Padding(Text(sanitize(components), style="dim"), (0, 0, 0, 2)))
         self.console.print()
 
-    def _call(self, record: Called) -> None:
+    def _show_call(self, record: Called) -> None:
         call, outcome = record.outcome.call, record.outcome
         table = Table.grid(padding=(0, 2, 0, 0), expand=True)
         table.add_column(justify="right", width=3, no_wrap=True)
@@ -91,7 +91,7 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
         folder: The run folder. If None, only the answer and the note are printed.
         filmstrip: The run's filmstrip, if there is one.
     """
-    title, style = _OUTCOME_WORDS[ended.outcome]
+    title, style = _OUTCOME_TITLES[ended.outcome]
     console.print()
     console.print(Text.assemble((f"{title}: ", style), (sanitize(ended.text), "bold")))
     if note:
@@ -104,20 +104,20 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
         console.print(Text(f"Filmstrip:  {filmstrip}", style="dim"), soft_wrap=True)
 
 
-def show_planned(console: Console, planned: list[str]) -> None:
+def show_planned(console: Console, commands: list[str]) -> None:
     """Print the commands that a dry run did not execute. A long list is shortened to the first commands and the last command.
 
     Args:
         console: The console to print on.
-        planned: A sentence about each command.
+        commands: The commands, one sentence each.
     """
     console.print()
-    console.print(Text("Dry run: the camera has not moved." + (" Planned commands:" if planned else ""), style="yellow"))
-    shown = planned if len(planned) <= MAX_PLANNED else planned[: MAX_PLANNED - 1]
+    console.print(Text("Dry run: the camera has not moved." + (" Planned commands:" if commands else ""), style="yellow"))
+    shown = commands if len(commands) <= MAX_PLANNED else commands[: MAX_PLANNED - 1]
     for sentence in shown:
         console.print(Text(f"  {sanitize(sentence)}"))
-    if len(shown) < len(planned):
-        console.print(Text(f"  ... and {len(planned) - len(shown) - 1} more, ending with: {sanitize(planned[-1])}"))
+    if len(shown) < len(commands):
+        console.print(Text(f"  ... and {len(commands) - len(shown) - 1} more, ending with: {sanitize(commands[-1])}"))
 
 
 def timings_text(timings: Timings) -> str:

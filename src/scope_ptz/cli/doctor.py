@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
 
 Verdict = Literal["ok", "optional", "missing"]
-_OK, _PARTLY, _BAD = ("ok", "green"), ("--", "yellow"), ("!!", "bold red")
-_MARKS: dict[str, tuple[str, str]] = {"ok": _OK, "optional": _PARTLY, "missing": _BAD, "partly": _PARTLY, "failed": _BAD}
+_OK, _PARTIAL, _BAD = ("ok", "green"), ("--", "yellow"), ("!!", "bold red")
+_MARKS: dict[str, tuple[str, str]] = {"ok": _OK, "optional": _PARTIAL, "missing": _BAD, "partly": _PARTIAL, "failed": _BAD}
 _EXAMPLE_OBJECT, _EXAMPLE_PRESET = "traffic cone", "highway"  # the default scene shows this object at this preset
 
 
@@ -121,16 +121,16 @@ def _check_packages() -> Finding:
 def _check_scenes(settings: ScopeSettings) -> Iterator[Finding]:
     from scope_ptz.simulator.pack import find_scenes, load_scene
 
-    search: tuple[Path, ...] = ()
+    folders: tuple[Path, ...] = ()
     try:
-        search = scene_search(settings)
+        folders = scene_search(settings)
     except ConfigError as error:
         yield Finding("SCOPE_SCENES_DIR", "missing", f"{settings.scenes_dir} is not a folder", str(error))
-    scenes = find_scenes(search)
+    scenes = find_scenes(folders)
     for name, folder in scenes.items():
         try:
-            scene = load_scene(name, search)
-            files = sum(scene.viewpoint(place.name).check_files() for place in scene.file.viewpoints)
+            scene = load_scene(name, folders)
+            files = sum(scene.viewpoint(viewpoint.name).check_files() for viewpoint in scene.file.viewpoints)
         except PackError as error:
             yield Finding(f"scene {name}", "missing", str(error), f"Restore {folder}, or bake it again: scope scene bake {name}")
         else:

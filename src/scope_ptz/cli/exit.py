@@ -25,15 +25,15 @@ from typing import Any, TextIO, cast
 
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
-FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
+FAILED, BAD_INPUT, CLARIFICATION_NEEDED, REFUSED, CANCELLED = 1, 2, 3, 4, 130
 _TERMINATION_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 """Signals that request termination. SIGHUP does not exist on Windows."""
 
 _FORCE_EXIT_PRESSES = 3  # number of Ctrl-C presses after which the program ends without clean-up
 EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 invalid input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
-_CODE_BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
-_ASCII = {"›": ">", "°": " deg", "·": "-", "“": '"', "”": '"', "‘": "'", "’": "'", "…": "...", "×": "x", "–": "-", "—": "-"}
+_CODE_BY_OUTCOME = {"answered": 0, "clarification": CLARIFICATION_NEEDED, "refused": REFUSED, "cancelled": CANCELLED}
+_TO_ASCII = {"›": ">", "°": " deg", "·": "-", "“": '"', "”": '"', "‘": "'", "’": "'", "…": "...", "×": "x", "–": "-", "—": "-"}
 
 
 def exit_code(outcome: str) -> int:
@@ -83,11 +83,11 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
     try:
         yield
     except ScopeError as error:
-        bad_input = isinstance(error, InputError | PackError | TraceError | ToolCallError)
+        is_bad_input = isinstance(error, InputError | PackError | TraceError | ToolCallError)
         print_error(str(error))
         if as_json:
             put_json({"error": str(error)})
-        sys.exit(BAD_INPUT if bad_input else FAILED)
+        sys.exit(BAD_INPUT if is_bad_input else FAILED)
     except KeyboardInterrupt:
         _ignore_interrupts()
         print_error("cancelled.")
@@ -142,16 +142,18 @@ def handle_interrupts(handler: Callable[..., None] | signal.Handlers) -> Iterato
 
     A signal that is already ignored, such as SIGHUP under ``nohup``, stays ignored. Outside the main thread, no handler is changed.
     """
-    main = threading.current_thread() is threading.main_thread()
-    current_handlers = {number: signal.getsignal(number) for number in _TERMINATION_SIGNALS if main}
-    replaced = {number: current for number, current in current_handlers.items() if current not in (signal.SIG_IGN, None)}
+    is_main_thread = threading.current_thread() is threading.main_thread()
+    current_handlers = {signal_number: signal.getsignal(signal_number) for signal_number in _TERMINATION_SIGNALS if is_main_thread}
+    replaced = {
+        signal_number: current for signal_number, current in current_handlers.items() if current not in (signal.SIG_IGN, None)
+    }
     try:
-        for number in replaced:
-            signal.signal(number, handler)
+        for signal_number in replaced:
+            signal.signal(signal_number, handler)
         yield
     finally:
-        for number, current in replaced.items():
-            signal.signal(number, current)
+        for signal_number, current in replaced.items():
+            signal.signal(signal_number, current)
 
 
 @contextmanager
@@ -162,9 +164,9 @@ def safe_streams() -> Iterator[None]:
     does not affect the exit code. If output cannot be written for another reason, such as a full disk, the exit code is 1.
     """
     _open_closed_descriptors()
-    previous = sys.stdin, sys.stdout, sys.stderr
+    previous_streams = sys.stdin, sys.stdout, sys.stderr
     stdin = sys.stdin if sys.stdin is not None else open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123
-    stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in previous[1:])  # noqa: SIM115, PTH123
+    stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in previous_streams[1:])  # noqa: SIM115, PTH123
     _set_error_handlers(stdin, stdout, stderr)
     sys.stdin, sys.stdout, sys.stderr = stdin, cast(TextIO, stdout), cast(TextIO, stderr)
     try:
@@ -178,7 +180,7 @@ def safe_streams() -> Iterator[None]:
         if stdout.failure is not None:
             print_error(f"the output could not be written: {stdout.failure.strerror or stdout.failure}.")
         stderr.flush()
-        sys.stdin, sys.stdout, sys.stderr = previous
+        sys.stdin, sys.stdout, sys.stderr = previous_streams
         if stdout.failure is not None and sys.exc_info()[0] in (None, SystemExit):
             sys.exit(FAILED)
 
@@ -249,7 +251,7 @@ def _ascii_replacement(error: UnicodeError) -> tuple[str, int]:
     """Replace characters with ASCII equivalents or question marks. This is a codec error handler."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
+    return "".join(_TO_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
 
 
 def _is_unicode(stream: Any) -> bool:

@@ -19,7 +19,7 @@ MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
     "'from': the memory that the smallest available weights need, usually 4-bit."
 )
-_WIDE, _PIPE = 120, 180  # minimum terminal width for the wide table, and the width for a file or a pipe
+_WIDE_TABLE_WIDTH, _PIPE_WIDTH = 120, 180  # minimum terminal width for the wide table, and the width for a file or a pipe
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
 
 
@@ -36,14 +36,14 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         memory_gb: Maximum memory of the models to list, in GB. A line below the table names models that fit with smaller weights.
         as_json: Print JSON instead of a table.
     """
-    known_models, requested_role = load_model_registry(), _parse_role(role)
-    suitable = [m for m in known_models.models.values() if requested_role is None or requested_role in m.roles]
-    listed = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
+    registry, requested_role = load_model_registry(), _parse_role(role)
+    with_role = [m for m in registry.models.values() if requested_role is None or requested_role in m.roles]
+    listed = [m for m in with_role if memory_gb is None or m.memory_for() <= memory_gb]
     if as_json:
-        put_json([model_data(known_models, model) for model in listed], indent=2)
+        put_json([model_data(registry, model) for model in listed], indent=2)
         return
     console = _console()
-    wide = console.width >= _WIDE
+    wide = console.width >= _WIDE_TABLE_WIDTH
     table = Table(box=None)
     for column in (
         "name",
@@ -59,17 +59,17 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         table.add_column(column, no_wrap=True)
     for model in listed:
         roles, (_, min_memory_gb) = "+".join(sorted(model.roles, reverse=True)), model.min_memory_server()
-        more = (_THINKING[model.thinking], model.licence) if wide else ()
+        extra_cells = (_THINKING[model.thinking], model.licence) if wide else ()
         table.add_row(
             model.name, roles, f"{model.size_b:g}B", f"{model.active_b:g}B", model.precision, f"{model.memory_for():.1f}",
-            f"{min_memory_gb:.1f}", f"{model.context:,}" if model.context else "-", *more,
+            f"{min_memory_gb:.1f}", f"{model.context:,}" if model.context else "-", *extra_cells,
             style="bold" if model.origin == "paper" else "",
         )  # fmt: skip
     console.print(table)
     if memory_gb is not None:
-        smaller = [m for m in suitable if m not in listed and m.min_memory_server()[1] <= memory_gb]
-        if smaller:
-            names = ", ".join(f"{m.name} ({m.min_memory_server()[1]:.1f} GB)" for m in smaller)
+        fitting_when_smaller = [m for m in with_role if m not in listed and m.min_memory_server()[1] <= memory_gb]
+        if fitting_when_smaller:
+            names = ", ".join(f"{m.name} ({m.min_memory_server()[1]:.1f} GB)" for m in fitting_when_smaller)
             console.print(Text(f"With smaller weights, {memory_gb:g} GB is enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
     _print_plugin_names(console, requested_role)
@@ -106,10 +106,10 @@ def _print_plugin_names(console: Console, role: Role | None) -> None:
 
 def show_model(name: str, *, as_json: bool) -> None:
     """Print all registry data about a model."""
-    known = load_model_registry()
-    model = known.model(name)
+    registry = load_model_registry()
+    model = registry.model(name)
     if as_json:
-        put_json(model_data(known, model), indent=2)
+        put_json(model_data(registry, model), indent=2)
         return
     put(f"{model.title} ({model.name})")
     facts = [
@@ -131,43 +131,44 @@ def show_model(name: str, *, as_json: bool) -> None:
         if value:
             put(f"  {label:12}{sanitize(value)}")
     for server in model.serve:
-        _show_serving(known, model, server)
+        _show_serving(registry, model, server)
     put(MEMORY_NOTE)
 
 
-def _show_serving(known: Registry, model: Model, server: str) -> None:
+def _show_serving(registry: Registry, model: Model, server: str) -> None:
     serving = model.serve[server]
     put(
-        f"  with {known.server(server).title} ({server}): {model.memory_for(server):.1f} GB, {serving.precision or model.precision}"
+        f"  with {registry.server(server).title} ({server}): {model.memory_for(server):.1f} GB, "
+        f"{serving.precision or model.precision}"
     )
-    for line in known.commands(model, server):
+    for line in registry.commands(model, server):
         put(f"      {line}")
-    for note in (serving.notes, known.server(server).notes):
+    for note in (serving.notes, registry.server(server).notes):
         if note:
             put(f"      # {note}")
 
 
 def serve_command(name: str, server: str | None) -> None:
     """Print only the commands for serving a model, so that a shell can run the output."""
-    known = load_model_registry()
-    model = known.model(name)
+    registry = load_model_registry()
+    model = registry.model(name)
     if server is None:
         if not model.serve:
             raise ConfigError(f"No server is known for {model.name}. Add one under `serve` in your models file.")
         server = next(iter(model.serve))
-    for line in known.commands(model, server):
+    for line in registry.commands(model, server):
         put(line)
 
 
 def list_pairs(*, as_json: bool) -> None:
     """Print the known pairs of planner and perception models."""
-    known = load_model_registry()
+    registry = load_model_registry()
     rows = [
         {
             "name": p.name, "planner": p.planner, "perception": p.perception, "origin": p.origin, "paper_average": p.paper_average,
-            "memory_gb": round(known.model(p.planner).memory_for() + known.model(p.perception).memory_for(), 1),
+            "memory_gb": round(registry.model(p.planner).memory_for() + registry.model(p.perception).memory_for(), 1),
         }
-        for p in known.pairs.values()
+        for p in registry.pairs.values()
     ]  # fmt: skip
     if as_json:
         put_json(rows, indent=2)
@@ -182,13 +183,13 @@ def list_pairs(*, as_json: bool) -> None:
     console.print(Text("Any PLANNER+PERCEPTION of `scope models` works, and so does one model that does both.", style="dim"))
 
 
-def model_data(known: Registry, model: Model) -> dict[str, Any]:
+def model_data(registry: Registry, model: Model) -> dict[str, Any]:
     """Return a model as JSON data, including the memory and commands for each server."""
     data = model.model_dump(mode="json", exclude={"serve", "key_file", "memory_gb", "kv_kib"})
     servings = {
         server: {
-            "commands": list(known.commands(model, server)),
-            "url": known.server(server).url,
+            "commands": list(registry.commands(model, server)),
+            "url": registry.server(server).url,
             "precision": serving.precision or model.precision,
             "memory_gb": model.memory_for(server),
             "notes": serving.notes,
@@ -201,7 +202,7 @@ def model_data(known: Registry, model: Model) -> dict[str, Any]:
 def _console() -> Console:
     """Return a console that is as wide as the terminal, or as the table if the output is a file or a pipe."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=_PIPE)
+    return console if console.is_terminal else Console(highlight=False, width=_PIPE_WIDTH)
 
 
 def _parse_role(role: str | None) -> Role | None:

@@ -127,7 +127,7 @@ class SessionFlags(StartFlags):
     seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
 
     def in_real_time(self, *, as_json: bool = False) -> bool:
-        """Return whether moves take real time: as requested or, by default, if the output is a terminal."""
+        """Return whether to move in real time: as requested or, by default, if the output is a terminal."""
         return self.realtime if self.realtime is not None else sys.stdout.isatty() and not as_json
 
 
@@ -361,25 +361,27 @@ def command(function: Callable[..., int | None]) -> Callable[..., None]:
     """
     hints = get_type_hints(function, include_extras=True)
     groups: dict[str, type[Any]] = {}
-    flat: list[Parameter] = []
+    parameters: list[Parameter] = []
     for parameter in signature(function).parameters.values():
-        kind = hints[parameter.name]
-        if isinstance(kind, type) and is_dataclass(kind):
-            groups[parameter.name] = kind
-            flat += _expand_group(kind, None if parameter.default is Parameter.empty else parameter.default)
+        annotation = hints[parameter.name]
+        if isinstance(annotation, type) and is_dataclass(annotation):
+            groups[parameter.name] = annotation
+            parameters += _expand_group(annotation, None if parameter.default is Parameter.empty else parameter.default)
         else:
-            flat.append(parameter.replace(annotation=kind, kind=Parameter.KEYWORD_ONLY))
+            parameters.append(parameter.replace(annotation=annotation, kind=Parameter.KEYWORD_ONLY))
 
     @wraps(function)
     def run(**values: Any) -> None:
         with exit_on_error(as_json=bool(values.get("as_json"))):
-            group_values = {name: kind(**{f.name: values.pop(f.name) for f in fields(kind)}) for name, kind in groups.items()}
+            group_values = {
+                name: annotation(**{f.name: values.pop(f.name) for f in fields(annotation)}) for name, annotation in groups.items()
+            }
             if code := function(**values, **group_values):
                 sys.exit(code)
 
     del run.__wrapped__
-    run.__signature__ = Signature(flat)  # type: ignore[attr-defined]
-    run.__annotations__ = {p.name: p.annotation for p in flat}
+    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
     return run
 
 

@@ -55,28 +55,28 @@ def _make_plan(instruction: str, presets: list[str]) -> Plan:
     return make_plan(instruction, presets)
 
 
-def _show(planned: Plan, *, as_json: bool) -> None:
+def _show(result: Plan, *, as_json: bool) -> None:
     if as_json:
-        put_json(planned.as_dict())
+        put_json(result.as_dict())
         return
     console = Console(highlight=False)
-    console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(planned.instruction)), "bold")))
+    console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(result.instruction)), "bold")))
     number = 0
-    for line in planned.outline.lines:
+    for line in result.outline.lines:
         numbered = isinstance(line, OutlineCall) or not line.heading.startswith(("otherwise", "if that never"))
         number += numbered
         _show_line(console, line, f"{number:3d}  " if numbered else " " * _INDENT)
-    if planned.clarification is not None:
-        console.print(Text(sanitize(shorten(planned.clarification)), style="yellow"))
+    if result.clarification is not None:
+        console.print(Text(sanitize(shorten(result.clarification)), style="yellow"))
 
 
-def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
+def _show_line(console: Console, line: OutlineCall | OutlineBlock, prefix: str) -> None:
     """Print a line of the outline, with its inner lines indented below it. Long lines are wrapped with their indentation."""
-    grid = Table.grid(Column(width=len(lead), no_wrap=True), Column())
+    grid = Table.grid(Column(width=len(prefix), no_wrap=True), Column())
     if isinstance(line, OutlineCall):
-        grid.add_row(Text(lead, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))
+        grid.add_row(Text(prefix, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))
     else:
-        grid.add_row(Text(lead, "cyan"), Text(sanitize(line.heading), "yellow"))
+        grid.add_row(Text(prefix, "cyan"), Text(sanitize(line.heading), "yellow"))
     console.print(grid)
     for inner in line.lines if isinstance(line, OutlineBlock) else ():
-        _show_line(console, inner, " " * (len(lead) + 4))
+        _show_line(console, inner, " " * (len(prefix) + 4))

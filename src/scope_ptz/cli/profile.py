@@ -48,14 +48,14 @@ class Workload:
         limit: Maximum number of instructions, sampled evenly.
         frames: Number of frames for perception.
         scene: Scene from which to take the frames.
-        prompts: Whether to measure the effect of small edits to the prompt and the instruction.
+        edits_prompts: Whether to measure the effect of small edits to the prompt and the instruction.
     """
 
     instructions: Path | None = None
     limit: int | None = None
     frames: int = 6
     scene: str = DEFAULT_SCENE
-    prompts: bool = False
+    edits_prompts: bool = False
 
 
 class RoleMeasurements(BaseModel):
@@ -88,18 +88,18 @@ def profile(options: ModelOptions, workload: Workload, *, as_json: bool) -> int:
     rows = _load_instructions(workload)
 
     async def work() -> None:
-        choice = await resolve_models(options)
-        if choice.planner.endpoint is None and choice.perception.spec is None:
+        resolved = await resolve_models(options)
+        if resolved.planner.endpoint is None and resolved.perception.spec is None:
             raise InputError("There is nothing to profile. Give a pair, or a planner or perception with the address of its server.")
         by_role = {}
-        if choice.planner.endpoint is not None:
-            by_role["planner"] = await _measure_planner(choice.planner, rows)
-        if choice.perception.spec is not None:
-            by_role["perception"] = await _measure_perception_backend(choice.perception, workload)
+        if resolved.planner.endpoint is not None:
+            by_role["planner"] = await _measure_planner(resolved.planner, rows)
+        if resolved.perception.spec is not None:
+            by_role["perception"] = await _measure_perception_backend(resolved.perception, workload)
         report.update({role: measured.model_dump() for role, measured in by_role.items()})
         report["real_time"] = _verdict([measured.meets_real_time for measured in by_role.values()])
-        if workload.prompts and "planner" in by_role and by_role["planner"].meets_real_time is not None:
-            report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
+        if workload.edits_prompts and "planner" in by_role and by_role["planner"].meets_real_time is not None:
+            report["prompts"] = (await _sensitivity(resolved.planner, rows)).model_dump()
 
     run_async(work)
     if as_json:
@@ -117,9 +117,9 @@ def _load_instructions(workload: Workload) -> tuple[InstructionRow, ...]:
 
 
 # Measuring -------------------------------------------------------------------------------------------------------------
-async def _measure_planner(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> RoleMeasurements:
-    assert choice.endpoint is not None  # noqa: S101 - called only with a server
-    planner, trials = make_planner(choice), []
+async def _measure_planner(resolved: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> RoleMeasurements:
+    assert resolved.endpoint is not None  # noqa: S101 - called only with a server
+    planner, trials = make_planner(resolved), []
     try:
         first = await ask_once(planner, rows[0])  # loads the model, opens the connection, and fills the prefix cache
         with _progress_bar("planner", len(rows)) as advance:
@@ -128,36 +128,36 @@ async def _measure_planner(choice: ResolvedPlanner, rows: tuple[InstructionRow, 
                 advance()
     finally:
         await planner.close()
-    speed, facts = speed_of(trials, first), await serving_facts(choice.endpoint)
+    speed, facts = speed_of(trials, first), await serving_facts(resolved.endpoint)
     return RoleMeasurements(
-        name=choice.name,
-        served_as=choice.endpoint.model,
-        url=choice.endpoint.url,
+        name=resolved.name,
+        served_as=resolved.endpoint.model,
+        url=resolved.endpoint.url,
         planner=speed,
         memory_gb=memory_gb(facts),
-        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        computed_memory_gb=resolved.model.memory_for() if resolved.model else None,
         serving=facts,
         **_criterion_fields(speed.turn_s.median if speed.turn_s else None),
     )
 
 
-async def _measure_perception_backend(choice: ResolvedPerception, workload: Workload) -> RoleMeasurements:
-    assert choice.spec is not None  # noqa: S101 - called only with a backend
+async def _measure_perception_backend(resolved: ResolvedPerception, workload: Workload) -> RoleMeasurements:
+    assert resolved.spec is not None  # noqa: S101 - called only with a backend
     frames = await _frames(workload.scene, workload.frames)
-    perception = make_perception(choice, None, 0)
+    perception = make_perception(resolved, None, 0)
     try:
         with _progress_bar("perception", len(frames) * len(perception.skills)) as advance:
             speed = await measure_perception(perception, frames, advance)
     finally:
         await perception.close()
-    facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
+    facts = await serving_facts(resolved.spec.endpoint) if resolved.spec.endpoint else {}
     return RoleMeasurements(
-        name=choice.name,
-        served_as=choice.spec.model,
-        url=choice.spec.endpoint.url if choice.spec.endpoint else "",
+        name=resolved.name,
+        served_as=resolved.spec.model,
+        url=resolved.spec.endpoint.url if resolved.spec.endpoint else "",
         perception=speed,
         memory_gb=memory_gb(facts),
-        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        computed_memory_gb=resolved.model.memory_for() if resolved.model else None,
         serving=facts,
         **_criterion_fields(speed.slowest_median_s),
     )
@@ -184,11 +184,11 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
         return frames
 
 
-async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Sensitivity:
+async def _sensitivity(resolved: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Sensitivity:
     from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
 
-    assert choice.endpoint is not None  # noqa: S101 - called only with a server
-    endpoint, options = choice.endpoint, choice.options or ChatOptions()
+    assert resolved.endpoint is not None  # noqa: S101 - called only with a server
+    endpoint, options = resolved.endpoint, resolved.options or ChatOptions()
 
     def planner_with(prompt: Prompt) -> ChatPlanner:
         return ChatPlanner(endpoint, options, prompt=prompt)

@@ -21,7 +21,7 @@ from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
 
-_LEAD_S = 30.0  # the clock starts this many seconds before the run, which leaves time to reach the first pose
+_LEAD_TIME_S = 30.0  # the clock starts this many seconds before the run, which leaves time to reach the first pose
 _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 
 
@@ -55,7 +55,7 @@ async def _repeat(trace: Trace) -> Replay:
     camera = SimulatedCamera(
         open_scene(started.scene),
         viewpoint=started.labels.home_viewpoint,
-        clock=SceneClock(started.scene_time_s - _LEAD_S),
+        clock=SceneClock(started.scene_time_s - _LEAD_TIME_S),
         width=started.frame_width,
         height=started.frame_height,
     )

@@ -26,7 +26,7 @@ from scope_ptz.simulator.card import capture_summary, card, folder_bytes, markdo
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene, find_scenes
 
-MAX_NAMED = 8  # maximum number of names in each list on the short card; the others are only counted
+MAX_NAMES = 8  # maximum number of names in each list on the short card; the others are only counted
 
 
 def list_scenes(*, as_json: bool) -> int:
@@ -42,8 +42,8 @@ def list_scenes(*, as_json: bool) -> int:
     table = Table("scene", "viewpoint", "presets", "objects", "texts", "size", box=None, pad_edge=False, header_style="dim")
     for scene in scenes:
         for number, viewpoint in enumerate(scene["viewpoints"]):
-            shared = (str(scene["instances"]), str(scene["texts"]), megabytes(scene["bytes"])) if number == 0 else ("", "", "")
-            table.add_row(scene["name"] if number == 0 else "", viewpoint["name"], ", ".join(viewpoint["presets"]), *shared)
+            scene_cells = (str(scene["instances"]), str(scene["texts"]), megabytes(scene["bytes"])) if number == 0 else ("", "", "")
+            table.add_row(scene["name"] if number == 0 else "", viewpoint["name"], ", ".join(viewpoint["presets"]), *scene_cells)
     console = Console(highlight=False)
     console.print(table)
     for scene in scenes:
@@ -101,15 +101,15 @@ def show_scene(name: str, sheet: Path | None, *, open_sheet: bool | None, everyt
 
 
 def _print_card(console: Console, scene: Scene) -> None:
-    for paragraph in card(scene):
+    for section in card(scene):
         console.print()
-        console.print(Text(paragraph.title, style="bold cyan"))
-        for line, body in paragraph.lines:
-            console.print(Text.assemble("  ", (f"{line}  " if line else "", "bold"), body.replace("`", "")))
+        console.print(Text(section.title, style="bold cyan"))
+        for label, text in section.lines:
+            console.print(Text.assemble("  ", (f"{label}  " if label else "", "bold"), text.replace("`", "")))
 
 
 def _print_short_card(console: Console, scene: Scene) -> None:
-    """Print the viewpoints with their presets, and summaries of the objects and texts."""
+    """Print the viewpoints with their presets, and summaries of the objects and of the text in the scene."""
     file = scene.file
     width = max(len(preset.name) for preset in file.presets)
     for viewpoint in file.viewpoints:
@@ -136,8 +136,8 @@ def _print_short_card(console: Console, scene: Scene) -> None:
         ("Moving objects", [actor.name for actor in file.actors]),
         ("Deliberately absent", list(file.absent)),
     ):
-        more = f", and {len(items) - MAX_NAMED} more" if len(items) > MAX_NAMED else ""
-        console.print(Text.assemble((title, "bold cyan"), f": {', '.join(items[:MAX_NAMED]) or 'none'}{more}"))
+        more = f", and {len(items) - MAX_NAMES} more" if len(items) > MAX_NAMES else ""
+        console.print(Text.assemble((title, "bold cyan"), f": {', '.join(items[:MAX_NAMES]) or 'none'}{more}"))
 
 
 def _print_line(console: Console, text: Text) -> None:
@@ -168,7 +168,7 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
             await opened.camera.go_to_preset(preset.name)
             caption = f"{preset.name} · {preset.viewpoint}"
             pictures.append((caption, Image.fromarray((await opened.camera.frame()).image)))
-    _save(contact_sheet(scene.file.title, pictures), path)
+    _save_image(contact_sheet(scene.file.title, pictures), path)
 
 
 def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, float | None, float | None], out: Path) -> None:
@@ -189,12 +189,15 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
     async def work() -> None:
         async with await start.open() as opened:
             current = await opened.camera.pose()
-            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _pose_values(current), strict=True))
+            pan, tilt, zoom = (
+                requested if requested is not None else current_value
+                for requested, current_value in zip(pose, _pose_values(current), strict=True)
+            )
             try:
                 arrival = await opened.camera.move(Pose(pan, tilt, zoom))
             except ValueError as error:
                 raise InputError(f"The pose is not possible: {error}.") from error
-            _save(Image.fromarray((await opened.camera.frame()).image), out)
+            _save_image(Image.fromarray((await opened.camera.frame()).image), out)
         reached = arrival.pose.as_dict()
         note = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
         put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{note}")
@@ -206,7 +209,7 @@ def _pose_values(pose: Pose) -> tuple[float, float, float]:
     return pose.pan_deg, pose.tilt_deg, pose.zoom
 
 
-def _save(image: Any, path: Path) -> None:
+def _save_image(image: Any, path: Path) -> None:
     try:
         image.save(path)
     except (OSError, ValueError) as error:

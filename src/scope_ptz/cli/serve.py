@@ -23,13 +23,13 @@ SWITCH_INTERVAL_S = 0.001
 """Maximum time in seconds that a thread runs before others get a turn. The default of 5 ms would delay ``stop`` calls."""
 
 
-Serving = Literal["api", "page", "mcp"]
+ServerKind = Literal["api", "page", "mcp"]
 """What a server offers: "api" (the HTTP API and MCP), "page" (also the operator console), or "mcp" (only MCP)."""
 
 _PACKAGES = ("fastapi", "mcp", "mcp_types", "sqlalchemy", "starlette", "streamlit", "uvicorn", "websockets")
 
 
-def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> None:
+def run_server(flags: ServerFlags, *, kind: ServerKind = "api", as_json: bool) -> None:
     """Serve cameras over HTTP until Ctrl-C."""
     from scope_ptz.cli.exit import put, put_json, run_async
     from scope_ptz.settings import load_settings
@@ -40,36 +40,36 @@ def run_server(flags: ServerFlags, *, kind: Serving = "api", as_json: bool) -> N
         from scope_ptz.serve.security.origins import is_loopback
 
         serve_site = _server_function(kind)
-    site = _site_factory(flags)
+    make_site = _site_factory(flags)
     host, names = flags.host, flags.name or []
     needs_tokens = flags.tokens is not None or not is_loopback(host) or bool(names)
-    access = Access(host, _tokens(flags.tokens or load_settings().tokens) if needs_tokens else None, tuple(names))
+    access = Access(host, _read_token_file(flags.tokens or load_settings().tokens) if needs_tokens else None, tuple(names))
 
     async def work() -> None:
         import anyio
 
-        opened = site()
-        async with serve_site(opened, access, flags.port) as bound_port:
+        site = make_site()
+        async with serve_site(site, access, flags.port) as bound_port:
             address = f"[{host}]" if ":" in host else host
             url = f"http://{address}:{bound_port}"
-            allowed = "with tokens" if needs_tokens else "on this machine only"
+            access_note = "with tokens" if needs_tokens else "on this machine only"
             if as_json:
-                put_json({"url": url, "cameras": list(opened.stations), "pairs": list(opened.pairs.names), "tokens": needs_tokens})
+                put_json({"url": url, "cameras": list(site.stations), "pairs": list(site.pairs.names), "tokens": needs_tokens})
             elif kind == "page":
-                put(f"Open {url} in a browser ({allowed}). Press Ctrl-C to stop.")
+                put(f"Open {url} in a browser ({access_note}). Press Ctrl-C to stop.")
             elif kind == "mcp":
-                put(f"Serving {len(opened.stations)} cameras to MCP clients at {url}/mcp ({allowed}). Press Ctrl-C to stop.")
+                put(f"Serving {len(site.stations)} cameras to MCP clients at {url}/mcp ({access_note}). Press Ctrl-C to stop.")
             else:
-                first = next(iter(opened.stations))
-                put(f"Serving {len(opened.stations)} cameras at {url}/api/v1, and to MCP clients at {url}/mcp ({allowed}).")
+                first_camera = next(iter(site.stations))
+                put(f"Serving {len(site.stations)} cameras at {url}/api/v1, and to MCP clients at {url}/mcp ({access_note}).")
                 put("")
                 put("Try:")
                 put(f"  curl {url}/api/v1/cameras")
-                put(f"  python -c \"import scope_ptz; print(scope_ptz.open('{url}/{first}').ask('zoom in 2x'))\"")
+                put(f"  python -c \"import scope_ptz; print(scope_ptz.open('{url}/{first_camera}').ask('zoom in 2x'))\"")
                 put("")
                 put("Press Ctrl-C to stop.")
             sys.stdout.flush()
-            await (_end_of_input() if flags.until_eof else anyio.sleep_forever())
+            await (_wait_for_end_of_input() if flags.until_eof else anyio.sleep_forever())
 
     run_async(work)
 
@@ -101,8 +101,8 @@ def run_mcp(flags: ServerFlags, transport: str, role: str, *, as_json: bool) -> 
     if sys.stdin.isatty():
         sys.stderr.write("This command speaks MCP on standard input and output. Configure it in an assistant; see docs/mcp.md.\n")
     # Desktop programs may start this command in a folder that is not writable.
-    site = _site_factory(flags, load_settings().user_runs_folder())
-    run_async(lambda: serve_stdio(site(), role="operator" if role == "operator" else "viewer"))
+    make_site = _site_factory(flags, load_settings().user_runs_folder())
+    run_async(lambda: serve_stdio(make_site(), role="operator" if role == "operator" else "viewer"))
 
 
 def _prepare_process() -> None:
@@ -129,7 +129,7 @@ def _explain_missing_package(extra: str) -> Iterator[None]:
         ) from error
 
 
-def _server_function(kind: Serving) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:
+def _server_function(kind: ServerKind) -> Callable[[Site, Access, int], AbstractAsyncContextManager[int]]:
     """Return a context manager function that serves a site on a port with access rules, and yields the bound port."""
     if kind == "page":
         from scope_ptz.console.server import serve_console
@@ -142,14 +142,14 @@ def _server_function(kind: Serving) -> Callable[[Site, Access, int], AbstractAsy
     from scope_ptz.serve.mcp.http import mcp_application, serve_mcp
 
     @asynccontextmanager
-    async def only_mcp(site: Site, access: Access, port: int) -> AsyncIterator[int]:
+    async def serve_only_mcp(site: Site, access: Access, port: int) -> AsyncIterator[int]:
         async with (
             serve_mcp(site, access) as route,
             serve(site, access, port=port, app=mcp_application(access, route)) as bound_port,
         ):
             yield bound_port
 
-    return only_mcp
+    return serve_only_mcp
 
 
 def _site_factory(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[[], Site]:
@@ -171,7 +171,7 @@ def _site_factory(flags: ServerFlags, runs_dir: Path | None = None) -> Callable[
     return lambda: Site(served_cameras, options)
 
 
-async def _end_of_input() -> None:
+async def _wait_for_end_of_input() -> None:
     """Wait until standard input is closed, which also happens if the program that started the server crashes."""
     import asyncio
     import os
@@ -228,10 +228,10 @@ def remove_token(name: str, tokens: Path | None) -> None:
 def _token_file(tokens: Path | None) -> TokenFile:
     from scope_ptz.settings import load_settings
 
-    return _tokens(tokens or load_settings().tokens)
+    return _read_token_file(tokens or load_settings().tokens)
 
 
-def _tokens(path: Path) -> TokenFile:
+def _read_token_file(path: Path) -> TokenFile:
     from scope_ptz.serve.security.tokens import TokenFile
 
     return TokenFile(path)

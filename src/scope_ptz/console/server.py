@@ -70,8 +70,8 @@ async def serve_console(site: Site, access: Access, *, port: int = 8000) -> Asyn
     async with mcp_route(site, access) as mcp:
         page = st.App(FOLDER / "ui.py", routes=[sign_in_route(access), api, mcp, assets])
         guarded_page = AccessMiddleware(page, access, page_policy=PAGE_POLICY)
-        async with page.lifespan()(Starlette()), serve(site, access, port=port, app=guarded_page) as bound:
-            yield bound
+        async with page.lifespan()(Starlette()), serve(site, access, port=port, app=guarded_page) as bound_port:
+            yield bound_port
 
 
 class _Assets(StaticFiles):

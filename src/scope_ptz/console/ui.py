@@ -1,7 +1,7 @@
 """The script that Streamlit runs for each browser tab.
 
 The script only adds one component, which contains the whole page. The component sends its requests directly to the API, so a
-command never waits for the script to rerun, and a rerun never interrupts the live picture.
+command never waits for the script to rerun, and a rerun never interrupts the live view.
 """
 
 from pathlib import Path

@@ -52,12 +52,12 @@ def is_plural(word: str) -> bool:
 def plural(phrase: str) -> str:
     """Return the plural of a noun phrase, in which only the head noun is inflected."""
     words = phrase.split()
-    head = _head(words)
+    head = _head_index(words)
     words[head] = plural_noun(words[head])
     return " ".join(words)
 
 
-def _head(words: list[str]) -> int:
+def _head_index(words: list[str]) -> int:
     """Return the index of the head noun: the word before the first preposition, otherwise the last word."""
     return next((i for i, word in enumerate(words) if word in _PREPOSITIONS and i > 0), len(words)) - 1
 
@@ -76,7 +76,7 @@ def plural_noun(word: str) -> str:
 def article(phrase: str) -> str:
     """Return the phrase with "a" or "an" before it. A plural phrase, and one with a number at its end, is returned unchanged."""
     words = phrase.split()
-    if (len(words) > 1 and words[-1].isdigit()) or is_plural(words[_head(words)]):
+    if (len(words) > 1 and words[-1].isdigit()) or is_plural(words[_head_index(words)]):
         return phrase
     vowel = phrase[0].lower() in "aeio" or (phrase[0].lower() == "u" and not phrase.lower().startswith(("uni", "use")))
     return f"{'an' if vowel else 'a'} {phrase}"

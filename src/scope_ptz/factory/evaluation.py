@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
-VIEWPOINTS_WITHOUT_PICTURES = 3
+OPEN_VIEWPOINTS_WITHOUT_PICTURES = 3
 """Number of open viewpoints when no frames are rendered. A viewpoint then takes less memory, and tasks often use several."""
 MAX_CACHED_VIEWS = 150
 """Maximum number of views with cached ground truth. Runs are ordered by viewpoint, so consecutive runs share views."""
@@ -93,7 +93,7 @@ def eval_context(
     """
     from scope_ptz.factory.validation_perception import TruthCache
 
-    open_viewpoints = OPEN_VIEWPOINTS if pictures else VIEWPOINTS_WITHOUT_PICTURES
+    open_viewpoints = OPEN_VIEWPOINTS if pictures else OPEN_VIEWPOINTS_WITHOUT_PICTURES
     scenes, cache = Library(scene_search(load_settings()), open_viewpoints), TruthCache(MAX_CACHED_VIEWS)
     backend = evaluation_perception(perception, scenes, seed, cache) if perception is not None else None
 

@@ -11,8 +11,8 @@ from scope_ptz.perception.base import Box
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 CENTRAL_OFFSET = 1 / 6
-"""A target is near the centre if its box is centred in the middle third of the frame: at most this fraction of the frame's width
-and height from the middle."""
+"""Maximum horizontal and vertical distance between the centre of a central box and the centre of the frame, as a fraction of the
+frame's width and height. The box is then centred in the middle third of the frame."""
 
 MAX_START_TILT_OFFSET_DEG = 10.0  # a search starts at most this far above or below START_TILT_DEG
 START_TILT_DEG = -10.0

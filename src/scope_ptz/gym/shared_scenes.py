@@ -16,7 +16,7 @@ _OPEN: WeakValueDictionary[tuple[str, tuple[Path, ...]], Scene] = WeakValueDicti
 """The open scenes, by name and search folders. They are shared through this module, because Gymnasium creates the environments of a
 vector separately and passes them no common object. A scene is closed when no environment uses it."""
 
-_BASES: WeakKeyDictionary[Scene, Scene] = WeakKeyDictionary()
+_ORIGINALS: WeakKeyDictionary[Scene, Scene] = WeakKeyDictionary()
 """The original scene of each open variation. It stays open with the variation, so that other variations can share its layers."""
 
 
@@ -37,7 +37,7 @@ def shared_scene(name: str) -> Scene:
             if varied and number is not None:
                 original = shared_scene(base)
                 scene = original.create_variation(number)
-                _BASES[scene] = original
+                _ORIGINALS[scene] = original
             else:
                 scene = open_scene(name, cache_pictures=True)
             if scene.file.captured is not None:

@@ -33,7 +33,7 @@ CAMERA_SIZE = (1280, 720)
 """Width and height, in pixels, of the frames that the tools take. The benchmark uses the same size."""
 MAX_STEPS = 60  # T_max of the benchmark
 _Action = TypeVar("_Action")
-_STATES = {True: "passed", False: "failed", None: "undecided"}
+_CHECK_STATES = {True: "passed", False: "failed", None: "undecided"}
 
 
 class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
@@ -104,7 +104,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
             lambda: EpisodeRecorder.begin(self.task.instruction, self._world.camera, context, self._world.camera_geometry)
         )
         self._steps, self._ended = 0, False
-        observation = self._observe("", counts=True)
+        observation = self._observe("", is_look=True)
         checks = self._checks()
         self._rewards.begin(checks)
         return observation, self._info(checks)
@@ -123,7 +123,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         self._steps += 1
         terminated, truncated = finish is not None, finish is None and self._steps >= self._max_steps
         self._ended = terminated or truncated
-        observation = self._observe(result, counts=not self._ended)
+        observation = self._observe(result, is_look=not self._ended)
         verdict = self._verdict(finish) if self._ended else None
         checks = self._checks() if verdict is None else verdict.checks
         terms = self._rewards.terms(checks, verdict)
@@ -142,10 +142,10 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
         outcome = self._world.run(lambda: self._recorder.call(call.name, call.arguments))
         return f"Error: {outcome.error}" if outcome.error is not None else str((outcome.result or {}).get("message", ""))
 
-    def _observe(self, result: str, *, counts: bool) -> Observation:
-        """Return an observation. ``counts`` is true if the agent can still act on the frame, which then counts as a look."""
+    def _observe(self, result: str, *, is_look: bool) -> Observation:
+        """Return an observation. ``is_look`` is true if the agent can still act on the frame, so that it counts as a look."""
         world, position = self._world, self._recorder.position
-        if counts:
+        if is_look:
             view = world.geometry.view(position.pose)
             self._recorder.planner_views.append(scoring.Observation(position.viewpoint, view, world.time_s, "planner"))
         return {
@@ -169,7 +169,7 @@ class _TaskEnv(gymnasium.Env[Observation, _Action], Generic[_Action]):
             "task": self.task.id,
             "viewpoint": self._recorder.position.viewpoint,
             "scene_time_s": self._world.time_s,
-            "checks": {check.name: _STATES[check.passed] for check in checks},
+            "checks": {check.name: _CHECK_STATES[check.passed] for check in checks},
             "reward_terms": dict(terms or {}),
         }
         if verdict is not None:

@@ -27,10 +27,10 @@ _TEXT_ARGUMENT = {
     "track_object": "description",
 }  # fmt: skip
 """The argument of each tool that is passed in ``action["text"]``."""
-_NEUTRAL: Mapping[str, Any] = {
+_DEFAULT_FIELDS: Mapping[str, Any] = {
     "tool": 0, "pan_deg": 0.0, "tilt_deg": 0.0, "zoom_factor": 1.0, "zoom_limit": 0, "view": 0, "duration_s": 10.0, "text": "",
 }  # fmt: skip
-_NUMBERS = {"pan_deg": (-360.0, 360.0), "tilt_deg": (-180.0, 180.0), "zoom_factor": (0.02, 50.0), "duration_s": (0.1, 600.0)}
+_NUMBER_RANGES = {"pan_deg": (-360.0, 360.0), "tilt_deg": (-180.0, 180.0), "zoom_factor": (0.02, 50.0), "duration_s": (0.1, 600.0)}
 """The ranges of the numeric fields: degrees, degrees, factor of the current magnification, seconds."""
 
 
@@ -52,7 +52,9 @@ class Call:
 
 def tool_space() -> spaces.Dict:
     """Return the space of actions. Fields that the selected tool does not use are ignored."""
-    numbers: dict[str, spaces.Space[Any]] = {name: spaces.Box(low, high, (), np.float64) for name, (low, high) in _NUMBERS.items()}
+    numbers: dict[str, spaces.Space[Any]] = {
+        name: spaces.Box(low, high, (), np.float64) for name, (low, high) in _NUMBER_RANGES.items()
+    }
     return spaces.Dict(
         {
             "tool": spaces.Discrete(len(CHOICES)),
@@ -129,7 +131,7 @@ def tool_action(name: str, /, **arguments: Any) -> dict[str, Any]:
     """
     tool, checked = parse_call(name, arguments)
     fields = checked.model_dump(exclude_none=True)
-    action = {**_NEUTRAL, "tool": CHOICES.index(tool.name)}
+    action = {**_DEFAULT_FIELDS, "tool": CHOICES.index(tool.name)}
     if "zoom_percent" in fields:
         fields["zoom_factor"] = 1 + fields.pop("zoom_percent") / 100
     if name in _TEXT_ARGUMENT:
@@ -153,12 +155,12 @@ def finish_action(text: str, outcome: str = "answered") -> dict[str, Any]:
     """
     if outcome not in OUTCOMES:
         raise UnknownNameError("outcome", outcome, OUTCOMES)
-    return _convert_types({**_NEUTRAL, "tool": CHOICES.index(outcome), "text": clean_text(text)[:MAX_PHRASE_CHARS]})
+    return _convert_types({**_DEFAULT_FIELDS, "tool": CHOICES.index(outcome), "text": clean_text(text)[:MAX_PHRASE_CHARS]})
 
 
 def _convert_types(action: dict[str, Any]) -> dict[str, Any]:
     """Convert the fields of an action to the types of the space. Raises ``InputError`` for a number outside its range."""
-    for name, (low, high) in _NUMBERS.items():
+    for name, (low, high) in _NUMBER_RANGES.items():
         if not low <= action[name] <= high:
             raise InputError(f"{name} must be from {low:g} to {high:g} in an action; got {action[name]:g}. Split the move.")
         action[name] = np.array(action[name], np.float64)

@@ -19,7 +19,7 @@ _COURTESIES = frozenset({"please", "thanks", "thank you"})
 
 
 def yes_or_no(text: str) -> Literal["yes", "no"] | None:
-    """Return whether a text only says yes or no; None for other texts, such as "yes, but only 10 degrees"."""
+    """Return "yes" or "no" for text that says only that; None for other text, such as "yes, but only 10 degrees"."""
     parts = [part for part in re.split(r"[\s,.!]*[,.!][\s,.!]*", text.strip().replace("’", "'")) if part]
     if not parts or all(part.lower() in _COURTESIES for part in parts):
         return None

@@ -90,7 +90,7 @@ def plan(
 
 @dataclass(slots=True)
 class _AssumedWorld:
-    """A fake camera and perception backend for plans. It tracks the pose and finds every object."""
+    """A fake camera and perception backend for plans, which tracks the pose and finds every object."""
 
     pose: Pose
     limits: Limits

@@ -43,8 +43,8 @@ async def serve(site: Site, access: Access, *, port: int = 8000, app: ASGIApp | 
     async with site, AsyncExitStack() as stack:
         if app is None:
             app = application(site, access, await stack.enter_async_context(mcp_route(site, access)))
-        async with serve_app(app, listener, site.closing) as bound:
-            yield bound
+        async with serve_app(app, listener, site.closing) as bound_port:
+            yield bound_port
 
 
 @asynccontextmanager
@@ -57,15 +57,15 @@ async def serve_app(app: ASGIApp, listener: socket.socket, closing: asyncio.Even
         closing: Set when the server shuts down, so that streams end.
     """
     server = _Server(configuration(app))
-    running = asyncio.create_task(server.serve([listener]))
+    serving = asyncio.create_task(server.serve([listener]))
     try:
-        await _wait_until_ready(server, running)
+        await _wait_until_ready(server, serving)
         yield int(listener.getsockname()[1])
     finally:
         with anyio.CancelScope(shield=True):
             closing.set()
             server.should_exit = True
-            await asyncio.gather(running, return_exceptions=True)
+            await asyncio.gather(serving, return_exceptions=True)
 
 
 @asynccontextmanager
@@ -110,13 +110,13 @@ def configuration(app: ASGIApp) -> uvicorn.Config:
     )
 
 
-async def _wait_until_ready(server: _Server, running: asyncio.Task[None]) -> None:
+async def _wait_until_ready(server: _Server, serving: asyncio.Task[None]) -> None:
     """Wait until a server is listening. If its task ends before that, raise the task's error."""
     waiting = asyncio.ensure_future(server.ready.wait())
-    await asyncio.wait({waiting, running}, return_when=asyncio.FIRST_COMPLETED)
+    await asyncio.wait({waiting, serving}, return_when=asyncio.FIRST_COMPLETED)
     waiting.cancel()
-    if running.done():
-        running.result()
+    if serving.done():
+        serving.result()
 
 
 class _Server(uvicorn.Server):

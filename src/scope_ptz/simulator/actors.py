@@ -123,10 +123,10 @@ def _appearances_of(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, flo
 def _actors_in_view(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[ActorInView]:
     in_view = []
     for actor, time_s in actors:
-        sheet, place = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
-        if sheet is not None and place is not None:
-            phase = place.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
-            in_view.append(ActorInView(actor, sheet, viewpoint.offset(place.position_m), place.path_s, phase))
+        sheet, position = viewpoint.sheets.get(actor.number), path_position(actor, time_s)
+        if sheet is not None and position is not None:
+            phase = position.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+            in_view.append(ActorInView(actor, sheet, viewpoint.offset(position.position_m), position.path_s, phase))
     return sorted(in_view, key=lambda a: (-float(np.linalg.norm(a.offset_m)), a.actor.number))
 
 
@@ -160,7 +160,7 @@ def actor_extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """Return the actor's current silhouette, including hidden parts."""
     silhouette = viewpoint.sprites.distances(appearance.sheet, appearance.sprite) > 0
     measures = measure(silhouette.astype(np.uint16), appearance.view)
-    if not len(measures.numbers):
+    if not len(measures.ids):
         return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
     x0, y0, x1, y1 = measures.box[0]
     corners = appearance.view.directions(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
@@ -184,21 +184,21 @@ def place_of(appearance: Appearance, projection: Projection) -> Place | None:
     return None if tile_in_view is None else tile_in_view.place
 
 
-def draw_numbers(
+def draw_instance_ids(
     viewpoint: Viewpoint,
     projection: Projection,
     appearance: Appearance,
     depth_m: NDArray[np.float32],
-    numbers: NDArray[np.uint16],
+    ids: NDArray[np.uint16],
 ) -> None:
-    """Draw one actor into a view's instance numbers, in place.
+    """Draw one actor into a view's instance IDs, in place.
 
     Args:
         viewpoint: The viewpoint with the actor's sprites.
         projection: Projection of the view.
         appearance: The actor at this instant.
         depth_m: Distances to the static world in the rows and columns in which the actor may be visible; see ``place_of``.
-        numbers: (H, W) instance numbers to draw into.
+        ids: (H, W) instance IDs to draw into.
     """
     sprite = Tiles([appearance.view])
     tile_in_view = next(iter(sprite.in_view(projection)), None)
@@ -210,7 +210,7 @@ def draw_numbers(
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     static_m = depth_m * (1 + TOLERANCE_FRACTION) + TOLERANCE_M
-    numbers[place][(distance_m > 0) & (distance_m <= static_m)] = appearance.actor.number
+    ids[place][(distance_m > 0) & (distance_m <= static_m)] = appearance.actor.number
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:

@@ -63,18 +63,18 @@ class Outlines:
 
     def __init__(self, outlines: Sequence[NDArray[np.float64]]) -> None:
         self._outlines = list(outlines)
-        middles = np.array([outline.mean(axis=0) for outline in outlines]).reshape(-1, 3)
-        self._middles = middles
-        reach = (angle_between_deg(outline, middle).max() for outline, middle in zip(outlines, middles, strict=True))
+        centres = np.array([outline.mean(axis=0) for outline in outlines]).reshape(-1, 3)
+        self._centres = centres
+        reach = (angle_between_deg(outline, centre).max() for outline, centre in zip(outlines, centres, strict=True))
         self._reach_deg = np.array(list(reach))
 
     def mask_of_small_objects(self, view: Perspective) -> NDArray[np.uint8]:
         """Return an (H, W) mask that covers the small objects in a view."""
         mask = np.zeros((view.height, view.width), np.uint8)
         size = np.array([view.width, view.height])
-        apart_deg = angle_between_deg(self._middles, view.directions((0.5, 0.5)))
+        separation_deg = angle_between_deg(self._centres, view.directions((0.5, 0.5)))
         small_deg = math.degrees(SMALL_PX / view.focal_px)
-        for k in np.flatnonzero((apart_deg <= view.max_off_axis_deg + self._reach_deg) & (self._reach_deg < small_deg)):
+        for k in np.flatnonzero((separation_deg <= view.max_off_axis_deg + self._reach_deg) & (self._reach_deg < small_deg)):
             points = view.points(self._outlines[k]) * size
             if not np.isnan(points).any() and np.ptp(points, axis=0).max() <= SMALL_PX:
                 cv2.fillConvexPoly(mask, cv2.convexHull(np.rint(points).astype(np.int32)), 255)
@@ -178,8 +178,8 @@ def _opacity(tiles: Tiles, index: int, outlines: Outlines) -> Floats:
     )
     details = outlines.mask_of_small_objects(view)
     if details.any():
-        away = np.asarray(cv2.distanceTransform(255 - details, cv2.DIST_L2, 5))
-        opacity = np.maximum(opacity, np.minimum(_smoothstep(1 - away / DETAIL_FADE_PX), _smoothstep(inside / JOINT_PX)))
+        distance_px = np.asarray(cv2.distanceTransform(255 - details, cv2.DIST_L2, 5))
+        opacity = np.maximum(opacity, np.minimum(_smoothstep(1 - distance_px / DETAIL_FADE_PX), _smoothstep(inside / JOINT_PX)))
     return opacity
 
 
@@ -198,8 +198,8 @@ def _distance_to_soft_px(tiles: Tiles, index: int, reach_px: float) -> Floats:
         if tile_in_view.polygon is not None and tiles.views[tile_in_view.tile].focal_px >= SHARP_FRACTION * view.focal_px:
             cv2.fillConvexPoly(sharp, tile_in_view.polygon // COARSE_PX, 255, shift=POLYGON_SHIFT)
     # If the whole neighbourhood is sharp, the distance transform returns very large distances, so they are limited to the padding.
-    away = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
-    fine = cv2.resize(away, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
+    distance_px = np.minimum(cv2.distanceTransform(sharp, cv2.DIST_L2, 5), pad) * np.float32(COARSE_PX)
+    fine = cv2.resize(distance_px, (sharp.shape[1] * COARSE_PX, sharp.shape[0] * COARSE_PX), interpolation=cv2.INTER_LINEAR)
     return np.asarray(fine[pad : pad + view.height, pad : pad + view.width])
 
 

@@ -13,12 +13,12 @@ from scope_ptz.simulator.pack import Scene
 
 
 @dataclass(frozen=True, slots=True)
-class Paragraph:
+class CardSection:
     """A section of a scene card.
 
     Attributes:
         title: The heading.
-        lines: Pairs of a label, which may be empty, and a text.
+        lines: Pairs of a label, which may be empty, and its text.
     """
 
     title: str
@@ -35,29 +35,29 @@ def megabytes(size: int) -> str:
     return f"{size / 1e6:.1f} MB"
 
 
-def card(scene: Scene) -> Iterator[Paragraph]:
+def card(scene: Scene) -> Iterator[CardSection]:
     """Yield the sections of a scene's card."""
     file = scene.file
     for viewpoint in file.viewpoints:
         presets = [p for p in file.presets if p.viewpoint == viewpoint.name]
-        yield Paragraph(f"Viewpoint {viewpoint.name}", (("", _place(scene, viewpoint)), *(_preset(scene, p) for p in presets)))
+        yield CardSection(f"Viewpoint {viewpoint.name}", (("", _place(scene, viewpoint)), *(_preset(scene, p) for p in presets)))
     if file.captured is not None:
-        yield Paragraph("Captured", tuple(_capture_details(scene, file.captured)))
-        yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
+        yield CardSection("Captured", tuple(_capture_details(scene, file.captured)))
+        yield CardSection("Checksums (SHA-256)", tuple(_checksums(scene)))
         return
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
-    yield Paragraph(
+    yield CardSection(
         f"{len(file.instances)} static and {len(file.actors)} moving objects in {len(categories)} categories", (("", inventory),)
     )
     readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
     texts = "; ".join(f"{text} ({n} times)" if n > 2 else text for text, n in readable.items())
-    yield Paragraph(f"{len(file.texts)} texts", (("", texts or "none"),))
+    yield CardSection(f"{len(file.texts)} texts", (("", texts or "none"),))
     moving_objects = tuple((a.name, _presence(a.waypoints[0][0], a.waypoints[-1][0], a.period_s)) for a in file.actors)
-    yield Paragraph("Moving objects", moving_objects or (("", "none"),))
-    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "none"),))
-    yield Paragraph("How it was made", tuple(_production(scene)))
-    yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
+    yield CardSection("Moving objects", moving_objects or (("", "none"),))
+    yield CardSection("Deliberately absent", (("", ", ".join(file.absent) or "none"),))
+    yield CardSection("How it was made", tuple(_production(scene)))
+    yield CardSection("Checksums (SHA-256)", tuple(_checksums(scene)))
 
 
 def markdown(scene: Scene, picture: str | None) -> str:
@@ -70,12 +70,12 @@ def markdown(scene: Scene, picture: str | None) -> str:
     parts = [f"# {scene.file.title}", f"`{scene.name}`, version {scene.file.version}"]
     if picture:
         parts.append(f"![All presets of {scene.name}]({picture})")
-    for paragraph in card(scene):
-        parts.append(f"## {paragraph.title}")
-        if len(paragraph.lines) == 1 and not paragraph.lines[0][0]:
-            parts.append(paragraph.lines[0][1])
+    for section in card(scene):
+        parts.append(f"## {section.title}")
+        if len(section.lines) == 1 and not section.lines[0][0]:
+            parts.append(section.lines[0][1])
         else:
-            parts.append("\n".join(f"- **{name}**: {body}" if name else f"- {body}" for name, body in paragraph.lines))
+            parts.append("\n".join(f"- **{name}**: {body}" if name else f"- {body}" for name, body in section.lines))
     return "\n\n".join(parts) + "\n"
 
 
@@ -127,7 +127,7 @@ def _production(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _panoramas(manifest: Manifest) -> tuple[tuple[str, Layer], ...]:
-    return ("panorama", manifest.base), ("instance numbers", manifest.ids), ("depth", manifest.depth)
+    return ("panorama", manifest.base), ("instance IDs", manifest.ids), ("depth", manifest.depth)
 
 
 def _checksums(scene: Scene) -> Iterator[tuple[str, str]]:

@@ -99,8 +99,8 @@ class Clearance:
         if cell_px < MIN_CELL_PX:
             return slice(0, needed.shape[0]), slice(0, needed.shape[1])
         rows, columns = (np.arange(0, size, cell_px) for size in needed.shape)
-        middles = (span.start + first + cell_px / 2 for span, first in zip(part, (rows, columns), strict=True))
-        row, column = self._blocks(projection, *middles)
+        centres = (span.start + first + cell_px / 2 for span, first in zip(part, (rows, columns), strict=True))
+        row, column = self._blocks(projection, *centres)
         drawn = np.maximum.reduceat(np.maximum.reduceat(needed, rows), columns, axis=1) > 0
         clear = self._nearest_m[row, column] * np.float32(1 + TOLERANCE_FRACTION) >= far_m - TOLERANCE_M
         if ground_m < 0:

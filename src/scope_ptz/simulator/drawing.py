@@ -44,20 +44,20 @@ class ActorPatch:
     def draw(self, image: NDArray[np.uint8]) -> None:
         """Blend the patch over an (H, W, 3) image, in place."""
         part = image[self.place]
-        through = cv2.cvtColor(cv2.bitwise_not(cv2.extractChannel(self.colour, 3)), cv2.COLOR_GRAY2RGB)
-        cv2.multiply(part, through, dst=through, scale=1 / 255)
-        cv2.add(through, cv2.cvtColor(self.colour, cv2.COLOR_RGBA2RGB), dst=through)
-        part[...] = through
+        blended = cv2.cvtColor(cv2.bitwise_not(cv2.extractChannel(self.colour, 3)), cv2.COLOR_GRAY2RGB)
+        cv2.multiply(part, blended, dst=blended, scale=1 / 255)
+        cv2.add(blended, cv2.cvtColor(self.colour, cv2.COLOR_RGBA2RGB), dst=blended)
+        part[...] = blended
 
 
 def actor_patch(viewpoint: Viewpoint, projection: Projection, actor: ActorInView) -> ActorPatch | None:
     """Return the visible part of an actor in a view, or None if the actor is not visible."""
-    choice = viewpoint.sprite_choice(actor.actor, actor.sheet)
+    selector = viewpoint.sprite_selector(actor.actor, actor.sheet)
     cosine = float(actor.offset_m @ projection.directions((0.5, 0.5)) / np.linalg.norm(actor.offset_m))
-    if math.degrees(math.acos(max(-1.0, min(1.0, cosine)))) > projection.max_off_axis_deg + choice.reach_deg(actor.offset_m):
+    if math.degrees(math.acos(max(-1.0, min(1.0, cosine)))) > projection.max_off_axis_deg + selector.reach_deg(actor.offset_m):
         return None
-    now = Aspect(actor.offset_m, choice.heading(actor.path_s))
-    layers = [_Layer.of(viewpoint, actor, weighted, now) for weighted in choice.choose(now, actor.phase)]
+    now = Aspect(actor.offset_m, selector.heading(actor.path_s))
+    layers = [_Layer.of(viewpoint, actor, weighted, now) for weighted in selector.choose(now, actor.phase)]
     place = _place(layers, projection)
     if place is None:
         return None
@@ -230,9 +230,9 @@ def _place(layers: Sequence[_Layer], projection: Projection) -> Place | None:
     rays = np.stack([layer.outline() for layer in layers])
     outlines = projection.points(rays)
     if np.isnan(outlines).any():  # partly behind the camera
-        middles = rays.mean(axis=1)
-        reach_deg = angle_between_deg(rays, middles[:, None]).max(axis=1)
-        near = angle_between_deg(middles, projection.directions((0.5, 0.5))) <= reach_deg + projection.max_off_axis_deg
+        centres = rays.mean(axis=1)
+        reach_deg = angle_between_deg(rays, centres[:, None]).max(axis=1)
+        near = angle_between_deg(centres, projection.directions((0.5, 0.5))) <= reach_deg + projection.max_off_axis_deg
         outlines = outlines[near]
     places = [p for p in bounds(projection, outlines) if p[0].start < p[0].stop and p[1].start < p[1].stop]
     if not places:

@@ -1,4 +1,4 @@
-"""Read and write the picture files of a pack: lossy colour, exact instance numbers and distances.
+"""Read and write the picture files of a pack: lossy colour, exact instance IDs and distances.
 
 The file suffix determines the encoding.
 """
@@ -65,7 +65,7 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
 
 
 def read_ids(path: Path) -> NDArray[np.uint16]:
-    """Return (H, W) numbers from 0 to 65535, exactly as written: instance numbers or distance codes."""
+    """Return (H, W) numbers from 0 to 65535, exactly as written: instance IDs or distance codes."""
     return decode_numbers(read_coded_numbers(path))
 
 

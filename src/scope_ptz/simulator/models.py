@@ -5,9 +5,9 @@ Layout of a scene folder::
     scene.json                    SceneFile: instances, texts, presets, actors, absent objects
     <viewpoint>/manifest.json     Manifest: geometry of every layer, independent of the camera's optics, with checksums
     <viewpoint>/base.avif         equirectangular colour
-    <viewpoint>/ids.webp          equirectangular instance numbers, 16 bit
+    <viewpoint>/ids.webp          equirectangular instance IDs, 16 bit
     <viewpoint>/depth.webp        equirectangular distance, 16 bit, logarithmic
-    <viewpoint>/tiles/NN.avif     perspective colour where more detail is needed, NN-ids.webp its instance numbers
+    <viewpoint>/tiles/NN.avif     perspective colour where more detail is needed, NN-ids.webp its instance IDs
     <viewpoint>/actors/ID.avif    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
     <viewpoint>/seen.png          captured scenes only: which parts of the panorama were seen
 
@@ -26,7 +26,7 @@ FORMAT_VERSION = 1
 """Version of the pack format. It increases when older programs could misread a pack."""
 
 INJECTED_FROM = 60000
-"""First instance number for objects that are injected at run time. A bake uses only smaller numbers."""
+"""First instance ID for objects that are injected at run time. A bake uses only smaller IDs."""
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vec3 = tuple[Number, Number, Number]
@@ -40,7 +40,10 @@ class Model(BaseModel):
 
 
 class SceneInstance(Model):
-    """One annotated object. ``box_min_m`` and ``box_max_m`` span its axis-aligned box in world coordinates."""
+    """One annotated object. ``box_min_m`` and ``box_max_m`` span its axis-aligned box in world coordinates.
+
+    ``id`` identifies it in the scene file. ``number`` is its instance ID, the value of its pixels in the layers.
+    """
 
     id: str
     number: int = Field(gt=0, lt=INJECTED_FROM)
@@ -206,7 +209,7 @@ MIN_RELATIVE_DENSITY = 0.9
 
 
 class Tile(Model):
-    """A sharper perspective picture and its instance numbers (same size), aimed at pan/tilt without roll."""
+    """A sharper perspective picture and its instance IDs (same size), aimed at pan/tilt without roll."""
 
     pan_deg: Number
     tilt_deg: Number

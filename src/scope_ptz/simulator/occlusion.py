@@ -1,4 +1,4 @@
-"""Distances to the static world in a view, with edges as sharp as those of the instance numbers. They determine occlusion."""
+"""Distances to the static world in a view, sharpened along the outlines of instances. They determine occlusion."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ SEARCH_RADII_TEXELS = (1.0, 2.0)
 _NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
 """The eight neighbouring pixels, in the order in which they are tried."""
 
-Numbers = NDArray[np.uint8] | NDArray[np.uint16]
+Ids = NDArray[np.uint8] | NDArray[np.uint16]
 Positions = NDArray[Any]
 
 
 def outlined_depth_view(
-    viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16], part: Place | None = None
+    viewpoint: Viewpoint, projection: Projection, ids: NDArray[np.uint16], part: Place | None = None
 ) -> NDArray[np.float32]:
-    """Return the distances from ``depth_view`` with edges as sharp as in ``numbers``, the view's (H, W) instance numbers.
+    """Return the distances from ``depth_view``, with edges moved to the outlines of the instances.
 
     If a pixel's distance was measured on a different instance, it is replaced with the distance of a nearby pixel that was measured
     on the correct instance.
@@ -35,15 +35,13 @@ def outlined_depth_view(
     Args:
         viewpoint: The viewpoint.
         projection: The view.
-        numbers: The view's instance numbers.
+        ids: The view's (H, W) instance IDs.
         part: The rows and columns that are needed; the default is the whole view.
     """
     whole = (slice(0, projection.height), slice(0, projection.width))
     around, inner = _add_margin(viewpoint, projection, part or whole)
     where, metres = _stored_depth(viewpoint, projection, around)
-    return _sharpen_edges(metres, viewpoint.owner_atlas.sample(where), numbers[around], None, _texel_px(viewpoint, projection))[
-        inner
-    ]
+    return _sharpen_edges(metres, viewpoint.owner_atlas.sample(where), ids[around], None, _texel_px(viewpoint, projection))[inner]
 
 
 def outlined_depth_part(
@@ -61,9 +59,9 @@ def outlined_depth_part(
     around, inner = _add_margin(viewpoint, projection, part, stride)
     every = slice(None, None, stride)
     where, metres = _stored_depth(viewpoint, projection, around, stride)
-    ids = viewpoint.id_atlas
-    # Reading codes is faster than reading numbers. Only small instances share a code.
-    codes = ids.sample_codes(view_map(viewpoint, ids, projection, around)[every, every])
+    id_atlas = viewpoint.id_atlas
+    # Reading codes is faster than reading IDs. Only small instances share a code.
+    codes = id_atlas.sample_codes(view_map(viewpoint, id_atlas, projection, around)[every, every])
     mask = np.zeros(metres.shape, bool)
     mask[inner] = needed[every, every]
     texel_px = _texel_px(viewpoint, projection) / stride
@@ -104,18 +102,18 @@ def _stored_depth(
 
 
 def _sharpen_edges(
-    metres: NDArray[np.float32], owners: Numbers, numbers: Numbers, needed: NDArray[np.bool_] | None, texel_px: float
+    metres: NDArray[np.float32], owners: Ids, ids: Ids, needed: NDArray[np.bool_] | None, texel_px: float
 ) -> NDArray[np.float32]:
-    """Return distances with edges as sharp as in ``numbers``. All arrays have the same shape.
+    """Return distances with edges moved to the outlines in ``ids``. All arrays have the same shape.
 
     Args:
         metres: Distances.
-        owners: The instances on which the distances were measured.
-        numbers: The instances that the pixels show.
+        owners: The IDs (or their codes) of the instances on which the distances were measured.
+        ids: The IDs (or their codes) of the instances that the pixels show.
         needed: Mask of the pixels to correct; by default, all pixels.
         texel_px: Size of a depth-layer texel in pixels.
     """
-    same = owners == numbers
+    same = owners == ids
     wrong = ~same if needed is None else needed & ~same
     pixels = np.flatnonzero(wrong)
     if not len(pixels):
@@ -123,7 +121,7 @@ def _sharpen_edges(
     # Flat indices, because NumPy reads and writes them faster than pairs.
     height, width = metres.shape
     refined, found, owner = metres.copy().ravel(), same.ravel(), owners.ravel()
-    expected, sources = numbers[wrong], metres.ravel()
+    expected, sources = ids[wrong], metres.ravel()
     ys, xs = np.divmod(pixels, width)
     for reach in SEARCH_RADII_TEXELS:
         near = np.empty((len(_NEIGHBOURS), len(pixels)), pixels.dtype)

@@ -159,17 +159,17 @@ class Scene:
 
     @cached_property
     def by_number(self) -> Mapping[int, SceneInstance | SceneActor]:
-        """Instances and actors by their number in the instance layers."""
+        """Instances and actors by instance ID, the value of their pixels."""
         return {thing.number: thing for thing in self.things}
 
     @cached_property
     def by_id(self) -> Mapping[str, SceneInstance | SceneActor]:
-        """Instances and actors by their id."""
+        """Instances and actors by their ``id`` in the scene file."""
         return {thing.id: thing for thing in self.things}
 
     @cached_property
     def families(self) -> Mapping[str, frozenset[int]]:
-        """For each id, the instance numbers of the whole object that it belongs to: the parent and all of its parts."""
+        """For each instance's ``id``, the instance IDs of the whole object that it belongs to: the parent and all of its parts."""
         parents = {i.id: i.parent for i in self.file.instances}
 
         def root(name: str) -> str:
@@ -212,7 +212,7 @@ class Scene:
 
 
 def _check_references(file: SceneFile, folder: Path) -> None:
-    """Check that references between the tables are valid and that ids and numbers are unique."""
+    """Check that references between the tables are valid and that each ``id`` and each instance ID is unique."""
     objects: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
     ids, numbers = {t.id for t in objects}, {t.number for t in objects}
     viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}

@@ -25,11 +25,11 @@ class Pictures:
         return self._check_size(layer, layers.read_colour(self.verify(layer)))
 
     def numbers(self, layer: Layer) -> NDArray[np.uint16]:
-        """Return a layer of (H, W) instance numbers (0 = not annotated) or distance codes."""
+        """Return a layer of (H, W) instance IDs (0 = not annotated) or distance codes."""
         return self._check_size(layer, layers.read_ids(self.verify(layer)))
 
     def coded_numbers(self, layer: Layer) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """Return a number layer as stored in the file; ``layers.decode_numbers`` decodes any of its rows."""
+        """Return a layer of IDs or distance codes as stored in the file; ``layers.decode_numbers`` decodes any of its rows."""
         return self._check_size(layer, layers.read_coded_numbers(self.verify(layer)))
 
     def verify(self, layer: Layer) -> Path:

@@ -101,7 +101,7 @@ class Prefetch:
         atlas.ensure_scales(0, sorted({suitable_scale(atlas, panorama_density(atlas), d) for d in self._densities}))
 
     def _occlusion(self) -> None:
-        """Read the layers that determine occlusion, and the instance numbers of the tiles around the actors' paths."""
+        """Read the layers that determine occlusion, and the instance IDs of the tiles around the actors' paths."""
         viewpoint = self._viewpoint
         if not viewpoint.manifest.actors:
             return
@@ -150,13 +150,13 @@ class Prefetches:
         self._cancelled = False
         self._lock = threading.Lock()
 
-    def start(self, start: Callable[[], Prefetch]) -> None:
-        """Start a prefetch. If ``cancel`` has been called, the prefetch is cancelled immediately.
+    def start(self, create: Callable[[], Prefetch]) -> None:
+        """Start the prefetch that ``create`` returns. If ``cancel`` has been called, the prefetch is cancelled immediately.
 
         The call blocks while the table of tiles is read, so callers may run it in a worker thread, and may be cancelled before it
         returns.
         """
-        prefetch = start()
+        prefetch = create()
         with self._lock:
             self._started.append(prefetch)
             if self._cancelled:

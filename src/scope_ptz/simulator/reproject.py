@@ -39,7 +39,7 @@ def sample_colours(atlas: Atlas, positions: Map) -> NDArray[np.uint8]:
 
 
 def id_view(viewpoint: Viewpoint, projection: Projection, part: Place | None = None) -> NDArray[np.uint16]:
-    """Return the static world's (H, W) instance numbers in a view or a part of it; 0 where nothing is annotated."""
+    """Return the static world's (H, W) instance IDs in a view or a part of it; 0 where nothing is annotated."""
     atlas = viewpoint.id_atlas
     return atlas.sample(view_map(viewpoint, atlas, projection, part))
 
@@ -66,7 +66,7 @@ def distances_m(viewpoint: Viewpoint, directions: NDArray[np.float64]) -> tuple[
         directions: (n, 3) unit vectors in camera coordinates.
 
     Returns:
-        (n,) metres, infinite for the sky, and (n,) instance numbers.
+        (n,) metres, infinite for the sky, and (n,) instance IDs.
     """
     viewpoint.owner_atlas.ensure(0)
     slot, band = viewpoint.depth_atlas.ensure(0), viewpoint.manifest.band

@@ -38,18 +38,18 @@ class TextGeometry:
         angles = [(text, _angle_deg(text, viewpoint)) for text in texts]
         self.texts = [text for text, angle_deg in angles if angle_deg < 90.0]
         self.angle_deg = [angle_deg for _, angle_deg in angles if angle_deg < 90.0]
-        number = len(self.texts)
-        self.rays = np.array([_cells(text, viewpoint) for text in self.texts]).reshape(number, CELLS, 3)
-        self.capitals = np.array([_capital(text, viewpoint) for text in self.texts]).reshape(number, 2, 3)
-        self._corners = np.array([_corners(text, viewpoint) for text in self.texts]).reshape(number, 4, 3)
+        count = len(self.texts)
+        self.rays = np.array([_cells(text, viewpoint) for text in self.texts]).reshape(count, CELLS, 3)
+        self.capitals = np.array([_capital(text, viewpoint) for text in self.texts]).reshape(count, 2, 3)
+        self._corners = np.array([_corners(text, viewpoint) for text in self.texts]).reshape(count, 4, 3)
         objects = {family: k for k, family in enumerate({families[text.parent] for text in self.texts})}
         self._object = np.array([objects[families[text.parent]] for text in self.texts], dtype=np.int64)
         self._object_of_instance = np.full(65536, -1, dtype=np.int64)
         for family, k in objects.items():
             self._object_of_instance[list(family)] = k
-        self._measured = np.zeros(number, dtype=bool)
-        self._nearer = np.zeros((number, CELLS), dtype=bool)
-        self._owners = np.zeros((number, CELLS), dtype=np.uint16)
+        self._measured = np.zeros(count, dtype=bool)
+        self._nearer = np.zeros((count, CELLS), dtype=bool)
+        self._owners = np.zeros((count, CELLS), dtype=np.uint16)
 
     def may_show(self, projection: Projection) -> Ints:
         """Return the indices of the texts whose corners do not all lie beyond one edge of an image."""
@@ -59,21 +59,21 @@ class TextGeometry:
         behind = np.isnan(points).all(axis=(1, 2))
         return np.flatnonzero(~beyond & ~behind)
 
-    def unhidden_mask(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown: NDArray[np.uint16]) -> Flags:
+    def unhidden_mask(self, viewpoint: Viewpoint, texts: Ints, cells: Ints, shown_ids: NDArray[np.uint16]) -> Flags:
         """Return a mask of the cells that are not hidden.
 
-        Instance numbers show whether another object hides a text. Distances show whether a part of the same object hides it, such
+        Instance IDs show whether another object hides a text. Distances show whether a part of the same object hides it, such
         as a shop's awning in front of the name on its door.
 
         Args:
             viewpoint: The viewpoint that this geometry belongs to.
             texts: (n,) index of the text that each cell belongs to.
             cells: (n,) index of each cell in its text's grid.
-            shown: (n,) instance number of the pixel that each cell falls into.
+            shown_ids: (n,) instance ID of the pixel that each cell falls into.
         """
         self._measure(viewpoint, np.unique(texts))
-        same_object = self._object_of_instance[shown] == self._object[texts]
-        return np.asarray(same_object & ~(self._nearer[texts, cells] & (self._owners[texts, cells] == shown)))
+        same_object = self._object_of_instance[shown_ids] == self._object[texts]
+        return np.asarray(same_object & ~(self._nearer[texts, cells] & (self._owners[texts, cells] == shown_ids)))
 
     def _measure(self, viewpoint: Viewpoint, texts: Ints) -> None:
         """Compare text cells with the depth layer, once for each text."""

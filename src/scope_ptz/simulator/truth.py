@@ -17,7 +17,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.runs import measure
 from scope_ptz.simulator.text_geometry import CELLS, text_geometry
 from scope_ptz.simulator.viewpoint import Viewpoint
-from scope_ptz.simulator.views import instance_numbers
+from scope_ptz.simulator.views import instance_ids
 
 MIN_VISIBLE_PX = 100
 """A visible instance covers at least this many pixels of the frame. A person can name an object of about 10 x 10 pixels."""
@@ -113,27 +113,28 @@ class ViewTruth:
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
     """Return the ground truth of an image taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     opened = scene.viewpoint(viewpoint)
-    numbers = instance_numbers(scene, viewpoint, projection, time_s)
+    ids = instance_ids(scene, viewpoint, projection, time_s)
     actors = {a.actor.number: a for a in composited_appearances(scene, opened, time_s)}
-    return ViewTruth(_sightings(scene, opened, actors, projection, numbers), _texts(scene, opened, projection, numbers))
+    return ViewTruth(_sightings(scene, opened, actors, projection, ids), _texts(scene, opened, projection, ids))
 
 
 def _sightings(
-    scene: Scene, viewpoint: Viewpoint, actors: Mapping[int, Appearance], projection: Projection, numbers: NDArray[np.uint16]
+    scene: Scene, viewpoint: Viewpoint, actors: Mapping[int, Appearance], projection: Projection, ids: NDArray[np.uint16]
 ) -> tuple[Sighting, ...]:
-    seen = measure(numbers, projection)
-    pan, tilt = pan_tilt_deg(projection.directions(seen.middle))
+    seen = measure(ids, projection)
+    pan, tilt = pan_tilt_deg(projection.directions(seen.centroid))
     extents = dict[int, Extent]()
-    for k, number in enumerate(seen.numbers.tolist()):
-        if number not in scene.by_number:
+    for k, instance_id in enumerate(seen.ids.tolist()):
+        if instance_id not in scene.by_number:
             raise PackError(
-                f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not contain. Bake the scene again."
+                f"A pixel of scene '{scene.name}' shows instance {instance_id}, which scene.json does not contain. "
+                "Bake the scene again."
             )
-        if number in actors:
-            extents[k] = actor_extent(viewpoint, actors[number])
+        if instance_id in actors:
+            extents[k] = actor_extent(viewpoint, actors[instance_id])
         # An instance without an extent covers less than one pixel of the bake, so it is never visible.
-        elif number in viewpoint.extents:
-            extents[k] = viewpoint.extents[number]
+        elif instance_id in viewpoint.extents:
+            extents[k] = viewpoint.extents[instance_id]
     found = []
     for (k, extent), inside in zip(extents.items(), _fractions_inside(list(extents.values()), projection), strict=True):
         visible_fraction = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
@@ -179,29 +180,29 @@ def _fraction_inside(points: NDArray[np.float64], projection: Projection) -> flo
     return min(1.0 - 1e-9, float(area_inside) / whole) if whole > 0 else 1.0 - 1e-9
 
 
-def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
+def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, ids: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
     """Return the texts that face the camera and are at least partly in the frame."""
     if not scene.file.texts:
         return ()
     geometry = text_geometry(scene, viewpoint)
-    near = geometry.may_show(projection)
-    points = projection.points(geometry.rays[near])
+    candidates = geometry.may_show(projection)
+    points = projection.points(geometry.rays[candidates])
     inside = np.all((points >= 0) & (points < 1), axis=-1)
-    shows = inside.any(axis=-1)
-    near, points, inside = near[shows], points[shows], inside[shows]
-    if not near.size:
+    in_frame = inside.any(axis=-1)
+    candidates, points, inside = candidates[in_frame], points[in_frame], inside[in_frame]
+    if not candidates.size:
         return ()
-    size = np.array([numbers.shape[1], numbers.shape[0]])
+    size = np.array([ids.shape[1], ids.shape[0]])
     texts, cells = np.nonzero(inside)
     pixels = (points[inside] * size).astype(int)
-    unhidden = geometry.unhidden_mask(viewpoint, near[texts], cells, numbers[pixels[:, 1], pixels[:, 0]])
-    count = np.bincount(texts[unhidden], minlength=len(near))
+    unhidden = geometry.unhidden_mask(viewpoint, candidates[texts], cells, ids[pixels[:, 1], pixels[:, 0]])
+    count = np.bincount(texts[unhidden], minlength=len(candidates))
     low = np.where(inside[..., None], points, np.inf).min(axis=1)
     high = np.where(inside[..., None], points, -np.inf).max(axis=1)
     boxes = np.concatenate([low, high], axis=-1)
-    capitals = projection.points(geometry.capitals[near])
+    capitals = projection.points(geometry.capitals[candidates])
     found = []
-    for k, text in enumerate(near.tolist()):
+    for k, text in enumerate(candidates.tolist()):
         cap_height_px = float(np.linalg.norm((capitals[k, 1] - capitals[k, 0]) * size))
         found.append(
             TextSighting(

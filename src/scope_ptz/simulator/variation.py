@@ -58,7 +58,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
     """
     rng = random.Random(f"{file.name}:{number}")
     start_s = round(rng.uniform(0.0, MAX_START_S), 1)
-    moving, held = _itineraries(file.actors, rng)
+    moving, held = _vary_actors(file.actors, rng)
     presets = list(_presets(file, extents, rng))
     home = next(p.viewpoint for p in file.presets if p.name == file.home_preset)
     varied = file.model_copy(
@@ -81,11 +81,11 @@ def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
     return list(groups.values())
 
 
-def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
+def _vary_actors(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
     """Randomly delay each group of companions, hold it at one point on its path, or remove it."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
-        treatment = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
+        treatment = rng.choices(("delayed", "held", "removed"), (4, 4, 2))[0]
         if treatment == "held":
             others = [a for a in actors if a not in group]
             placements = (_hold_group(group, rng) for _ in range(_HOLD_ATTEMPTS))
@@ -93,7 +93,7 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
             if accepted is not None:
                 held += accepted
                 continue
-        if treatment != "gone":
+        if treatment != "removed":
             period_s = _period(group[0], rng)
             delay_s = round(period_s * rng.uniform(0.15, 0.85), 1)
             moving += [a.model_copy(update={"delay_s": a.delay_s + delay_s, "period_s": period_s}) for a in group]
@@ -114,7 +114,7 @@ def _hold_group(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObj
     ]
 
 
-def _place(held: HeldObject) -> tuple[float, float, float, float]:
+def _position_and_heading(held: HeldObject) -> tuple[float, float, float, float]:
     """Return the ground point (x, y, z) in metres and the heading in radians (0 along y) of a held object."""
     path = np.array(held.actor.waypoints)
     path_s = held.time_s - held.actor.delay_s
@@ -125,7 +125,7 @@ def _place(held: HeldObject) -> tuple[float, float, float, float]:
 
 def _is_clear_of(held: HeldObject, others: Sequence[SceneActor]) -> bool:
     """Return whether a held object is far enough from the paths of all other objects."""
-    x, y, _, _ = _place(held)
+    x, y, _, _ = _position_and_heading(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
     return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
 
@@ -140,7 +140,7 @@ def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) ->
 
 def _to_instance(held: HeldObject) -> SceneInstance:
     """Return a held object as a scene instance, without its ``state``, because its sprite still shows it in motion."""
-    actor, (x, y, z, heading) = held.actor, _place(held)
+    actor, (x, y, z, heading) = held.actor, _position_and_heading(held)
     width, length, height = actor.size_m
     c, s = abs(math.cos(heading)), abs(math.sin(heading))
     half_x, half_y = (width * c + length * s) / 2, (width * s + length * c) / 2
@@ -181,8 +181,10 @@ def _pose(old: ScenePreset, rng: random.Random) -> ScenePreset:
 
 
 def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
-    off_deg = abs((one.pan_deg - two.pan_deg + 180) % 360 - 180)
-    return off_deg > 12 or abs(one.tilt_deg - two.tilt_deg) > 8 or max(one.zoom, two.zoom) > 1.6 * min(one.zoom, two.zoom)
+    pan_difference_deg = abs((one.pan_deg - two.pan_deg + 180) % 360 - 180)
+    return (
+        pan_difference_deg > 12 or abs(one.tilt_deg - two.tilt_deg) > 8 or max(one.zoom, two.zoom) > 1.6 * min(one.zoom, two.zoom)
+    )
 
 
 def _objects_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
@@ -191,8 +193,8 @@ def _objects_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
     large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _MIN_OBJECT_PX]
     if not large:
         return 0
-    middles = np.array([np.mean(direction(*np.array(e.hull, dtype=np.float64).T), axis=0) for e in large])
-    points = view.points(middles)
+    centres = np.array([np.mean(direction(*np.array(e.hull, dtype=np.float64).T), axis=0) for e in large])
+    points = view.points(centres)
     with np.errstate(invalid="ignore"):
         return int(np.all((points > 0.05) & (points < 0.95), axis=-1).sum())
 

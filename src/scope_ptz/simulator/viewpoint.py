@@ -25,9 +25,9 @@ from scope_ptz.simulator.mapping.tiles import Tiles
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneActor, SceneFile, SceneViewpoint
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.sheets.atlas import Atlas, Scale, SheetCache
-from scope_ptz.simulator.sheets.numbers import NumberAtlas, NumberCodes
+from scope_ptz.simulator.sheets.numbers import IdAtlas, IdCodes
 from scope_ptz.simulator.sheets.picture_cache import PictureCache
-from scope_ptz.simulator.sprites.choice import SpriteChoice
+from scope_ptz.simulator.sprites.choice import SpriteSelector
 from scope_ptz.simulator.sprites.store import SpriteStore
 from scope_ptz.simulator.still_views import StillViews
 
@@ -77,7 +77,7 @@ class Viewpoint:
         self.still_views = StillViews()
         self._helper: ThreadPoolExecutor | None = None
         self._helper_lock = Lock()
-        self._choices: dict[int, SpriteChoice] = {}
+        self._sprite_selectors: dict[int, SpriteSelector] = {}
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
                 f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
@@ -116,8 +116,8 @@ class Viewpoint:
         )
         decode = layers.decode_numbers
         largest_first = sorted(manifest.extents, key=lambda extent: (-extent.solid_angle_sr, extent.number))
-        codes = NumberCodes(extent.number for extent in largest_first)
-        self.id_atlas = id_atlas = NumberAtlas(
+        codes = IdCodes(extent.number for extent in largest_first)
+        self.id_atlas = id_atlas = IdAtlas(
             [_size(n) for n in ids],
             lambda _, i: read.coded_numbers(ids[i]),
             codes,
@@ -128,7 +128,7 @@ class Viewpoint:
         self.depth_atlas = Atlas(
             size, lambda *_: read.coded_numbers(depth), np.uint16, 1, decode=decode, disk_cache=sheet_cache("depth", depths)
         )
-        self.owner_atlas = NumberAtlas(size, lambda *_: _owners(id_atlas, depth), codes, disk_cache=sheet_cache("owners", depths))
+        self.owner_atlas = IdAtlas(size, lambda *_: _owners(id_atlas, depth), codes, disk_cache=sheet_cache("owners", depths))
 
     def render_in_background(self, render: Callable[[], NDArray[np.uint8]]) -> Future[NDArray[np.uint8]]:
         """Run ``render`` in this viewpoint's helper thread, so that the caller can render something else at the same time."""
@@ -156,12 +156,12 @@ class Viewpoint:
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
-        """Complete silhouettes of the instances that are visible from this viewpoint, by instance number."""
+        """Complete silhouettes of the instances that are visible from this viewpoint, by instance ID."""
         return {extent.number: extent for extent in self.manifest.extents}
 
     @cached_property
     def sheets(self) -> dict[int, ActorSheet]:
-        """Sprite sheets by actor number."""
+        """Sprite sheets by the actor's instance ID."""
         return {sheet.number: sheet for sheet in self.manifest.actors}
 
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -200,11 +200,11 @@ class Viewpoint:
         codes = self.depth_atlas.sheet[slot.y : slot.y + slot.height, slot.x : slot.x + slot.width]
         return Clearance(codes, self.depth_metres, self.manifest.band)
 
-    def sprite_choice(self, actor: SceneActor, sheet: ActorSheet) -> SpriteChoice:
+    def sprite_selector(self, actor: SceneActor, sheet: ActorSheet) -> SpriteSelector:
         """Return the object that selects an actor's sprites. Each actor's object is created once and shared."""
-        if actor.number not in self._choices:
-            self._choices[actor.number] = SpriteChoice(actor, sheet.sprites, self.offset, self.world_to_camera)
-        return self._choices[actor.number]
+        if actor.number not in self._sprite_selectors:
+            self._sprite_selectors[actor.number] = SpriteSelector(actor, sheet.sprites, self.offset, self.world_to_camera)
+        return self._sprite_selectors[actor.number]
 
 
 def _world_to_camera(manifest: Manifest) -> NDArray[np.float64]:
@@ -227,7 +227,7 @@ def _detail_outlines(scene: SceneFile, manifest: Manifest) -> list[NDArray[np.fl
     return outlines
 
 
-def _owners(ids: NumberAtlas, depth: Layer) -> NDArray[np.uint16]:
+def _owners(ids: IdAtlas, depth: Layer) -> NDArray[np.uint16]:
     """Return, for each texel of the depth layer, the instance on which its distance was measured."""
     slot = ids.ensure(0)
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)

@@ -1,4 +1,4 @@
-"""Pictures and instance numbers of a scene at one instant, with both the static world and moving actors."""
+"""Pictures and instance IDs of a scene at one instant, with both the static world and moving actors."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.simulator.actors import composited_actors, composited_appearances, draw_numbers, place_of
+from scope_ptz.simulator.actors import composited_actors, composited_appearances, draw_instance_ids, place_of
 from scope_ptz.simulator.drawing import actor_patch
 from scope_ptz.simulator.occlusion import outlined_depth_view
 from scope_ptz.simulator.pack import Scene
@@ -31,7 +31,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     actors = composited_actors(scene, opened, time_s)
     atlas, still = opened.colour_atlas, opened.still_views
     if not (opened.id_atlas.is_in_use and atlas.is_in_use) or still.is_cached(projection):
-        # Render actors first: they need instance numbers, whose decoding takes the most memory, and colours are not in memory yet.
+        # Render actors first: they need instance IDs, whose decoding takes the most memory, and colours are not in memory yet.
         patches = [actor_patch(opened, projection, actor) for actor in actors]
         image = still.get(projection, lambda: colour_view(opened, projection))
     else:
@@ -46,13 +46,13 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     return image
 
 
-def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint16]:
-    """Return the (H, W) numbers of the instances and actors that the pixels of ``picture`` show; 0 for none."""
+def instance_ids(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint16]:
+    """Return the (H, W) instance IDs of the instances and actors that the pixels of ``picture`` show; 0 for none."""
     opened = scene.viewpoint(viewpoint)
-    numbers = id_view(opened, projection)
+    ids = id_view(opened, projection)
     places = [(actor, place_of(actor, projection)) for actor in composited_appearances(scene, opened, time_s)]
-    # Read the distances for all actors first, because drawing changes the instance numbers on which the distances depend.
-    depths = [(actor, outlined_depth_view(opened, projection, numbers, place)) for actor, place in places if place is not None]
+    # Read the distances for all actors first, because drawing changes the instance IDs on which the distances depend.
+    depths = [(actor, outlined_depth_view(opened, projection, ids, place)) for actor, place in places if place is not None]
     for actor, depth_m in depths:
-        draw_numbers(opened, projection, actor, depth_m, numbers)
-    return numbers
+        draw_instance_ids(opened, projection, actor, depth_m, ids)
+    return ids

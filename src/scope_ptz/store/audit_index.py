@@ -45,13 +45,15 @@ def index_audit_log(database: Database, path: Path) -> int:
                     content = file.read(MAX_READ_BYTES)
             except OSError as error:
                 raise InputError(f"The audit log {path} cannot be read: {error.strerror}.") from error
-            complete = content[: content.rfind(b"\n") + 1]
-            entries = [entry for line in complete.splitlines() if (entry := _entry(line)) is not None]
+            complete_lines = content[: content.rfind(b"\n") + 1]
+            entries = [entry for line in complete_lines.splitlines() if (entry := _entry(line)) is not None]
             if entries:
                 connection.execute(insert(AUDIT), [{"file": number, **entry} for entry in entries])
-            connection.execute(update(AUDIT_FILES).where(AUDIT_FILES.c.number == number).values(offset=offset + len(complete)))
+            connection.execute(
+                update(AUDIT_FILES).where(AUDIT_FILES.c.number == number).values(offset=offset + len(complete_lines))
+            )
             added += len(entries)
-        if len(content) < MAX_READ_BYTES or not complete:
+        if len(content) < MAX_READ_BYTES or not complete_lines:
             return added
 
 
@@ -85,8 +87,8 @@ def _log_position(connection: Connection, path: Path) -> tuple[int, int]:
     row = connection.execute(select(AUDIT_FILES).where(AUDIT_FILES.c.path == str(path))).mappings().first()
     if row is not None:
         return row["number"], row["offset"]
-    added = insert(AUDIT_FILES).values(path=str(path), offset=0).returning(AUDIT_FILES.c.number)
-    return connection.execute(added).scalar_one(), 0
+    insertion = insert(AUDIT_FILES).values(path=str(path), offset=0).returning(AUDIT_FILES.c.number)
+    return connection.execute(insertion).scalar_one(), 0
 
 
 def _entry(line: bytes) -> dict[str, Any] | None:

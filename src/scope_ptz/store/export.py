@@ -53,15 +53,15 @@ def write_atomically(out: Path, write: Callable[[IO[bytes]], int]) -> int:
     Raises:
         OutputError: The file cannot be written.
     """
-    unfinished = out.with_name(f".{out.name}.{os.getpid()}.part")
+    partial_file = out.with_name(f".{out.name}.{os.getpid()}.part")
     try:
-        with unfinished.open("wb") as file:
+        with partial_file.open("wb") as file:
             count = write(file)
-        unfinished.replace(out)
+        partial_file.replace(out)
     except OSError as error:
         raise OutputError(f"{out} cannot be written: {error.strerror or error}. Choose another file.") from error
     finally:
-        unfinished.unlink(missing_ok=True)
+        partial_file.unlink(missing_ok=True)
     return count
 
 
@@ -89,14 +89,14 @@ def _write_zip(database: Database, root: Path, runs: Iterable[str], file: IO[byt
             count += folder.is_dir()
             ratings += _ratings(database, run_id) if folder.is_dir() else []
         if ratings:
-            archive.writestr(FEEDBACK_FILE, "".join(f"{json.dumps(each, ensure_ascii=False)}\n" for each in ratings))
+            archive.writestr(FEEDBACK_FILE, "".join(f"{json.dumps(rating, ensure_ascii=False)}\n" for rating in ratings))
     return count
 
 
 def _ratings(database: Database, run_id: str) -> list[dict[str, str]]:
     """Return a list with the newest rating of a whole run, for ``scope bench generate``. It is empty if there is no rating."""
-    rated = [each for each in feedback_on(database, run_id) if each.position is None and each.rating]
-    return [{"run": run_id, "rating": "good" if each.rating > 0 else "bad", "note": each.comment} for each in rated[-1:]]
+    rated = [entry for entry in feedback_on(database, run_id) if entry.position is None and entry.rating]
+    return [{"run": run_id, "rating": "good" if entry.rating > 0 else "bad", "note": entry.comment} for entry in rated[-1:]]
 
 
 def _data_line(database: Database, root: Path, run_id: str) -> dict[str, Any]:  # noqa: ARG001 - all formats share this signature
@@ -114,7 +114,7 @@ def run_data(database: Database, run_id: str) -> dict[str, Any]:
         **stored.run.model_dump(mode="json"),
         "step_list": [step.model_dump(mode="json") for step in stored.steps],
         "frames": [frame.name for frame in stored.frames],
-        "feedback": [each.model_dump(mode="json", exclude={"run"}) for each in feedback_on(database, run_id)],
+        "feedback": [entry.model_dump(mode="json", exclude={"run"}) for entry in feedback_on(database, run_id)],
     }
 
 
@@ -125,7 +125,7 @@ def _chat_line(database: Database, root: Path, run_id: str) -> dict[str, Any] | 
         return None
     if trace.ended is None or trace.ended.outcome not in ("answered", "clarification", "refused"):
         return None
-    ratings = [{"rating": each.rating, "call": each.position} for each in feedback_on(database, run_id)]
+    ratings = [{"rating": entry.rating, "call": entry.position} for entry in feedback_on(database, run_id)]
     return {**chat_conversation(trace), "run": run_id, "ratings": ratings}
 
 
@@ -148,7 +148,7 @@ def chat_conversation(trace: Trace) -> dict[str, Any]:
 
 def exchanges_of(trace: Trace) -> tuple[Exchange, ...]:
     """Convert the steps of a recorded run to the history that a planner receives."""
-    thoughts = {each.step: getattr(each.decision, "thought", "") for each in trace.decisions}
+    thoughts = {decided.step: getattr(decided.decision, "thought", "") for decided in trace.decisions}
     steps: dict[int, list[Any]] = {}
     for call in trace.calls:
         if call.fault != "cancelled":

@@ -45,7 +45,7 @@ def add_feedback(
         if position is not None:
             positions = connection.execute(select(STEPS.c.position).where(STEPS.c.run == number)).scalars().all()
             if position not in positions:
-                raise UnknownNameError("call", str(position), [str(each) for each in positions])
+                raise UnknownNameError("call", str(position), [str(known_position) for known_position in positions])
         same_subject = FEEDBACK.c.position.is_(None) if position is None else FEEDBACK.c.position == position
         connection.execute(delete(FEEDBACK).where(FEEDBACK.c.run == number, same_subject, FEEDBACK.c.actor == actor))
         key = connection.execute(

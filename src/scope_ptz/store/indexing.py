@@ -20,7 +20,7 @@ from scope_ptz.store.request_file import read_request
 from scope_ptz.store.rows import UNFINISHED
 from scope_ptz.store.schema import FEEDBACK, FRAMES, RUNS, STEPS
 
-BATCH = 100
+BATCH_SIZE = 100
 """Maximum number of runs in one transaction."""
 
 
@@ -60,7 +60,7 @@ def index_runs(database: Database, root: Path) -> IndexReport:
         if indexed.get(name) == size:
             continue
         batch.append((root / name, size))
-        if len(batch) == BATCH:
+        if len(batch) == BATCH_SIZE:
             _index_batch(database, batch, report)
             batch = []
     _index_batch(database, batch, report)
@@ -112,15 +112,15 @@ def _index_batch(database: Database, batch: list[tuple[Path, int]], report: Inde
     added = updated = 0
     with database.write_transaction() as connection:
         for row, steps, frames in contents:
-            new = _upsert(connection, row, steps, frames)
-            added, updated = added + new, updated + (not new)
+            is_new = _upsert(connection, row, steps, frames)
+            added, updated = added + is_new, updated + (not is_new)
     report.added += added
     report.updated += updated
 
 
 def _remove_missing(database: Database, missing: list[str], report: IndexReport) -> None:
-    for start in range(0, len(missing), BATCH):
-        names = missing[start : start + BATCH]
+    for start in range(0, len(missing), BATCH_SIZE):
+        names = missing[start : start + BATCH_SIZE]
         with database.write_transaction() as connection:
             rated = select(FEEDBACK.c.run)
             removed = connection.execute(delete(RUNS).where(RUNS.c.id.in_(names), RUNS.c.number.not_in(rated))).rowcount
@@ -201,7 +201,7 @@ def folder_bytes(folder: Path) -> int:
 def _upsert(connection: Connection, row: dict[str, Any], steps: list[dict[str, Any]], frames: list[dict[str, Any]]) -> bool:
     """Insert or update a run. Return whether it is new."""
     number = connection.execute(select(RUNS.c.number).where(RUNS.c.id == row["id"])).scalar()
-    if new := number is None:
+    if is_new := number is None:
         number = connection.execute(insert(RUNS).values(**row, kept=0).returning(RUNS.c.number)).scalar_one()
     else:
         connection.execute(update(RUNS).where(RUNS.c.number == number).values(**row))
@@ -211,4 +211,4 @@ def _upsert(connection: Connection, row: dict[str, Any], steps: list[dict[str, A
         connection.execute(insert(STEPS), [{"run": number, **step} for step in steps])
     if frames:
         connection.execute(insert(FRAMES), [{"run": number, **frame} for frame in frames])
-    return new
+    return is_new

@@ -12,16 +12,16 @@ def words_of(text: str) -> list[str]:
 
 
 def has_words(instruction: str, answer: str, words: str) -> int:
-    """Return 1 if the two texts together contain all the given words, otherwise 0. This is registered as an SQL function.
+    """Return 1 if instruction and answer together contain all the given words, otherwise 0. Registered as an SQL function.
 
     Args:
-        instruction: The first text.
-        answer: The second text.
+        instruction: The instruction of a run.
+        answer: The answer of the run.
         words: The words, separated by spaces. The last one may be incomplete.
     """
     text = _fold_accents(f"{instruction}\n{answer}")
     *complete, prefix = words.split(" ")
-    # A substring search rules out most texts. It is ten times as fast as splitting the texts into words.
+    # A substring search rules out most runs. It is ten times as fast as splitting the text into words.
     if prefix not in text or not all(word in text for word in complete):
         return 0
     found = set(re.findall(r"[^\W_]+", text))

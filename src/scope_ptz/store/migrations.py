@@ -9,7 +9,7 @@ from scope_ptz.errors import StoreError
 if TYPE_CHECKING:
     from sqlalchemy import Connection
 
-_FIRST = """
+_INITIAL_SCHEMA = """
 CREATE TABLE runs (
     number INTEGER PRIMARY KEY, id VARCHAR NOT NULL UNIQUE, kind VARCHAR NOT NULL, conversation VARCHAR, actor VARCHAR NOT NULL,
     started FLOAT NOT NULL, ended FLOAT, instruction TEXT NOT NULL, answer TEXT NOT NULL, outcome VARCHAR NOT NULL,
@@ -64,7 +64,7 @@ CREATE TRIGGER runs_text_changed AFTER UPDATE OF instruction, answer ON runs BEG
 END
 """
 
-MIGRATIONS: tuple[str, ...] = (_FIRST,)
+MIGRATIONS: tuple[str, ...] = (_INITIAL_SCHEMA,)
 """SQL scripts; the script at index N migrates version N to N + 1. Each statement ends with a semicolon at the end of a line."""
 
 

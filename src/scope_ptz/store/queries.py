@@ -23,8 +23,8 @@ MAX_COUNT = 500
 """Matching runs are counted only up to this number, because an exact count of many runs is slow."""
 
 _COMMON_WORD_RUNS = 1_000
-"""Words that occur in at least this many runs are matched without the full-text index, because testing the newest runs
-first fills a page sooner."""
+"""Words that occur in at least this many runs are matched without the full-text index, because scanning from the newest
+run finds a page of matches sooner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +113,12 @@ def distinct_values(database: Database) -> dict[str, list[str]]:
     with database.read_transaction() as connection:
         for name in ("camera", "planner", "perception", "outcome"):
             # Each step jumps to the next value in the index; DISTINCT would read the whole index.
-            jump = text(
+            query = text(
                 f"WITH RECURSIVE v(x) AS (SELECT min({name}) FROM runs UNION ALL "  # noqa: S608 - one of four names
                 f"SELECT (SELECT min({name}) FROM runs WHERE {name} > v.x) FROM v WHERE v.x IS NOT NULL) "
                 "SELECT x FROM v WHERE x IS NOT NULL"
             )
-            values[name] = [str(row[0]) for row in connection.execute(jump)]
+            values[name] = [str(row[0]) for row in connection.execute(query)]
     return values
 
 
@@ -156,8 +156,8 @@ def _contains(connection: Connection, query: str) -> ColumnElement[bool]:
     phrase = " ".join(f'"{word}"' for word in words[:-1]) + f' "{words[-1]}"*'
     limited_count = text(f"SELECT count(*) FROM (SELECT 1 FROM runs_text WHERE runs_text MATCH :words LIMIT {_COMMON_WORD_RUNS})")  # noqa: S608
     if connection.execute(limited_count, {"words": phrase}).scalar_one() < _COMMON_WORD_RUNS:
-        found = "runs.number IN (SELECT rowid FROM runs_text WHERE runs_text MATCH :words)"
-        return cast("ColumnElement[bool]", text(found).bindparams(words=phrase))
+        condition = "runs.number IN (SELECT rowid FROM runs_text WHERE runs_text MATCH :words)"
+        return cast("ColumnElement[bool]", text(condition).bindparams(words=phrase))
     return func.has_words(RUNS.c.instruction, RUNS.c.answer, " ".join(words)) == 1
 
 

@@ -1,4 +1,4 @@
-"""Show a person a task: its text, its reference run, and pictures of the start view and the evidence."""
+"""Show a task to a person: its text, its reference run, and pictures of the start view and the evidence."""
 
 from __future__ import annotations
 
@@ -72,17 +72,21 @@ def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
     """Write a picture of the start view, and one of each evidence view with its items outlined, and yield the paths."""
     start = next(p for p in scene.file.presets if p.name == task.preset)
     start_projection = TASK_CAMERA.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
-    sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, start_projection, (), f"start: preset {start.name}"))]
+    sheets = [
+        (f"{task.id}-start.png", _draw_sheet(task, scene, start.viewpoint, start_projection, (), f"start: preset {start.name}"))
+    ]
     for number, view in enumerate(task.evidence, 1):
         caption = f"evidence {number} of {len(task.evidence)}: {_view_caption(view)}"
-        sheets.append((f"{task.id}-{number}.png", _sheet(task, scene, view.aim.viewpoint, _projection(view), view.items, caption)))
+        sheets.append(
+            (f"{task.id}-{number}.png", _draw_sheet(task, scene, view.aim.viewpoint, _projection(view), view.items, caption))
+        )
     try:
         out.mkdir(parents=True, exist_ok=True)
         for name, sheet in sheets:
             sheet.save(out / name)
             yield out / name
     except OSError as error:
-        raise OutputError(f"Pictures cannot be written to {out}: {error.strerror}. Choose another with --out.") from error
+        raise OutputError(f"Pictures cannot be written to {out}: {error.strerror}. Choose another folder with --out.") from error
 
 
 def _view_caption(view: EvidenceView) -> str:
@@ -97,7 +101,9 @@ def _projection(view: EvidenceView) -> Projection:
     return TASK_CAMERA.sweep() if view.scope == "full" else TASK_CAMERA.view(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom))
 
 
-def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str) -> Image.Image:
+def _draw_sheet(
+    task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str
+) -> Image.Image:
     """Draw the task's text, the frame and the list of outlined items. For a sweep, also draw a close-up of each item."""
     image = Image.fromarray(picture(scene, viewpoint, projection, task.time_s))
     is_sweep = isinstance(projection, Equirectangular)

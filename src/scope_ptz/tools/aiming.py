@@ -93,17 +93,17 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 
 
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
-    """Return the pose within the limits that centres a target and makes its limiting side fill ``fill`` of the frame.
+    """Return the pose within the limits that centres a target and makes its limiting side fill the fraction ``fill`` of the frame.
 
     The calculation is iterative, because the target's bounding box and its centre change with the view.
     """
     import numpy as np
 
-    middle = target.mean(axis=0)
+    centre = target.mean(axis=0)
     limits = info.limits
     pose, clamped = start, set[Axis]()
     for _ in range(8):
-        pan, tilt = (float(v) for v in geometry.pan_tilt_deg(middle))
+        pan, tilt = (float(v) for v in geometry.pan_tilt_deg(centre))
         zoom = _zoom_for_fill(info, Pose(pan, tilt, start.zoom), target, fill)
         requested = pose_towards(info, pan, tilt, zoom)
         pose, clamped_axes = limits.clamp(requested)
@@ -111,7 +111,7 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
         left, top, right, bottom = bounds(view(info, requested).points(target))
         if not math.isfinite(left):
             break
-        middle = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
+        centre = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
     return Aim(pose, fill, sort_axes(clamped))
 
 

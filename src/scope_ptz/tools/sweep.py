@@ -76,7 +76,7 @@ async def sweep(camera: Camera) -> Frame:
                 arrival = await camera.move(block.pose)
                 if arrival.clamped and not arrival.limited_by:
                     raise CameraError(
-                        f"The camera cannot reach a pose of the sweep: {block.pose} was requested, it stopped at {arrival.pose}."
+                        f"The camera cannot reach a pose of the sweep: {block.pose} was requested; it stopped at {arrival.pose}."
                     )
                 if not (frames and camera.info.dry_run):
                     frames.append(await camera.frame())

@@ -57,7 +57,7 @@ class TrackObject(Arguments):
 
 
 class TrackPoint(BaseModel):
-    """The camera's pose at one moment of the tracking, and whether the target was seen."""
+    """The camera's pose at one moment during tracking, and whether the target was seen."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -89,26 +89,26 @@ class _Target:
 
     def __init__(self, frame: Frame, box: Box) -> None:
         self.size_deg = _size_deg(frame, box)
-        self.middle = _middle(frame, box)
+        self.centre = _centre_direction(frame, box)
         self.time_s = frame.time_s
         self.previous: tuple[Floats, float] | None = None
 
     def update(self, frame: Frame, box: Box) -> None:
         """Add a detection."""
-        self.previous = (self.middle, self.time_s)
-        self.size_deg, self.middle, self.time_s = _size_deg(frame, box), _middle(frame, box), frame.time_s
+        self.previous = (self.centre, self.time_s)
+        self.size_deg, self.centre, self.time_s = _size_deg(frame, box), _centre_direction(frame, box), frame.time_s
 
     def at(self, time_s: float) -> Floats:
         """Return the expected direction at a time, extrapolated from the last two detections by at most two periods."""
         if self.previous is None or self.time_s <= self.previous[1]:
-            return self.middle
+            return self.centre
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
-        return extrapolate(self.previous[0], self.middle, ahead / (self.time_s - self.previous[1]))
+        return extrapolate(self.previous[0], self.centre, ahead / (self.time_s - self.previous[1]))
 
     def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
         """Return the box nearest to the expected direction; None if the target cannot have moved that far."""
         expected = self.at(frame.time_s)
-        angles = [float(geometry.angle_between_deg(_middle(frame, box), expected)) for box in boxes]
+        angles = [float(geometry.angle_between_deg(_centre_direction(frame, box), expected)) for box in boxes]
         if not angles:
             return None
         best = min(range(len(boxes)), key=angles.__getitem__)
@@ -116,7 +116,7 @@ class _Target:
         return boxes[best] if angles[best] <= self.size_deg + rate * (frame.time_s - self.time_s) else None
 
 
-def _middle(frame: Frame, box: Box) -> Floats:
+def _centre_direction(frame: Frame, box: Box) -> Floats:
     import numpy as np
 
     return frame.projection.directions(np.array(box.centre))

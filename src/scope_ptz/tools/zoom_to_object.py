@@ -55,7 +55,7 @@ class ZoomResult(PerceptionResult):
         matches: Number of matches in the first frame.
         chosen: Name of the match on which the camera zoomed in.
         fill: Fraction of the frame that the target's limiting side fills after the move.
-        offset: Offset of the target's middle from the frame's middle, as fractions of width and height.
+        offset: Offset of the target's centre from the frame's centre, as fractions of width and height.
         limited_by: Limits that prevent the target from being centred or from reaching the requested size.
         box: The target in the last frame.
     """

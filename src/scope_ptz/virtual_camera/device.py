@@ -26,7 +26,7 @@ from scope_ptz.virtual_camera.lens import VirtualLens
 REBOOT_S = 10.0
 """Default time in seconds for which a rebooting camera is off the network."""
 
-REPLY_S = 0.3
+REBOOT_DELAY_S = 0.3
 """Delay in seconds before a rebooting camera goes off the network, so that the reboot request still gets a reply."""
 
 MAX_PRESETS = 256

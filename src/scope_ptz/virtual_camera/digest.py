@@ -34,7 +34,7 @@ _WINDOW = 64  # number of recent nonce counts to track, because requests may arr
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class DigestResult:
     """The result of an authentication check.
 
     Attributes:
@@ -80,7 +80,7 @@ class DigestAuthenticator:
         ending = (', qop="auth"' + (", stale=true" if stale else "")) if self._qop else f", stale={str(stale).upper()}"
         return [f'Digest realm="{self.realm}", nonce="{nonce}", algorithm={name}{ending}' for name in _OFFERED_ALGORITHMS]
 
-    def check(self, authorization: str | None, method: str, uri: str | None = None) -> Verdict:
+    def check(self, authorization: str | None, method: str, uri: str | None = None) -> DigestResult:
         """Check the ``Authorization`` header of a request.
 
         Args:
@@ -94,20 +94,20 @@ class DigestAuthenticator:
         nonce, header_uri = fields.get("nonce", ""), fields.get("uri", "")
         issued_s = self._issued_s(nonce)
         if algorithm is None or issued_s is None or (uri is not None and not _same_target(header_uri, uri)):
-            return Verdict()
+            return DigestResult()
         if (self._qop or "qop" in fields) and not (fields.get("qop") == "auth" and fields.get("cnonce")):
-            return Verdict()
+            return DigestResult()
         account = self._accounts.find(fields.get("username", ""))
         # Rejecting an unknown name takes as long as rejecting a wrong password, so that timing does not reveal which names exist.
         password = secrets.token_hex(16) if account is None else account.password
         expected = self._response(algorithm, fields, password, method)
         if not hmac.compare_digest(expected.encode(), fields.get("response", "").lower().encode()) or account is None:
-            return Verdict()
+            return DigestResult()
         if fields.get("realm") != self.realm:
-            return Verdict()
+            return DigestResult()
         if self._now_s() - issued_s > self._lifetime_s or not self._is_first_use(nonce, issued_s, fields):
-            return Verdict(stale=True)
-        return Verdict(account)
+            return DigestResult(stale=True)
+        return DigestResult(account)
 
     def _response(self, algorithm: Callable[[bytes], hashlib._Hash], fields: dict[str, str], password: str, method: str) -> str:
         def digest(*parts: str) -> str:

@@ -9,7 +9,7 @@ import anyio
 
 from scope_ptz.simulator.sheets.memory import release_free_memory
 
-RELEASE_EVERY_S = 60.0  # seconds between releases of freed memory
+RELEASE_INTERVAL_S = 60.0  # seconds between releases of freed memory
 
 _M_ARENA_MAX = -8  # the value of M_ARENA_MAX for mallopt in the GNU C library
 
@@ -32,11 +32,11 @@ def use_one_heap() -> bool:
         return False
 
 
-async def release_memory_regularly(every_s: float = RELEASE_EVERY_S) -> None:
+async def release_memory_regularly(interval_s: float = RELEASE_INTERVAL_S) -> None:
     """Return freed memory to the operating system at regular intervals until cancelled.
 
     Pictures of different sizes fragment the heap, which would otherwise grow by 1 to 2% in ten minutes of streaming.
     """
     while True:
-        await anyio.sleep(every_s)
+        await anyio.sleep(interval_s)
         await anyio.to_thread.run_sync(release_free_memory)

@@ -21,7 +21,7 @@ TRAVEL_S = 3.0
 
 _BLUR_PX = 12.0  # standard deviation of the blur for a focus error of the whole range, at 1x in an image 1280 pixels wide
 _MAX_BLUR_PX = 8.0  # maximum standard deviation of the blur in an image 1280 pixels wide
-_STOPS = 4.0  # stops (factors of two) of light between the closed and the open iris
+_IRIS_STOPS = 4.0  # stops (factors of two) of light between the closed and the open iris
 _GAMMA = 2.2  # exponent that converts pixel values to light
 
 
@@ -124,7 +124,7 @@ class VirtualLens:
         blur_px = min(_BLUR_PX * abs(self.focus - SHARP_FOCUS) * math.sqrt(zoom), _MAX_BLUR_PX) * width / 1280
         if blur_px > 0.2:
             image = np.asarray(cv2.GaussianBlur(image, (0, 0), blur_px), np.uint8)
-        stops = _STOPS * (self.iris - AUTO_IRIS)
+        stops = _IRIS_STOPS * (self.iris - AUTO_IRIS)
         if stops:
             light = (np.arange(256) / 255.0) ** _GAMMA * 2.0**stops
             image = np.asarray(cv2.LUT(image, np.round(255 * np.clip(light, 0, 1) ** (1 / _GAMMA)).astype(np.uint8)), np.uint8)

@@ -1,4 +1,4 @@
-"""A device's live picture. Each frame is exposed once for all streams, and only while at least one client is watching."""
+"""A device's live video. Each frame is exposed once for all streams, and only while at least one client is watching."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class LiveSource:
 
     def __init__(self, device: VirtualDevice, *, rate_hz: float = 25.0, latency_s: float = 0.0) -> None:
         self.device, self.rate_hz, self.latency_s = device, rate_hz, latency_s
-        self.late_frames = 0
+        self.skipped_frames = 0
         """Number of frames that were skipped because earlier exposures took too long."""
         self._newest: Exposure | None = None
         self._number = 0
@@ -81,7 +81,7 @@ class LiveSource:
             due_s += period_s
             if (behind_s := monotonic() - due_s) > 0:
                 skipped = int(behind_s / period_s)
-                self.late_frames += skipped
+                self.skipped_frames += skipped
                 due_s += skipped * period_s
             await anyio.sleep(max(0.0, due_s - monotonic()))
         group.cancel_scope.cancel()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.agents.launch import AgentOptions
-from scope_ptz.bench.agents.source import find_module
+from scope_ptz.bench.agents.source import find_module_source
 from scope_ptz.bench.engine.external_agents import AgentReply
 from scope_ptz.errors import ConfigError
 from tests.bench.agents.conformance import FRAME
@@ -184,9 +184,9 @@ async def test_an_agent_that_does_not_start_is_an_error_before_the_first_run(tmp
 
 def test_the_source_is_found_without_running_it(tmp_path: Path) -> None:
     (tmp_path / "loud.py").write_text("raise SystemExit('it ran')")
-    source = find_module("loud:Agent", tmp_path, ())
+    source = find_module_source("loud:Agent", tmp_path, ())
     assert source is not None and source.files == {"loud.py": tmp_path / "loud.py"}
-    assert find_module("nothing_of_this_name:Agent", tmp_path, ()) is None
+    assert find_module_source("nothing_of_this_name:Agent", tmp_path, ()) is None
 
 
 pytestmark = pytest.mark.anyio

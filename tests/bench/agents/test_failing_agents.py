@@ -149,7 +149,7 @@ async def test_the_time_limit_of_a_run(tmp_path: Path) -> None:
 
 async def test_too_many_frames(tmp_path: Path) -> None:
     agent = local_agent_in(
-        tmp_path, write_agent(tmp_path, "while True:\n    session._view_is_newest = False\n    session.view()", sees=True)
+        tmp_path, write_agent(tmp_path, "while True:\n    session._is_view_current = False\n    session.view()", sees=True)
     )
     with pytest.raises(PlannerError, match="more than 100 frames") as excinfo:
         await run_to_reply(agent)

@@ -15,7 +15,7 @@ import pytest
 
 from scope_ptz.bench.agents.in_process import InProcessChannel
 from scope_ptz.bench.agents.planner import ChannelPlanner
-from scope_ptz.bench.agents.source import find_module
+from scope_ptz.bench.agents.source import find_module_source
 from scope_ptz.bench.engine.external_agents import AgentReply, AgentSession
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.sample_files import open_sample
@@ -145,7 +145,7 @@ def test_the_source_of_a_package_includes_all_its_modules(tmp_path: Path, monkey
 
 
 def source_digest(agent: str) -> str:
-    source = find_module(agent, Path.cwd(), ())
+    source = find_module_source(agent, Path.cwd(), ())
     assert source is not None
     return source.digest()
 

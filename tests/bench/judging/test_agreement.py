@@ -32,7 +32,7 @@ from scope_ptz.taskgen.gold.judge_results import (
     passing_case,
     read_verdicts,
 )
-from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
+from scope_ptz.taskgen.gold.mutations import FaultContext, GoldRun, mutate
 from tests.bench.judging.runs import PRESET_VIEWPOINTS
 from tests.bench.sample_runs import FRAME, PRESETS, samples
 
@@ -135,8 +135,8 @@ def test_the_report_as_text_and_as_json() -> None:
 def gold_runs() -> list[GoldRun]:
     import random
 
-    setting = FaultSetting(PRESETS, FRAME)
-    candidates = (mutate(task, episode, mode, setting, random.Random(7)) for task, episode in samples() for mode in MODES)
+    context = FaultContext(PRESETS, FRAME)
+    candidates = (mutate(task, episode, mode, context, random.Random(7)) for task, episode in samples() for mode in MODES)
     return [gold for gold in candidates if gold is not None]
 
 

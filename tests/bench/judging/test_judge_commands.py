@@ -26,7 +26,7 @@ from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import write_gold
 from scope_ptz.taskgen.gold.judge_results import read_verdicts
-from scope_ptz.taskgen.gold.mutations import FaultSetting, mutate
+from scope_ptz.taskgen.gold.mutations import FaultContext, mutate
 from tests.bench.judging.runs import CORRECT, json_text
 from tests.bench.judging.test_labels import turn_task
 from tests.support import misbehaving as m
@@ -40,14 +40,14 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
     runner = ProgramRunner(scene, ground_truth_tools({scene.name: scene}), TASK_CAMERA)
-    setting = FaultSetting({preset.name: preset_position(preset) for preset in scene.file.presets}, TASK_CAMERA)
+    context = FaultContext({preset.name: preset_position(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 
     async def run(task: Task) -> Episode:
         return await runner.run(task, task.reference, "Done.")
 
     gold_runs = [
-        mutate(task, anyio.run(run, task), mode, setting, random.Random(1))
+        mutate(task, anyio.run(run, task), mode, context, random.Random(1))
         for task in tasks
         for mode in (ErrorMode.TOOL_ARGS, ErrorMode.LACK_OF_TOOL_CALL)
     ]

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
-from scope_ptz.bench.reports.choice.label_places import LABEL_HALF_PT, label_offsets
+from scope_ptz.bench.reports.choice.label_placement import LABEL_HALF_PT, label_offsets
 from scope_ptz.bench.reports.choice.ties import compare_all, extreme_names, find_leaders, join_names
 from scope_ptz.bench.reports.tables import MarkedCell, cell_value
 from scope_ptz.bench.reports.terminal import terminal_lines
@@ -105,7 +105,9 @@ def test_pairs_are_not_ranked_if_no_difference_is_shown() -> None:
 
 
 def test_leaders_agree_with_the_table_of_comparisons(report: EvaluationReport) -> None:
-    runs = [run for run in report.runs if run.ranked and not run.other_tasks and run.task_set[1] == "core" and not run.system[3]]
+    runs = [
+        run for run in report.runs if run.ranked and not run.task_difference and run.task_set[1] == "core" and not run.system[3]
+    ]
     found = compare_all(runs)
     best = find_leaders(runs, found)
     assert best is not None and set(best.highest) | set(best.close) | set(best.others) == set(runs)

@@ -84,7 +84,7 @@ def test_only_pairs_on_the_main_tasks_are_counted_and_averaged(mixed: Evaluation
 
 def test_runs_on_the_same_tasks_are_not_marked() -> None:
     runs = report_runs([run("qwen3-4b", "moondream3"), run("grammar", "ground-truth")], load_registry())
-    assert [(r.label, r.other_tasks) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
+    assert [(r.label, r.task_difference) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
     assert main_tasks(runs) == {t.id for t in TASKS}
     report = build_report([run("qwen3-4b", "moondream3")], load_registry())
     assert "1 pair of models on the main task set (32 tasks)." in report.summary[0]

@@ -19,7 +19,7 @@ from scope_ptz.bench.statistics.clustered import (
     macro_weights,
     pool_strata,
     proportion,
-    strata_without_spread,
+    strata_with_one_cluster,
     t_quantile,
     two_sided_p,
     weighted_mean,
@@ -69,8 +69,8 @@ def test_strata_of_one_cluster_are_named_and_have_no_interval() -> None:
     # c has one outcome, and b has two from one viewpoint: neither shows any variation between viewpoints.
     values, strata = np.array([1.0, 0, 1, 1, 0, 1, 1]), ("a", "a", "a", "a", "b", "b", "c")
     scores = Scores(values, strata, ("x", "x", "y", "y", "x", "x", "y"))
-    assert strata_without_spread(scores, macro_weights(scores)) == ("b", "c")
-    assert strata_without_spread(scores, {"a": 1.0}) == ()
+    assert strata_with_one_cluster(scores, macro_weights(scores)) == ("b", "c")
+    assert strata_with_one_cluster(scores, {"a": 1.0}) == ()
     for estimate in (proportion(scores, macro_weights(scores)), difference(scores, macro_weights(scores))):
         assert estimate is not None and estimate.single_cluster_strata == ("b", "c") and estimate.low is not None
     alone = Scores(values[:2], ("b", "c"), ("x", "y"))

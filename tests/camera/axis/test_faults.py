@@ -270,7 +270,7 @@ async def test_lost_link_is_stopped_when_it_is_back(fake: FakeVapix) -> None:
     async with opened(fake.loopback.port) as camera:
         await camera.drive(5.0, timeout_s=10.0)
         fake.status = 503
-        camera._watch.stop_now()
+        camera._dead_mans_switch.stop_now()
         await anyio.sleep(0.3)
         assert fake.driving
         fake.status = 0

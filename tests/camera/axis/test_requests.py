@@ -65,10 +65,10 @@ def test_stop_ends_every_kind_of_motion() -> None:
 
 
 def test_only_commands_that_add_up_are_not_repeated() -> None:
-    assert not requests.relative_focus(1, 5).repeat
-    assert not requests.relative_iris(1, 5).repeat
-    assert requests.absolute(1, 0, 0, 1).repeat
-    assert all(request.repeat for request in requests.stop(1))
+    assert not requests.relative_focus(1, 5).retryable
+    assert not requests.relative_iris(1, 5).retryable
+    assert requests.absolute(1, 0, 0, 1).retryable
+    assert all(request.retryable for request in requests.stop(1))
 
 
 def test_a_device_that_scales_velocities_is_told_not_to() -> None:

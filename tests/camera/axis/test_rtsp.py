@@ -83,7 +83,7 @@ async def test_without_pyav_the_message_names_the_package(monkeypatch: pytest.Mo
 async def test_a_wrong_password_is_reported_at_once(analytic_scene: Scene) -> None:
     device = VirtualDevice(analytic_scene, accounts=[Account(USER, PASSWORD, Role.VIEWER)], width=320, height=180)
     async with serve_virtual_cameras([device], VirtualCameraOptions(scenes=(analytic_scene.name,))) as (served,):
-        url = f"rtsp://127.0.0.1:{served.unit.rtsp_port}/axis-media/media.amp"
+        url = f"rtsp://127.0.0.1:{served.vapix.rtsp_port}/axis-media/media.amp"
         stream = rtsp.RtspStream(url, Credentials(USER, "wrong"), width=320, height=180, give_up_s=600)
         with anyio.fail_after(30), pytest.raises(CameraSignInError, match="rejected the user name or the password"):
             await stream.next()

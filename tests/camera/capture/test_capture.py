@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scope_ptz.blender.parity import ssim
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.camera.capture import frame_taking
-from scope_ptz.camera.capture.composition import UNSEEN
+from scope_ptz.camera.capture.composition import UNSEEN_COLOUR
 from scope_ptz.camera.capture.frame_taking import CaptureOptions, capture_settings, take_frames
 from scope_ptz.camera.capture.plan import Ranges
 from scope_ptz.camera.capture.session import CaptureSession
@@ -140,7 +140,7 @@ async def test_nothing_hidden_gets_into_the_pack(tmp_path: Path) -> None:
     place = twin.viewpoint("camera")
     inside = colour_view(place, Perspective(10.0, -1.0, 6.0, 64, 64))
     # Tiles are matched in tone to the panorama in cells, so the grey is not exact. The world has a deviation of about 50 here.
-    assert np.abs(inside.astype(int) - UNSEEN).max() <= 20
+    assert np.abs(inside.astype(int) - UNSEEN_COLOUR).max() <= 20
     assert inside.std() < 8
     assert found.unseen_share > 0.01
     assert not shows_black(colour_view(place, Perspective(-20.0, 0.0, 50.0, WIDTH, HEIGHT)))  # the mask was filled by other frames
@@ -153,7 +153,7 @@ async def test_nothing_hidden_gets_into_the_pack(tmp_path: Path) -> None:
                 spot = spot_of(pan, tilt, view, place.manifest.band.top_tilt_deg, place.manifest.band.bottom_tilt_deg)
                 if spot is not None:
                     colour = picture[min(int(spot[1] * layer.height), layer.height - 1), int(spot[0] * layer.width)]
-                    assert np.abs(colour.astype(int) - UNSEEN).max() <= 6
+                    assert np.abs(colour.astype(int) - UNSEEN_COLOUR).max() <= 6
 
 
 def shows_black(picture: NDArray[np.uint8]) -> bool:

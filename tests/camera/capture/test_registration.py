@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from scope_ptz.camera.capture.adjustment import adjust, rotation_matrix, turn_deg
+from scope_ptz.camera.capture.adjustment import adjust, rotation_angle_deg, rotation_matrix
 from scope_ptz.camera.capture.matching import PairMatches, find_features, match_frames, overlapping_pairs
 from scope_ptz.camera.capture.placed_frames import PlacedFrame
 from scope_ptz.camera.capture.registration import measured_optics
@@ -52,7 +52,7 @@ def test_a_rotation_keeps_lengths_and_turns_by_its_angle(vector: NDArray[np.floa
     assert np.allclose(turn @ vector, vector, atol=1e-9)
     angle = float(np.linalg.norm(vector))
     expected = math.degrees(min(angle % (2 * math.pi), 2 * math.pi - angle % (2 * math.pi)))
-    assert turn_deg(np.eye(3), turn) == pytest.approx(expected, abs=1e-4)
+    assert rotation_angle_deg(np.eye(3), turn) == pytest.approx(expected, abs=1e-4)
 
 
 @pytest.mark.full
@@ -74,8 +74,8 @@ def test_errors_of_poses_and_of_the_focal_length_and_a_drift_are_found(
     assert found.focal_px[0] == pytest.approx(focal_px, rel=1e-3)
     # Only the reported poses determine the absolute orientation, so all errors share a common rotation.
     common = [own.T @ other for own, other in zip(found.axes, true, strict=True)]
-    assert max(turn_deg(common[0], each) for each in common) < 0.02
-    absolute_deg = [turn_deg(own, other) for own, other in zip(found.axes, true, strict=True)]
+    assert max(rotation_angle_deg(common[0], each) for each in common) < 0.02
+    absolute_deg = [rotation_angle_deg(own, other) for own, other in zip(found.axes, true, strict=True)]
     assert max(absolute_deg) < 0.05 + 2.5 * noise_deg
 
 
@@ -99,7 +99,7 @@ def test_wrong_matches_do_not_bend_the_result() -> None:
         points[wrong] += random.normal(0, 30, (int(wrong.sum()), 2))
         spoilt.append(replace(pair, second_px=points))
     found = adjust(views, spoilt)
-    assert max(turn_deg(own, other) for own, other in zip(found.axes, true, strict=True)) < 0.02
+    assert max(rotation_angle_deg(own, other) for own, other in zip(found.axes, true, strict=True)) < 0.02
 
 
 @pytest.mark.parametrize("zoom", [1.0, 2.0])
@@ -114,7 +114,7 @@ def test_frames_are_matched_near_where_their_poses_expect_it(zoom: float) -> Non
     relative = found.axes[1] @ found.axes[0].T
     expected = camera_axes(other.pan_deg, other.tilt_deg) @ camera_axes(0.0, 0.0).T
     assert len(pair.first_px) >= 12
-    assert turn_deg(relative, expected) < 0.3  # a pixel is 0.19 degrees, and the reported error 0.9
+    assert rotation_angle_deg(relative, expected) < 0.3  # a pixel is 0.19 degrees, and the reported error 0.9
 
 
 def test_hidden_parts_of_frames_have_no_features() -> None:

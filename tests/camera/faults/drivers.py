@@ -104,8 +104,8 @@ async def served(
         certificates = [certificate] if certificate is not None else []
         cameras = await stack.enter_async_context(serve([device], onvif=onvif, ports=[port], certificates=certificates))
         if listener is not None:
-            await stack.enter_async_context(RtspServer(cameras[0].source, realm=cameras[0].unit.realm).listen(listener))
-            cameras[0].unit.rtsp_port = listener.getsockname()[1]
+            await stack.enter_async_context(RtspServer(cameras[0].source, realm=cameras[0].vapix.realm).listen(listener))
+            cameras[0].vapix.rtsp_port = listener.getsockname()[1]
         yield cameras[0]
 
 

@@ -44,9 +44,9 @@ async def test_right_certificate(driver: Driver, device: VirtualDevice, certific
             await expect_answer(run)
             assert device.pose().pan_deg == pytest.approx(30.0, abs=0.1)
             await camera.drive(5.0, timeout_s=5.0)  # the dead man's switch has a connection of its own
-            camera._watch.stop_now()
-            await to_thread.run_sync(camera._watch.join)
-            assert not camera._watch.is_armed
+            camera._dead_mans_switch.stop_now()
+            await to_thread.run_sync(camera._dead_mans_switch.join)
+            assert not camera._dead_mans_switch.is_armed
 
 
 async def test_wrong_certificate(driver: Driver, device: VirtualDevice, certificate: Certificate) -> None:

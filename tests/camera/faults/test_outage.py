@@ -53,7 +53,7 @@ class Links:
 async def connected(driver: Driver, transport: str, device: VirtualDevice) -> AsyncIterator[tuple[Camera, Links]]:
     """A camera whose web interface and RTSP server are behind networks that can fail."""
     async with served(device, rtsp=True) as camera_server:
-        rtsp_port = camera_server.unit.rtsp_port
+        rtsp_port = camera_server.vapix.rtsp_port
         assert rtsp_port is not None
         with BadNetwork(camera_server.port) as web, BadNetwork(rtsp_port) as rtsp:
             async with driver.opened(web.port, stream=transport, rtsp_port=rtsp.port) as camera:

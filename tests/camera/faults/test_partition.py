@@ -116,7 +116,7 @@ async def test_delay_is_no_fault(driver: Driver, device: VirtualDevice, tmp_path
 async def streamed(kind: str, device: VirtualDevice) -> AsyncIterator[tuple[LiveStream, BadNetwork]]:
     """A stream through a network that can be partitioned, with little patience."""
     async with served(device, rtsp=True) as camera_server:
-        port = camera_server.port if kind == "mjpeg" else camera_server.unit.rtsp_port
+        port = camera_server.port if kind == "mjpeg" else camera_server.vapix.rtsp_port
         assert port is not None
         with BadNetwork(port) as network:
             if kind == "rtsp":

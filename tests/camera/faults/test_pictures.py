@@ -38,7 +38,7 @@ async def test_broken_picture(driver: Driver, device: VirtualDevice, fault: str,
 
 
 async def test_frozen_picture(driver: Driver, device: VirtualDevice, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scope_ptz.camera.network.device_pictures.FROZEN_PATIENCE_S", 0.2)
+    monkeypatch.setattr("scope_ptz.camera.network.device_pictures.MAX_PICTURE_LAG_S", 0.2)
     async with served(device) as camera_server, driver.opened(camera_server.port) as camera:
         set_faults(device, picture="frozen")
         await expect_answer(await ask(camera, COUNT, tmp_path))  # the same picture at one pose is fine

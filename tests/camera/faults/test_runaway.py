@@ -82,7 +82,7 @@ async def test_watchdog_keeps_sending_stop_after_the_camera_is_closed(driver: Dr
                 await camera.drive(DPS, timeout_s=2.0)
                 network.fate = "refuse"
                 network.cut()
-                camera._watch._give_up_s = 0.0
+                camera._dead_mans_switch._give_up_s = 0.0
             network.fate = "forward"
             await until(lambda: is_stationary(device))
 

@@ -29,7 +29,7 @@ async def driver(scene: Scene, vendor: Vendor, **options: Any) -> AsyncIterator[
         (listener,) = listen("127.0.0.1", [0])
         port = listener.getsockname()[1]
         (served,) = await stack.enter_async_context(serve([device], onvif=vendor))
-        await stack.enter_async_context(RtspServer(served.source, realm=served.unit.realm).listen(listener))
+        await stack.enter_async_context(RtspServer(served.source, realm=served.vapix.realm).listen(listener))
         camera = await stack.enter_async_context(opened(served.port, stream="rtsp", rtsp_port=port, **options))
         yield camera
 

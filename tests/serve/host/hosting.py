@@ -111,7 +111,7 @@ async def hosting(
     settings: EvaluationSettings,
     participants: Sequence[str] = ("anna",),
     *,
-    absent: bool = False,
+    fail_unfinished: bool = False,
     limits: RateLimits | None = None,
 ) -> AsyncIterator[Hosted]:
     """Serve a host whose workers run in this event loop. A folder that exists is resumed."""
@@ -122,7 +122,7 @@ async def hosting(
     key = folder.parent / f"{folder.name}.key"
     if not key.exists():
         generate_key(key)
-    host = Host(folder, settings, key, open_link=open_link, absent=absent)
+    host = Host(folder, settings, key, open_link=open_link, fail_unfinished=fail_unfinished)
     file = TokenFile(participants_file(folder))
     tokens = {}
     for name in participants:

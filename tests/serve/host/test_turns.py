@@ -171,8 +171,8 @@ async def test_closing_counts_tasks_that_were_not_attempted(tmp_path: Path) -> N
         await attempt(agent)
         await agent.say(HELLO)
     fake = ScriptedWorker(3)
-    async with hosting(tmp_path / "host", fake.worker, SETTINGS, absent=True) as hosted:
-        await hosted.host.finish(start=True)
+    async with hosting(tmp_path / "host", fake.worker, SETTINGS, fail_unfinished=True) as hosted:
+        await hosted.host.wait_until_finished(start=True)
     assert fake.log == {
         "anna-0": ["hello", "calls", "reply"], "anna-1": ["hello", "agent-exited"], "anna-2": ["agent-exited"],
     }  # fmt: skip

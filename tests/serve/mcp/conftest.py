@@ -45,7 +45,7 @@ def free(served: Served) -> Served:
 
 async def _free(served: Served) -> None:
     for station in served.site.stations.values():
-        running = station.running
+        running = station.current_run
         await station.stop()
         if running is not None:
             await running.done.wait()

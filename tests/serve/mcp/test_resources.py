@@ -78,7 +78,7 @@ async def test_nothing_else_can_be_read(free: Served) -> None:
         for uri in UNKNOWN:
             with pytest.raises(MCPError, match="There is no") as refused:
                 await client.read_resource(uri)
-            assert str(free.site.journal.root) not in str(refused.value), "errors show no paths of the server"
+            assert str(free.site.library.root) not in str(refused.value), "errors show no paths of the server"
 
 
 @pytest.mark.anyio

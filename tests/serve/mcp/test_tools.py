@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mcp import Client, MCPError
 
-from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, MAX_RESULT_BYTES, fitting_jpeg
+from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, MAX_RESULT_BYTES, encode_limited_jpeg
 from scope_ptz.serve.mcp.tool import wire_bytes
 from scope_ptz.serve.security.access import Access
 from scope_ptz.serve.security.rate_limits import Rate, RateLimits
@@ -168,7 +168,7 @@ async def test_a_panorama_is_a_link_to_a_resource(free: Served) -> None:
 @pytest.mark.parametrize("size", [(1080, 1920), (4000, 12000), (3, 5)])
 def test_pictures_fit_regardless_of_their_content(size: tuple[int, int]) -> None:
     noise = np.random.default_rng(1).integers(0, 255, (*size, 3), np.uint8)  # the worst case for JPEG
-    assert len(fitting_jpeg(noise, MAX_PICTURE_BYTES, 1280)) <= MAX_PICTURE_BYTES
+    assert len(encode_limited_jpeg(noise, MAX_PICTURE_BYTES, 1280)) <= MAX_PICTURE_BYTES
 
 
 @pytest.mark.anyio
@@ -283,7 +283,7 @@ async def test_a_cancelled_call_reports_progress_and_stops_the_camera(free: Serv
             await client.call_tool("track_object", LONG, progress_callback=listen)
         assert scope.cancelled_caught
         with anyio.fail_after(60):
-            while station.running is not None:  # noqa: ASYNC110 - it ends in another thread
+            while station.current_run is not None:  # noqa: ASYNC110 - it ends in another thread
                 await anyio.sleep(0.02)
         runs = (await client.call_tool("camera_state", {"camera": CAMERA})).structured_content
         assert runs["run"] is None
@@ -404,5 +404,5 @@ async def test_a_removed_token_ends_a_call_and_its_run(
         async with agent(guarded, token=secret) as client:
             await client.call_tool("track_object", {**LONG, "camera": OTHER}, progress_callback=listen)
     with anyio.fail_after(60):
-        while station.running is not None:  # noqa: ASYNC110 - it ends in another thread
+        while station.current_run is not None:  # noqa: ASYNC110 - it ends in another thread
             await anyio.sleep(0.02)

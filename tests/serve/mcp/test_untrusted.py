@@ -10,7 +10,14 @@ import pytest
 from mcp_types import CallToolResult
 from pydantic import BaseModel
 
-from scope_ptz.serve.mcp.untrusted import MAX_ITEMS, MAX_TEXT_CHARS, NOTICE, PICTURE_TEXT_FIELDS, enclose_in_markers, mark_texts
+from scope_ptz.serve.mcp.untrusted import (
+    MAX_ITEMS,
+    MAX_TEXT_CHARS,
+    NOTICE,
+    PICTURE_TEXT_FIELDS,
+    enclose_in_markers,
+    mark_picture_text,
+)
 from scope_ptz.tools.registry import TOOLS
 from tests.serve.mcp.agents import agent, pictures_of, read_json, text_of
 from tests.serve.mcp.conftest import HOSTILE
@@ -135,7 +142,7 @@ def test_markers_cannot_be_closed_by_the_text() -> None:
 
 
 def test_long_texts_and_lists_are_truncated() -> None:
-    result = mark_texts({"answer": "x" * 50_000, "path": [{"seen": True}] * 5_000, "source": "\ud800"}, perceived=True)
+    result = mark_picture_text({"answer": "x" * 50_000, "path": [{"seen": True}] * 5_000, "source": "\ud800"}, perceives=True)
     assert len(result["answer"]["untrusted_picture_text"]) == MAX_TEXT_CHARS + 4
     assert len(result["path"]) == MAX_ITEMS
     assert result["source"] == "?"
@@ -143,4 +150,4 @@ def test_long_texts_and_lists_are_truncated() -> None:
 
 
 def test_results_of_moves_are_not_marked() -> None:
-    assert mark_texts({"message": "At home."}, perceived=False) == {"message": "At home."}
+    assert mark_picture_text({"message": "At home."}, perceives=False) == {"message": "At home."}

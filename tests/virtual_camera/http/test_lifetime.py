@@ -25,7 +25,7 @@ async def test_several_cameras_in_one_process(analytic_scene: Scene, served_devi
     roof = VirtualDevice(analytic_scene, viewpoint="roof", width=320, height=180)
     async with serve([served_device, roof]) as (first, second):
         assert first.port != second.port
-        assert first.unit.serial != second.unit.serial
+        assert first.vapix.serial != second.vapix.serial
         async with client(first) as one, client(second, "") as other:
             assert not np.array_equal(decoded((await one.get(IMAGE)).content), decoded((await other.get(IMAGE)).content))
             await other.get(PTZ, params={"pan": "50"})

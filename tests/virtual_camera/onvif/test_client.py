@@ -44,7 +44,7 @@ async def test_services_and_what_the_device_is(client: Any, served: ServedCamera
     assert found["/onvif/ptz_service"]._value_1.get("MoveStatus") == "true"
     about = await device.GetDeviceInformation()
     assert (about.Manufacturer, about.Model) == ("AXIS", "M5075-G")
-    assert about.SerialNumber == served.unit.serial  # the same in VAPIX
+    assert about.SerialNumber == served.vapix.serial  # the same in VAPIX
     interface = (await device.GetNetworkInterfaces())[0]
     assert interface.Info.HwAddress.replace(":", "") == about.SerialNumber
     assert interface.IPv4.Config.Manual[0].Address == "127.0.0.1"

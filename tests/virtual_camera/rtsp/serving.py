@@ -1,4 +1,4 @@
-"""An RTSP server with its live picture, and what tests look at in it."""
+"""An RTSP server with its live video, and what tests look at in it."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from scope_ptz.agent.records import RECORD, Ended
 from scope_ptz.agent.trace import Trace, picture_names, trace_of
 from scope_ptz.api.async_scope import AsyncScope, EventListener
 from scope_ptz.api.building import Parts
-from scope_ptz.api.options import ServedModels, SessionOptions
+from scope_ptz.api.options import ModelServerOptions, SessionOptions
 from scope_ptz.api.remote.camera import RemoteCamera
 from scope_ptz.api.remote.connection import Connection, RemoteNameError
 from scope_ptz.api.run import Event, Run, create_event
@@ -230,7 +230,7 @@ def _check_options(options: SessionOptions) -> None:
     default, models = SessionOptions(options.camera), options.served
     names = ("planner", "perception", "viewpoint", "time_s", "seed", "realtime", "runs_dir", "budgets")
     given = [name for name in names if getattr(options, name) != getattr(default, name)]
-    given += [name for name in ServedModels.__dataclass_fields__ if name != "pair" and getattr(models, name) is not None]
+    given += [name for name in ModelServerOptions.__dataclass_fields__ if name != "pair" and getattr(models, name) is not None]
     if given:
         raise InputError(
             f"The camera's server determines {', '.join(given)}. Remove these arguments. Use pair= to select one of its pairs."

@@ -33,7 +33,7 @@ MAX_REPLY_CHARS = 100_000
 MAX_NAME_CHARS = 200
 """Maximum length of agent names, tool names and call ids, in characters."""
 MAX_QUOTED_CHARS = 300
-"""Maximum length of the description of an invalid message, in characters."""
+"""Maximum length of text from an agent that an error message quotes, in characters."""
 MAX_DEPTH = 32
 """Maximum nesting depth of a call's arguments."""
 MAX_INTEGER = 2**63
@@ -253,5 +253,5 @@ def _first_problem(error: ValidationError) -> str:
 
 
 def printable(text: str, length: int) -> str:
-    """Truncate a text from an agent to ``length`` characters, and replace unprintable characters with "?"."""
+    """Truncate text from an agent to ``length`` characters, and replace unprintable characters with "?"."""
     return "".join(character if character.isprintable() else "?" for character in text[:length])

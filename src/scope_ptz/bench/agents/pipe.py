@@ -44,7 +44,7 @@ WRITE_S = 0.5
 KEEPER_S = keeper.TERMINATE_S + keeper.GIVE_UP_S + GRACE_S + 5.0
 """Seconds after which the keeper itself is killed."""
 CHUNK_BYTES = 65_536
-_NO_GROUP = 2**31 - 1
+_UNUSED_GROUP_ID = 2**31 - 1
 """Process group id that no group has. Id 0 would mean the group of this process."""
 _PIPE_ERRORS = (anyio.EndOfStream, anyio.ClosedResourceError, anyio.BrokenResourceError)
 
@@ -207,5 +207,5 @@ def _read_report(status: int) -> ExitReport:
     except (ValueError, KeyError, TypeError, AttributeError):
         # Without a valid report, the agent has probably killed the keeper. Kill the agent's process group here.
         with suppress(OSError, ValueError):
-            os.killpg(int(pid) or _NO_GROUP, signal.SIGKILL)
+            os.killpg(int(pid) or _UNUSED_GROUP_ID, signal.SIGKILL)
         return ExitReport()

@@ -36,8 +36,8 @@ from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, 
 
 T = TypeVar("T")
 
-FAREWELL_S = 1.0
-"""Timeout in seconds for telling an agent why its run has ended."""
+ERROR_MESSAGE_S = 1.0
+"""Timeout in seconds for sending an agent the error that ended its run."""
 MAX_VIEWS_PER_STEP = 100
 """Maximum number of frames that an agent can request in one step."""
 
@@ -82,7 +82,7 @@ class ChannelPlanner(Planner):
         self._named = bool(name)
         self._connected = False
         self.failure: PlannerError | None = None
-        self._pending: tuple[str, ...] = ()
+        self._pending_ids: tuple[str, ...] = ()
         self._started = False
         self._calls_made = 0
         self._view: View = View()
@@ -157,14 +157,16 @@ class ChannelPlanner(Planner):
             )
         outcomes = state.history[-1].outcomes
         # The loop limits the calls per step. The last outcome reports the dropped calls, so it is repeated for each of them.
-        padded = (*outcomes, *outcomes[-1:] * (len(self._pending) - len(outcomes)))
-        return Results(results=tuple(_result_of(name, outcome) for name, outcome in zip(self._pending, padded, strict=True)))
+        padded = (*outcomes, *outcomes[-1:] * (len(self._pending_ids) - len(outcomes)))
+        return Results(
+            results=tuple(_result_of(call_id, outcome) for call_id, outcome in zip(self._pending_ids, padded, strict=True))
+        )
 
     def _numbered_calls(self, message: Calls) -> tuple[ToolCall, ...]:
         """Return the calls with ids that are unique in the run. The agent's ids are unique only within a message."""
         first = self._calls_made + 1
         self._calls_made += len(message.calls)
-        self._pending = tuple(call.id for call in message.calls)
+        self._pending_ids = tuple(call.id for call in message.calls)
         return tuple(
             ToolCall(id=f"call-{number}", name=call.name, arguments=call.arguments)
             for number, call in enumerate(message.calls, start=first)
@@ -200,11 +202,11 @@ class ChannelPlanner(Planner):
     async def _report(self, error: PlannerError) -> None:
         """Store the failure, and send it to the agent if the agent is still reading its messages."""
         self.failure = error
-        with suppress(PlannerError), anyio.move_on_after(FAREWELL_S):
+        with suppress(PlannerError), anyio.move_on_after(ERROR_MESSAGE_S):
             await self.channel.send(Error(message=str(error)))
 
 
-def _result_of(name: str, outcome: ToolOutcome) -> CallResult:
+def _result_of(call_id: str, outcome: ToolOutcome) -> CallResult:
     if outcome.error is None and outcome.result is not None:
-        return CallResult(id=name, result=outcome.result)
-    return CallResult(id=name, error=outcome.error or "The call has no result.")
+        return CallResult(id=call_id, result=outcome.result)
+    return CallResult(id=call_id, error=outcome.error or "The call has no result.")

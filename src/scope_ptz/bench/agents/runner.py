@@ -70,7 +70,7 @@ class Session:
         self._calls_made = 0
         self._is_flush_scheduled = False
         self._view: bytes | None = None
-        self._view_is_newest = False
+        self._is_view_current = False
         self._views: queue.Queue[Message | None] = queue.Queue()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._task: asyncio.Task[Message] | None = None
@@ -91,11 +91,11 @@ class Session:
 
     def view(self) -> bytes | None:
         """Return the newest frame as JPEG data. If the agent's class does not have ``sees = True``, return None."""
-        if self._sees and not self._view_is_newest and not self._ended:
+        if self._sees and not self._is_view_current and not self._ended:
             self._send({"type": "view"})
             message = self._views.get() or {}
             self._view = base64.b64decode(message["data"]) if message.get("data") else None
-            self._view_is_newest = True
+            self._is_view_current = True
         return self._view
 
     def deliver(self, message: Message | None) -> None:
@@ -151,7 +151,7 @@ class Session:
 
     def _resolve(self, results: list[Message]) -> None:
         sent, self._sent = self._sent, {}
-        self._view_is_newest = False
+        self._is_view_current = False
         for result in results:
             answer = sent.get(result["id"])
             if answer is not None and not answer.done():
@@ -191,10 +191,10 @@ class Pipe:
         self._input = os.fdopen(os.dup(0), "rb")
         self._output = os.fdopen(os.dup(1), "wb")
         self._lock = threading.Lock()
-        nothing = os.open(os.devnull, os.O_RDONLY)
-        os.dup2(nothing, 0)
+        devnull = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(devnull, 0)
         os.dup2(2, 1)
-        os.close(nothing)
+        os.close(devnull)
 
     def send(self, message: Message) -> None:
         """Send a message."""

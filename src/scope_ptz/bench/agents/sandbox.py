@@ -51,7 +51,7 @@ class SandboxContents:
     hidden: tuple[Path, ...]
 
 
-def own_files() -> tuple[Path, ...]:
+def own_folders() -> tuple[Path, ...]:
     """Return SCOPE's own folders: the package, and the checkout that contains it, if any."""
     package = Path(__file__).resolve().parents[2]
     checkout = package.parent.parent

@@ -50,11 +50,11 @@ def interpreter_at(program: Path) -> Interpreter:
     prefixes = (environment, installation) if configuration.is_file() else (installation,)
     libraries = [path for prefix in prefixes for path in sorted(prefix.glob("lib*/python3*")) if path.is_dir()]
     packages = [path for library in libraries for path in library.glob("*-packages")]
-    linked = [Path(line) for folder in packages for file in sorted(folder.glob("*.pth")) for line in _lines(file)]
+    linked = [Path(line) for folder in packages for file in sorted(folder.glob("*.pth")) for line in _read_lines(file)]
     return Interpreter(program, prefixes, (*libraries, *packages, *(path for path in linked if path.is_absolute())))
 
 
-def _lines(file: Path) -> list[str]:
+def _read_lines(file: Path) -> list[str]:
     """Return the lines of a file, or no lines if the file cannot be read."""
     try:
         return [line.strip() for line in file.read_text("utf-8", "replace").splitlines()]
@@ -89,7 +89,7 @@ class AgentSource:
         return digest.hexdigest()[:DIGEST_CHARS] if self.files else ""
 
 
-def find_module(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentSource | None:
+def find_module_source(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentSource | None:
     """Return the source of the agent ``module:Class``: its module, or all Python files of its package.
 
     Args:
@@ -116,7 +116,7 @@ def find_module(agent: str, folder: Path, search_path: Sequence[Path]) -> AgentS
     return None
 
 
-def find_command(words: Sequence[str], program: Path, folder: Path) -> AgentSource:
+def find_command_source(words: Sequence[str], program: Path, folder: Path) -> AgentSource:
     """Return the source of an agent command: its program, and the files named by its arguments.
 
     Args:

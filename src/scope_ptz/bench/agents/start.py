@@ -15,8 +15,15 @@ from scope_ptz.bench.agents.in_process import InProcessChannel
 from scope_ptz.bench.agents.launch import AgentLaunch, AgentOptions, agent_name, find_program, split_command
 from scope_ptz.bench.agents.pipe import PipeChannel
 from scope_ptz.bench.agents.planner import ChannelPlanner
-from scope_ptz.bench.agents.sandbox import RUNNER, SCRATCH, SandboxContents, own_files, require_sandbox, sandbox_command
-from scope_ptz.bench.agents.source import AgentSource, Interpreter, find_command, find_module, interpreter_at, own_interpreter
+from scope_ptz.bench.agents.sandbox import RUNNER, SCRATCH, SandboxContents, own_folders, require_sandbox, sandbox_command
+from scope_ptz.bench.agents.source import (
+    AgentSource,
+    Interpreter,
+    find_command_source,
+    find_module_source,
+    interpreter_at,
+    own_interpreter,
+)
 from scope_ptz.errors import ConfigError
 from scope_ptz.settings import agent_environment
 
@@ -86,7 +93,7 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
     if options.command:
         return _command_agent(name, options, folder, hidden)
     if options.in_process:
-        source = find_module(agent, folder, own_interpreter().search_path)
+        source = find_module_source(agent, folder, own_interpreter().search_path)
         return LocalAgent(name, "in-process", source.digest() if source else "", {}, options, lambda: _in_process_channel(agent))
     return _class_agent(name, options, folder, hidden)
 
@@ -94,7 +101,7 @@ def local_agent(agent: str, options: AgentOptions, hidden: tuple[Path, ...] = ()
 def _class_agent(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
     environment = agent_environment(options.variables, python_path=options.python is None)
     interpreter = own_interpreter() if options.python is None else interpreter_at(_absolute_path(options.python))
-    source = find_module(name, folder, interpreter.search_path)
+    source = find_module_source(name, folder, interpreter.search_path)
     installed = source is not None and any(source.folder.is_relative_to(prefix) for prefix in interpreter.prefixes)
     if options.python is None and source is not None and source.folder != folder and not installed:
         # The folder may have been added to this process's search path, which a new process does not inherit.
@@ -114,7 +121,7 @@ def _class_agent(name: str, options: AgentOptions, folder: Path, hidden: tuple[P
 def _command_agent(name: str, options: AgentOptions, folder: Path, hidden: tuple[Path, ...]) -> LocalAgent:
     words = split_command(options.command)
     program = find_program(words[0], folder)
-    source = find_command(words, program, folder)
+    source = find_command_source(words, program, folder)
     command = (str(program), *words[1:])
     launch = AgentLaunch(
         name, command, folder, agent_environment(options.variables, python_path=False), options.isolation, options.memory_mb
@@ -135,13 +142,13 @@ def _sandboxed_agent(
 ) -> LocalAgent:
     """Return an agent that runs in the sandbox. Its working folder is the folder that contains its module."""
     require_sandbox()
-    visible: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_links_to(interpreter.program))
+    visible: tuple[Path, ...] = () if interpreter is None else (*_folders_of(interpreter), *_link_chain(interpreter.program))
     installed = source is None or any(source.folder.is_relative_to(path) for path in visible)
     contents = SandboxContents(
         folder=None if source is None or installed else source.folder,
         shown=visible,
         runner=Path(runner.__file__) if interpreter is not None else None,
-        hidden=(*own_files(), *hidden, *(path / "scope_ptz" for path in (interpreter.search_path if interpreter else ()))),
+        hidden=(*own_folders(), *hidden, *(path / "scope_ptz" for path in (interpreter.search_path if interpreter else ()))),
     )
     environment = {name: value for name, value in launch.environment.items() if name not in ("PYTHONPATH", "TMPDIR")}
     sandbox_launch = replace(launch, folder=Path("/"), environment=environment | {"HOME": SCRATCH})
@@ -152,8 +159,8 @@ def _folders_of(interpreter: Interpreter) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(path for path in interpreter.prefixes if path != Path("/")))
 
 
-def _links_to(program: Path) -> tuple[Path, ...]:
-    """Return the program and the targets of its chain of symbolic links, down to the real file."""
+def _link_chain(program: Path) -> tuple[Path, ...]:
+    """Return a program and every target of its chain of symbolic links, down to the real file."""
     links = [program]
     while links[-1].is_symlink():
         links.append(Path(os.path.normpath(links[-1].parent / links[-1].readlink())))

@@ -85,7 +85,7 @@ def _parse_comparison(
         expected: The expected choice.
         text: The answer.
         compared: Mentions of options, without mentions of equality.
-        mentions: Those mentions in ``compared`` that are not just the reference of a comparison.
+        mentions: The mentions in ``compared``, except those that are only the reference of a comparison.
         stated: The mentions in ``compared``, and the mentions of equality.
     """
     picked, excluded = _compare_options(expected, text, compared)

@@ -13,12 +13,12 @@ class Claim(Enum):
     """A claim about a thing that an answer names.
 
     ``STATED``: the sentence makes a statement about the thing; whether the thing is denied is determined separately. ``FOUND`` and
-    ``MISSED``: the result of a search. ``NOTHING``: the sentence only mentions a search for the thing or a question about it.
+    ``NOT_FOUND``: the result of a search. ``NOTHING``: the sentence only mentions a search for the thing or a question about it.
     """
 
     STATED = auto()
     FOUND = auto()
-    MISSED = auto()
+    NOT_FOUND = auto()
     NOTHING = auto()
 
 
@@ -37,8 +37,8 @@ def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
     if not _is_only_searched_for(before, after):
         return Claim.STATED
     following = after + "".join(f"{w.text} " for w in words[end : end + 60] if w.clause == clause + 1)
-    if _MISSED_PHRASE.search(following):
-        return Claim.MISSED
+    if _NOT_FOUND_PHRASE.search(following):
+        return Claim.NOT_FOUND
     return Claim.FOUND if _FOUND_PHRASE.search(following) else Claim.NOTHING
 
 
@@ -76,7 +76,7 @@ _FOUND_PHRASE = re.compile(
     r"(?<!not )\b(found|find|see|saw|spotted|detected|located) (it|one|them|some|both|several|two|three|four|five|six|[1-9]\d*)\b"
 )
 """Results of a search that found something, such as "found two"."""
-_MISSED_PHRASE = re.compile(
+_NOT_FOUND_PHRASE = re.compile(
     r"\b(found|find|see|saw|spotted|detected|located) (none|nothing|neither|0|zero)\b"
     r"|\bnot (find|found|see|seen|spot|detect|locate)( (it|one|any|them|either)\b| $)"
     r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"

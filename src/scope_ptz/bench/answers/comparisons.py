@@ -18,7 +18,7 @@ _OPPOSITES = (
 )  # fmt: skip
 """Pairs of sets of comparatives with opposite meanings."""
 
-_COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
+_COUNTING_COMPARATIVES = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
 """Comparatives that may precede the noun that they count ("fewer skips")."""
 _REFERENCE_WORDS = frozenset({"than", "versus", "vs", "against"})
 """Words that introduce the reference of a comparison."""
@@ -27,7 +27,7 @@ _PREPOSITIONS = frozenset({"of", "from", "to"})
 
 
 def comparatives_by_direction(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Return the synonyms ("forward") and the antonyms ("backward") of comparatives."""
+    """Return comparatives with their synonyms ("forward"), and their antonyms ("backward")."""
     forward, backward = set(picks), set[str]()
     for left, right in _OPPOSITES:
         for same, opposite in ((left, right), (right, left)):
@@ -56,7 +56,7 @@ def described_thing(text: AnswerText, comparative: NameMention, things: Sequence
     """
     words, reference = text.words, reference_of(text, comparative, things)
     clause = [m for m in things if words[m.start].clause == words[comparative.start].clause and m != reference]
-    if words[comparative.end - 1].text in _COUNTING:
+    if words[comparative.end - 1].text in _COUNTING_COMPARATIVES:
         counted = [m for m in clause if m.start == comparative.end and not words[m.start].gap.strip()]
         if counted:
             return counted[0]

@@ -12,29 +12,29 @@ from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.answers.tokenizer import plain_words
 
 
-def parse_number(text: AnswerText, unit: Sequence[str], *, part: bool = False) -> float | str:
+def parse_number(text: AnswerText, unit: Sequence[str], *, asks_for_part: bool = False) -> float | str:
     """Parse the number that an answer states.
 
     Args:
         text: The answer.
         unit: Wordings of the counted thing.
-        part: Whether the question asks for a part of a whole, so that "5 of the 7" is read as 5.
+        asks_for_part: Whether the question asks for a part of a whole, so that "5 of the 7" is read as 5.
 
     Returns:
         The number, or the reason why the answer does not state exactly one.
     """
-    number = _stated_number(text, unit, part=part)
+    number = _stated_number(text, unit, asks_for_part=asks_for_part)
     if isinstance(number, float) and number > 0 and denies_entirely(text, unit):
         return "both that there are some and that there are none"
     return number
 
 
-def _stated_number(text: AnswerText, unit: Sequence[str], *, part: bool) -> float | str:
+def _stated_number(text: AnswerText, unit: Sequence[str], *, asks_for_part: bool) -> float | str:
     numbers = [n for n in find_numbers(text, unit) if not (n.denied or _is_absent(text, unit, n))]
     wholes = _wholes(text, numbers)
-    if wholes and not part:
+    if wholes and not asks_for_part:
         return "a part of a number"
-    if part and re.search(r"\bnone of (the|those|these)\b", text.plain_text()):
+    if asks_for_part and re.search(r"\bnone of (the|those|these)\b", text.plain_text()):
         return 0.0
     numbers = [n for n in numbers if n not in wholes]
     if _is_range(text, numbers):

@@ -17,7 +17,7 @@ _NONE_STATEMENT = re.compile(
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )
 """Statements that nothing is there, such as "nothing is visible" and "not a single one". "Nothing was returned" does not match."""
-_OTHER_THINGS_WORDS = re.compile(r"\b(others?|else|elsewhere)\b")
+_RESTRICTING_WORDS = re.compile(r"\b(others?|else|elsewhere)\b")
 """Words that restrict "none" to other things or places ("no others", "nothing else")."""
 
 
@@ -28,7 +28,7 @@ def says_none(text: AnswerText) -> bool:
 
 
 def _is_none(part: str) -> bool:
-    return _NONE_STATEMENT.search(part) is not None and not _OTHER_THINGS_WORDS.search(part)
+    return _NONE_STATEMENT.search(part) is not None and not _RESTRICTING_WORDS.search(part)
 
 
 def says_yes(text: AnswerText) -> bool:

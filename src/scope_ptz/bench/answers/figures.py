@@ -17,7 +17,7 @@ _PENCE = re.compile(r"(?<![\d.,])(\d{1,2})\s?(?:p|pence)\b", re.IGNORECASE)
 """An amount in pence, which is converted to pounds."""
 _LETTER_JOINED_TO_DIGIT = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
 """A letter joined to a digit, as in "O.95"."""
-_MEASURE = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
+_DIGITS_WITH_SUFFIX = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
 """Digits with a unit or an ordinal suffix, such as "3x" and "1st"."""
 
 
@@ -42,7 +42,7 @@ def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     statement = answer_text(text)
     numbers = find_numbers(statement, ())
     stated = [q for q in numbers if not _is_denied(statement, q)]
-    if not numbers or _LETTER_JOINED_TO_DIGIT.search(_MEASURE.sub("", text)):
+    if not numbers or _LETTER_JOINED_TO_DIGIT.search(_DIGITS_WITH_SUFFIX.sub("", text)):
         return None  # "O.95" is compared as text with look-alike characters, and "5.C0" is not 5.
     if any(q.bound for q in stated):
         return Unreadable("a bound, not a figure")

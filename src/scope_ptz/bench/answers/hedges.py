@@ -24,7 +24,7 @@ _GUESS = re.compile(
 )
 """Phrases that make an answer a mere guess, in English and other languages."""
 _GUESSED_READING = re.compile(r"\b(?:perhaps|maybe|possibly|conceivably|(?:might|may) (?:say|read|be|have)|could (?:say|be))\b")
-"""Words that mark a reported text as a guess."""
+"""Words that mark reported text as a guess."""
 _DISOWNED_CLAIM = re.compile(
     r"\b(?:false|wrong|incorrect|untrue|a mistake|a lie) to (?:say|claim|state|think|answer)\b"
     r"|\b(?:anyone|anybody|whoever|people|those|someone) (?:who )?(?:says?|claims?|thinks?|states?)\b"

@@ -1,4 +1,4 @@
-"""Find numbers and names in texts other than answers, such as tool results."""
+"""Find numbers and names in text other than answers, such as tool results."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_ptz.bench.answers.text import answer_text
 
 
 def numbers_in(text: str) -> set[float]:
-    """Return every number in a text that could be a count.
+    """Return every number in ``text`` that could be a count.
 
     Measurements ("15 degrees"), ordinals and labels ("preset 3") are excluded.
     """
@@ -17,5 +17,5 @@ def numbers_in(text: str) -> set[float]:
 
 
 def is_stated(text: str, wordings: Sequence[str]) -> bool:
-    """Return whether a text mentions a thing in one of its wordings without denying it."""
+    """Return whether ``text`` mentions a thing in one of its wordings without denying it."""
     return any(not mention.denied for mention in answer_text(text).mentions({"thing": wordings}))

@@ -10,7 +10,7 @@ from scope_ptz.bench.answers.number_words import number_at
 from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word
 
-_MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
+_MEASUREMENT_UNITS = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
 """Units of measurement. A number before one of them is not a count."""
 _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
@@ -138,13 +138,15 @@ def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: 
 def _is_length_of(words: Sequence[Word], end: int) -> bool:
     """Return whether a number measures a row or group of things, as in "5 metres of cones"."""
     after = [word.text for word in words[end : end + 2]]
-    return after[1:] == ["of"] and any(same_word(after[0], measure) for measure in _MEASURES if measure not in ("x", "time"))
+    return after[1:] == ["of"] and any(
+        same_word(after[0], measure) for measure in _MEASUREMENT_UNITS if measure not in ("x", "time")
+    )
 
 
 def _is_measure_or_label(words: Sequence[Word], start: int, end: int) -> bool:
     after = words[end] if end < len(words) else None
     if after is not None and after.segment == words[end - 1].segment:
-        if any(same_word(after.text, measure) for measure in _MEASURES):
+        if any(same_word(after.text, measure) for measure in _MEASUREMENT_UNITS):
             return True
         if after.gap == "" and after.text[0].isalpha() and after.text != "ish":
             return True

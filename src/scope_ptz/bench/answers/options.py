@@ -46,12 +46,12 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
     """Return whether a short form stands alone and is not part of another name."""
     words = text.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
-    plural = words[mention.end - 1].text.endswith("s")
+    is_plural = words[mention.end - 1].text.endswith("s")
     valid_before = (
         not before
         or bool(words[mention.start].gap.strip())
         or before[0].text in _ALLOWED_BEFORE
-        or (plural and before[0].text.isdigit())
+        or (is_plural and before[0].text.isdigit())
     )
     after = words[mention.end : mention.end + 1]
     valid_after = not after or bool(after[0].gap.strip()) or after[0].text in _ALLOWED_AFTER

@@ -85,7 +85,7 @@ def _parse(expected: AnyExpected, text: AnswerText, answer: str) -> ParsedAnswer
 def _parse_number(expected: Number, text: AnswerText) -> ParsedAnswer:
     if text.hedged:
         return Unreadable("only a guess")
-    number = parse_number(text, expected.unit, part=expected.part)
+    number = parse_number(text, expected.unit, asks_for_part=expected.part)
     return Unreadable(number) if isinstance(number, str) else ParsedValue(number)
 
 

@@ -1,4 +1,4 @@
-"""Parse yes-or-no answers, and answers to the question whether something is present."""
+"""Parse yes-or-no answers, and answers about whether something is present."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NO_AT_END = frozenset({"no", "nope", "nah"})
 """Words that mean no at the end of a segment, as in "I say no" and "it is a no"."""
 
 
-def verdict_words(text: AnswerText) -> set[bool]:
+def yes_no_verdicts(text: AnswerText) -> set[bool]:
     """Return the verdicts that words such as "yes" and "no" give: True, False, or both if the answer contradicts itself.
 
     "No" counts only as a whole segment or at the end of one, because elsewhere it denies a thing ("no cones").
@@ -67,7 +67,7 @@ def _short_answer_verdicts(text: AnswerText) -> set[bool]:
 
 def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
     """Parse an answer as yes or no, based on words such as "yes" and on statements. Contradictory answers are unreadable."""
-    verdicts = verdict_words(text) | _short_answer_verdicts(text)
+    verdicts = yes_no_verdicts(text) | _short_answer_verdicts(text)
     if not verdicts and is_half_unclear(text, expected.affirms):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     mentions = text.mentions({"yes": expected.affirms, "no": expected.denies})
@@ -104,7 +104,7 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.plain_text()):
         return Unreadable("it states alternatives")
     verdicts = absence_verdicts(text, expected.subject)
-    if not verdict_words(text) and is_half_unclear(text, expected.subject):
+    if not yes_no_verdicts(text) and is_half_unclear(text, expected.subject):
         return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
     if True in verdicts and (_states_count(text, expected.subject) or _states_claim(text, expected)):
         verdicts = {True, False}
@@ -118,8 +118,8 @@ def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
 def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
     """Return the verdicts on the absence of the subject: True for "there is none", False for "there is one", or both."""
     mentions = text.mentions({"subject": subject})
-    verdicts = {not v for v in verdict_words(text)}
-    mentions = [m for m in mentions if m.denied or not _refers_to_another_thing(text, m, subject)]
+    verdicts = {not v for v in yes_no_verdicts(text)}
+    mentions = [m for m in mentions if m.denied or not _refers_to_something_else(text, m, subject)]
     verdicts |= {m.denied for m in mentions if not (m.contrast or (m.denied and _is_partial_denial(text, m, subject)))}
     numbers = [q for q in find_numbers(text, subject) if not (q.counts_other or q.bound or q.denied)]
     verdicts |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
@@ -128,8 +128,8 @@ def absence_verdicts(text: AnswerText, subject: Sequence[str]) -> set[bool]:
     return verdicts
 
 
-def _refers_to_another_thing(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
-    """Return whether a mention refers to another thing, as in "the only van is red" if the question is about green vans."""
+def _refers_to_something_else(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+    """Return whether a mention refers to something else, as in "the only van is red" if the question is about green vans."""
     before = text.words[max(0, mention.start - 1) : mention.start]
     is_short = mention.end - mention.start < len(plain_words(subject[0]))
     return is_short and any(w.text in ("only", "other") for w in before)
@@ -158,7 +158,7 @@ def _states_claim(text: AnswerText, expected: NoneThere) -> bool:
         not (
             m.denied
             or m.contrast
-            or _describes_another_thing(text, m)
+            or _describes_something_else(text, m)
             or any(_limits_denial(text, m, denial) for denial in denials)
         )
         for m in mentions
@@ -166,11 +166,11 @@ def _states_claim(text: AnswerText, expected: NoneThere) -> bool:
     )
 
 
-def _describes_another_thing(text: AnswerText, claim: NameMention) -> bool:
-    """Return whether a claim describes another thing in the same segment, as in "a green van" and "a van stands top left"."""
+def _describes_something_else(text: AnswerText, claim: NameMention) -> bool:
+    """Return whether a claim describes something else in the same segment, as in "a green van" and "a van stands top left"."""
     segment = text.words[claim.start].segment
     before = "".join(f"{w.text} " for w in text.words[: claim.start] if w.segment == segment)
-    if _ANOTHER_THING.search(before) and not _REFERS_TO_SUBJECT.search(before):
+    if _SOMETHING_ELSE.search(before) and not _REFERS_TO_SUBJECT.search(before):
         return True
     after = text.words[claim.end : claim.end + 1]
     if not after or after[0].segment != text.words[claim.end - 1].segment or re.search(r"[^\s-]", after[0].gap):
@@ -187,8 +187,8 @@ def _limits_denial(text: AnswerText, claim: NameMention, denial: NameMention) ->
     return same_segment and not any(w.text in _NEW_STATEMENT_WORDS for w in (between if claim.start > denial.start else ()))
 
 
-_ANOTHER_THING = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
-"""Words before a claim that introduce another thing, such as "a van stands" in "a van stands top left"."""
+_SOMETHING_ELSE = re.compile(r"\b(an?|two|three|four|five|some|several) (\w+ ){2,}")
+"""Words before a claim that introduce something else, such as "a van stands" in "a van stands top left"."""
 _REFERS_TO_SUBJECT = re.compile(r"\b(it|its|they|this|that|one|ones|thing|object|colour|shade|hue|tone|tint)\b")
 """Words that refer to the subject, so that the claim after them is about it."""
 _NEW_STATEMENT_WORDS = frozenset({"it", "they", "this", "that", "but", "and", "so", "its"})
@@ -199,4 +199,4 @@ _WORDS_AFTER_CLAIM = frozenset({
     "though", "however", "here", "there", "now", "so", "as", "for", "corner", "quarter", "quadrant", "side", "part", "half",
     "hand", "area", "region", "section", "from", "instead", "again", "please", "answer", "anyway", "i", "visible", "looking",
 })  # fmt: skip
-"""Words that may follow a claim without naming another thing."""
+"""Words that may follow a claim without naming anything else."""

@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass
 
 _QUOTATION = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
-"""A text in quotation marks. This is the fallback if the characters around the marks do not show which marks form a pair."""
+"""Text in quotation marks. This is the fallback if the characters around the marks do not show which marks form a pair."""
 _READING_VERB = r"(?:reads?|says?|states?|displays?|shows?|spells?)"
 _READING_WORDS = re.compile(rf"\b{_READING_VERB}\b|\btext\b|\bwritten\b", re.IGNORECASE)
-"""Words which show that a sentence reports a text."""
+"""Words which show that a sentence reports text."""
 _DENIED_BEFORE = re.compile(
     r"(?:\bnot|n't|\bnever|\brather than|\binstead of)(?:\s+(?:actually|really|clearly|in fact|read|say|state|display|show|"
     r"spell|contain|bear|have|carry|the|an?|words?|text|lettering|letters|be|simply|quite|exactly|sign|anything|like))*\s*:?\s*$"
@@ -43,7 +43,7 @@ class Quote:
 def find_quotes(text: str) -> list[Quote]:
     """Return the quotes in a cleaned text in order.
 
-    If a quoted sentence reports a text in quotes ("The sign reads 'STOP'"), the inner quotes are returned instead.
+    If a quoted sentence reports text in quotes ("The sign reads 'STOP'"), the inner quotes are returned instead.
     """
     opened, quotes = list[tuple[str, int]](), list[Quote]()
     for at, mark in enumerate(text):
@@ -62,7 +62,7 @@ def find_quotes(text: str) -> list[Quote]:
 
 
 def _close_quote(text: str, start: int, end: int, quotes: list[Quote]) -> None:
-    """Add a quote and remove the quotes inside it. If it is a sentence that reports a text, keep the inner quotes instead."""
+    """Add a quote and remove the quotes inside it. If it is a sentence that reports text, keep the inner quotes instead."""
     within = [quote for quote in quotes if quote.start > start]
     rest = text[start + 1 : end - 1]
     for quote in within:

@@ -21,7 +21,7 @@ COMMON_WORDS = frozenset({
 })  # fmt: skip
 """Words that do not name a subject in answers to any question."""
 
-WORDS_OF_KIND: dict[str, frozenset[str]] = {
+WORDS_BY_KIND: dict[str, frozenset[str]] = {
     "choice": frozenset({
         "colour", "shade", "side", "part", "position", "place", "half", "quarter", "more", "most", "fewer", "least", "option",
         "difference",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from scope_ptz.bench.answers.refusal_words import COMMON_WORDS, WORDS_OF_KIND
+from scope_ptz.bench.answers.refusal_words import COMMON_WORDS, WORDS_BY_KIND
 from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word, words_of
 from scope_ptz.bench.tasks.expected import (
     AnyExpected,
@@ -76,7 +76,7 @@ _FOREIGN_REFUSAL = re.compile(
 )
 """Refusals in other languages."""
 READINGS = re.compile(r"\"[^\"]*\"|\b[A-Z0-9][A-Z0-9'&-]+(?:[ /]+[A-Z0-9'&-]+)*\b")
-"""Quoted texts and texts in capitals ("NO ACCESS"). They report signs, so they are not refusals."""
+"""Quoted text and text in capitals ("NO ACCESS"). It reports what a sign says, so it is not a refusal."""
 _RETRY = re.compile(r"\b(?:first|initially|earlier|previously|before|until|again|retried|repeated|second|once|originally)\b")
 """Words which show that a later attempt succeeded."""
 _BECAUSE = re.compile(r"^(?:because|since|as)\b")
@@ -143,7 +143,7 @@ def _is_absence_given_as_reason(clause: list[Word], first_word: int, rest: list[
 
 def _concerns_question(expected: AnyExpected, words: list[str]) -> bool:
     """Return whether a refusal concerns the subject of the question rather than another subject."""
-    known = COMMON_WORDS | WORDS_OF_KIND.get(expected.kind, frozenset())
+    known = COMMON_WORDS | WORDS_BY_KIND.get(expected.kind, frozenset())
     named = [part for wording in _wordings(expected) for part in plain_words(wording)]
     match = _REFUSAL.search(" ".join(words))
     phrase = set(match.group().split()) if match else set[str]()

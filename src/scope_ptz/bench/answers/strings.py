@@ -14,7 +14,7 @@ from scope_ptz.bench.tasks.expected import Text
 from scope_ptz.english.numerals import SMALL_NUMBERS
 
 TEXT_SEPARATOR = " / "
-"""Separates texts that are written in different places."""
+"""Separator between texts that are written in different places."""
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
 """Replacement of letters by the digits that look like them."""
@@ -26,7 +26,7 @@ _CUES = (
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
     (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),
 )
-"""Patterns that introduce a text, the most reliable first, each with the maximum number of words in that text.
+"""Patterns that introduce the reported text, the most reliable first, each with the maximum number of words in that text.
 
 The last match of the last pattern and the first match of the other patterns count.
 An "IS" in capitals is part of the text and does not match.
@@ -34,7 +34,7 @@ An "IS" in capitals is part of the text and does not match.
 _WRITTEN_TEXT = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
 )
-"""A sentence that begins with the text ("STOP is written on the sign")."""
+"""A sentence that begins with the reported text ("STOP is written on the sign")."""
 
 _LEADING_WORDS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 """Words directly before the reported text that are not part of it."""
@@ -50,7 +50,7 @@ _NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|A
 _NEGATION = re.compile(r"(?:\bnot|n't|\bnever)(?: \w+)? $", re.IGNORECASE)
 """A negation before a cue."""
 _NO_TEXT = re.compile(r"(?:there (?:is|are)|done|not)\b", re.IGNORECASE)
-"""Beginnings of prose, which reports no text."""
+"""Beginnings of sentences that report no text."""
 _COMPLETION = re.compile(
     r"(?:(?:ok|okay|sure|done|finished|completed?|ready|all set)|"
     r"(?:(?:the|this|your|all|i have|i|has) )*(?:it|everything|task|request|job|action|operation|command|instruction|step|all)s?"
@@ -61,9 +61,9 @@ _COMPLETION = re.compile(
 """An answer that only states that the task is finished."""
 
 _MAX_WORDS_ALONE = 8
-"""Maximum number of words in a text without a cue."""
+"""Maximum number of words in reported text without a cue."""
 _MAX_WORDS_IN_CAPITALS = 16
-"""Maximum number of words in a text in capitals."""
+"""Maximum number of words in reported text in capitals."""
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
@@ -79,7 +79,7 @@ def same_text(one: str, other: str, *, ocr: bool) -> bool:
 
 
 def normalized_text(text: str, ocr: bool) -> str:
-    """Return a text in lower case without punctuation and spaces. With ``ocr``, letters are replaced by look-alike digits."""
+    """Return text in lower case without punctuation and spaces. With ``ocr``, letters are replaced by look-alike digits."""
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined

@@ -27,7 +27,7 @@ _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "
 """Words that may occur between a contrast phrase and a name. After "and", they begin a new statement."""
 _SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
 """Words that begin a new statement after "and". An earlier negation does not apply to it."""
-_STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
+_SCOPE_ENDS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
 """Words that end the scope of a negation before them."""
 
 _HEDGES = re.compile(
@@ -124,7 +124,7 @@ class AnswerText:
                     claim = claim_of(self.words, start, end)
                     if claim is Claim.NOTHING or self._is_denied_twice(start, end):
                         break
-                    denied = self.is_denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
+                    denied = self.is_denied(start, end) if claim is Claim.STATED else claim is Claim.NOT_FOUND
                     mentions.append(NameMention(name, start, end, denied, self._is_contrast(start)))
                     break
         return mentions
@@ -167,7 +167,7 @@ class AnswerText:
                 after = self.words[at + 1].text
                 return not (word.text == "no" and after == "other") and not (word.text == "none" and after != "of")
             ends_list = word.text == "and" and self.words[at + 1].text in _ARTICLES | _SUBJECTS
-            if word.text in _STOPS or ends_list:
+            if word.text in _SCOPE_ENDS or ends_list:
                 return False
             at -= 1
         return at >= 0 and self._continues_list(segment) and self._opens_denied_list(at)
@@ -185,7 +185,9 @@ class AnswerText:
         clause = next(w.clause for w in self.words if w.segment == segment)
         rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
         segment_words = [w.text for w in self.words if w.segment == segment]
-        return ("or" in rest or "nor" in rest) and not (set(segment_words) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
+        return ("or" in rest or "nor" in rest) and not (
+            set(segment_words) & (_SCOPE_ENDS | {"is", "are", "there", "it", "i", "yes"})
+        )
 
     def _opens_denied_list(self, at: int) -> bool:
         """Return whether the segment that ends at position ``at`` contains a negation and other words after it."""
@@ -262,7 +264,7 @@ def answer_text(text: str) -> AnswerText:
 
 
 def remove_withdrawn(cleaned: str) -> str:
-    """Remove everything up to the last correction ("scratch that", "I mean") from a cleaned text."""
+    """Remove everything up to the last correction ("scratch that", "I mean") from cleaned text."""
     return cleaned[max((match.end() for match in _CORRECTION.finditer(cleaned)), default=0) :]
 
 

@@ -1,4 +1,4 @@
-"""Split a text into normalised words, without markup and with consistent spelling."""
+"""Split text into normalised words, without markup and with consistent spelling."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SPELLINGS = {
     "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
 }  # fmt: skip
 """British spellings of American words."""
-_MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
+_UNIT_NAMES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
 """Unit names by the signs and abbreviations that may follow a number."""
 _IRREGULAR = {
     "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
@@ -44,7 +44,7 @@ _CLAUSE_END = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a text.
+    """A word in a text.
 
     Attributes:
         text: The word in lower case and British spelling.
@@ -60,7 +60,7 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Remove markup from a text, and normalise quotation marks, dashes and spaces. Case is preserved.
+    """Remove markup from text, and normalise quotation marks, dashes and spaces. Case is preserved.
 
     Notes about the source, such as "(seen by ...)", are also removed.
     """
@@ -119,7 +119,7 @@ def words_of(text: str) -> list[Word]:
     for match in _WORD.finditer(lowered):
         gap, word = lowered[end : match.start()], match.group()
         if words and words[-1].text[0].isdigit() and not gap.strip():
-            word = _MEASURES.get(word, word)
+            word = _UNIT_NAMES.get(word, word)
         end = match.end()
         if words and _CLAUSE_END.search(gap):
             clause += 1

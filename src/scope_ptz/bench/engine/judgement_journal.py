@@ -1,6 +1,6 @@
 """The judgement journal of a log: a file next to the log that stores new judgements until they are written to the log.
 
-Thanks to the journal, an interrupted rescoring does not lose judgements.
+An interrupted rescoring therefore loses no judgements.
 """
 
 from __future__ import annotations

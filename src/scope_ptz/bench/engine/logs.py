@@ -97,7 +97,7 @@ def read_header(path: Path) -> EvalLog:
         return header
 
 
-def runs_in(path: Path) -> dict[tuple[str, int], bool]:
+def run_completion(path: Path) -> dict[tuple[str, int], bool]:
     """Return whether each run in a log completed without an error, by task and epoch. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 

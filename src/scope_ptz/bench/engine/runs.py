@@ -22,7 +22,7 @@ from inspect_ai.model import Model
 from scope_ptz.bench.engine.annotations import archive_logs, check_labels
 from scope_ptz.bench.engine.file_lock import lock_file
 from scope_ptz.bench.engine.inspect_internals import PreviousTask, recover_log, resumed_task, silence_display
-from scope_ptz.bench.engine.logs import DECIDING_JUDGE_KEY, read_evaluation, read_header, runs_in, uuids_in
+from scope_ptz.bench.engine.logs import DECIDING_JUDGE_KEY, read_evaluation, read_header, run_completion, uuids_in
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, CARD, card_of
 from scope_ptz.bench.engine.stored_run import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
@@ -120,7 +120,7 @@ def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
 
 def read_stored_log(path: Path) -> StoredLog:
     """Read the log at a path. Raises ``TraceError``."""
-    return StoredLog(path, read_header(path), runs_in(path))
+    return StoredLog(path, read_header(path), run_completion(path))
 
 
 def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Evaluation]:

@@ -51,7 +51,7 @@ class Rater:
         kind: Whether the rater is the checks, a judge, a person or the gold verdict.
         group: Name of the rater's group. The repeats of a judge form a group.
         ratings: The ratings by run.
-        other_verdicts: Number of runs with another verdict ("unscored", "failed", ...), by verdict.
+        other_verdicts: Number of runs with a verdict that is not a rating ("unscored", "failed", ...), by verdict.
     """
 
     name: str

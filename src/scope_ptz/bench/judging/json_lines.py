@@ -39,12 +39,12 @@ def append_line(path: Path, line: str) -> None:
         raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
 
 
-def _complete_size_bytes(size: int, path: Path, step: int = 4096) -> int:
+def _complete_size_bytes(size: int, path: Path, chunk_bytes: int = 4096) -> int:
     """Return the total size in bytes of the complete lines of a file."""
     with path.open("rb") as file:
         end = size
         while end > 0:
-            start = max(0, end - step)
+            start = max(0, end - chunk_bytes)
             file.seek(start)
             newline = file.read(end - start).rfind(b"\n")
             if newline != -1:

@@ -26,7 +26,7 @@ ATTEMPTS = 3
 BUDGET_CHARS = 60_000
 """Default maximum length of a run's description, in characters (about 15,000 tokens)."""
 
-_ECHO_CHARS = 2_000
+_MAX_QUOTED_CHARS = 2_000
 """Maximum number of characters of an invalid reply that are sent back to the judge. Longer replies are shortened."""
 JudgeMessage = dict[str, Any]
 """A chat message to a judge in the OpenAI format."""
@@ -152,7 +152,7 @@ def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET
 def _correction(reply: str, problem: str) -> list[JudgeMessage]:
     """Return messages that repeat the invalid reply and ask for a valid one."""
     return [
-        {"role": "assistant", "content": shorten(reply, _ECHO_CHARS) or "(nothing)"},
+        {"role": "assistant", "content": shorten(reply, _MAX_QUOTED_CHARS) or "(nothing)"},
         {
             "role": "user",
             "content": f"This is no valid verdict: {problem}. Reply again with one JSON object in the given schema, nothing else.",

@@ -95,7 +95,7 @@ def parse_judge_reply(text: str) -> JudgeReply | str:
 
 
 def _json_objects(text: str) -> Iterator[Any]:
-    """Yield every top-level JSON object in a text. Objects with duplicate names are invalid."""
+    """Yield every top-level JSON object in ``text``. Objects with duplicate names are invalid."""
     decoder, start, failed = json.JSONDecoder(object_pairs_hook=_object_with_unique_names), text.find("{"), 0
     while start != -1 and failed < _MAX_FAILED_BRACES:
         try:

@@ -21,7 +21,7 @@ _MAX_FOUR_DIGIT_CODE = 0xFFFF
 
 
 def quote(text: str) -> str:
-    """Add a bar before each line of a text, and escape unprintable characters. An empty text becomes a single bar."""
+    """Add a bar before each line of text, and escape unprintable characters. An empty text becomes a single bar."""
     return "\n".join(BAR + _neutralize(line) for line in _LINE_ENDS.split(text))
 
 
@@ -32,7 +32,7 @@ def quote_name(text: str, max_chars: int) -> str:
 
 
 def shorten(text: str, max_chars: int) -> str:
-    """Shorten a text to about ``max_chars`` characters. Its middle is replaced with a note."""
+    """Shorten text to about ``max_chars`` characters. Its middle is replaced with a note."""
     if len(text) <= max_chars:
         return text
     head, tail = max_chars * 2 // 3, max_chars // 3

@@ -131,11 +131,11 @@ def _table(entries: Sequence[LeaderboardEntry]) -> LeaderboardTable:
 
 def _row(rank: int | None, entry: LeaderboardEntry, categories: Iterable[str]) -> tuple[CellValue, ...]:
     card = entry.header.card
-    place: CellValue = rank if rank is not None else BASELINE if entry.is_baseline else "not ranked"
+    rank_cell: CellValue = rank if rank is not None else BASELINE if entry.is_baseline else "not ranked"
     broken = f"{entry.broken} of {len(entry.lines)} runs broken" if entry.broken else ""
     contended = "contended" if card.contended else ""
     return (
-        place, MarkedCell(entry.name, note=card.variant), MarkedCell(entry.accuracy, note=broken), ", ".join(entry.labels),
+        rank_cell, MarkedCell(entry.name, note=card.variant), MarkedCell(entry.accuracy, note=broken), ", ".join(entry.labels),
         card.perception.name, *(entry.accuracy_in_category(name) for name in categories),
         MarkedCell(entry.latency_s, note=contended), card.started[:10], card.dataset,
     )  # fmt: skip

@@ -18,7 +18,7 @@ from scope_ptz.bench.reports.details.error_analysis import MODE_TITLES, error_se
 from scope_ptz.bench.reports.details.latency import latency_section
 from scope_ptz.bench.reports.details.paper import paper_section
 from scope_ptz.bench.reports.details.recommendations import architecture_section, design_section, scope_section, spread_section
-from scope_ptz.bench.reports.details.review import audit_section, conduct_section, costs_section
+from scope_ptz.bench.reports.details.review import audit_section, costs_section, incidents_section
 from scope_ptz.bench.reports.details.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
 from scope_ptz.bench.reports.display_names import unexpected_model
 from scope_ptz.bench.reports.log_findings import finding_lines, stored_verdict_lines
@@ -126,7 +126,7 @@ def build_report(
         audit_section(ranked, exact, links),
         difficulty_section(comparable),
         costs_section(runs),
-        conduct_section(runs),
+        incidents_section(runs),
         _failed_tasks(runs, links),
         conditions_section(runs),
         paper_section(),
@@ -159,7 +159,7 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], comparable
             "They are left out of the oracle setting, the spreads and the recommendation of a pair. Paired comparisons use the "
             "shared tasks."
         )
-    if other_runs := [run.label for run in runs if run.other_tasks and run not in ranked]:
+    if other_runs := [run.label for run in runs if run.task_difference and run not in ranked]:
         warnings.append(
             "These reference runs, variants and baselines cover different tasks from the model pairs, as their labels state: "
             f"{'; '.join(other_runs)}. Their averages are not comparable with those of the pairs."

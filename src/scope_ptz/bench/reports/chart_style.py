@@ -156,11 +156,11 @@ def legend_columns(labels: Sequence[str], max_chars: int = 58) -> int:
     return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 
 
-def draw_legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
-    """Draw a legend below the axes. ``keys`` are the legend's handles. Without them, the labelled artists are used."""
+def draw_legend_below(figure: Figure, labels: Sequence[str], handles: Sequence[Artist] = ()) -> None:
+    """Draw a legend below the axes. ``handles`` are the legend's handles. Without them, the labelled artists are used."""
     columns = legend_columns(labels)
     loc: Any = "outside lower center" if columns == 2 else "outside lower left"
-    figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
+    figure.legend(**({"handles": handles} if handles else {}), loc=loc, ncols=columns, fontsize=9.5)
 
 
 def legend_height_px(labels: Sequence[str]) -> int:

@@ -38,7 +38,7 @@ def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
 
     Runs on other tasks have hollow markers and are drawn below the rest. Unranked runs are grey and come last.
     """
-    ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
+    ordered = sorted(runs, key=lambda r: (r.ranked, not r.task_difference, r.macro.value if r.macro else 0.0))
     colour_of_run = run_colours(runs)
     labels = [wrap_label(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
     with canvas(880, 110 + row_height_px(labels) * len(ordered)) as (figure, axes):
@@ -48,14 +48,14 @@ def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
                 continue
             if macro.low is not None and macro.high is not None:
                 axes.plot([100 * macro.low, 100 * macro.high], [y, y], color=colour, lw=2.5, solid_capstyle="round")
-            face = PAPER if run.other_tasks else colour
+            face = PAPER if run.task_difference else colour
             axes.plot(100 * macro.value, y, "o" if run.ranked else "D", mec=colour, mfc=face, mew=2, ms=7, clip_on=False)
         axes.set_yticks(range(len(ordered)), labels)
         axes.set_xlim(0, 101)
         axes.set_ylim(-0.6, len(ordered) - 0.4)
         axes.set_xlabel("Macro accuracy (%), 95% interval")
         values = "; ".join(f"{r.label} {100 * r.macro.value:.1f}%" for r in reversed(ordered) if r.macro)
-        title = "Macro accuracy" + (". Hollow: runs on other tasks" if any(r.other_tasks for r in runs) else "")
+        title = "Macro accuracy" + (". Hollow: runs on other tasks" if any(r.task_difference for r in runs) else "")
         return create_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
 
 
@@ -87,7 +87,7 @@ def mode_chart(
 
     if len(runs) > MAX_GROUPED_RUNS:
         return _mode_panels(key, title, runs, counts, trials, titles, all_runs)
-    keys: list[Artist] = []
+    handles: list[Artist] = []
     fills = dict(zip((run.label for run in all_runs), bar_styles(all_runs), strict=True))
     labels = [shorten_label(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
     with canvas(980, 370 + legend_height_px(labels)) as (figure, axes):
@@ -99,7 +99,7 @@ def mode_chart(
             # Bars of zero height are omitted, because their edges would appear as dashes on the axis.
             bars = [(x, height) for x, height in zip(positions, heights, strict=True) if height]
             axes.bar([x for x, _ in bars], [y for _, y in bars], width * 0.92, color=fill, hatch=hatch, edgecolor=edge, lw=0.6)
-            keys.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
+            handles.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
         for group in range(1, len(titles)):
             axes.axvline(group - 0.5, color=FAINT, lw=1)
         axes.grid(axis="x", visible=False)
@@ -107,7 +107,7 @@ def mode_chart(
         axes.set_xlim(-0.5, len(titles) - 0.5)
         axes.set_ylim(bottom=0)
         axes.set_ylabel("Incorrect trials per 100")
-        draw_legend_below(figure, labels, keys)
+        draw_legend_below(figure, labels, handles)
         return create_chart(f"chart-{key.replace('_', '-')}", title, _mode_alt(runs, counts, titles), figure)
 
 

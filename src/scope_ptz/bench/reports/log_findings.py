@@ -10,7 +10,7 @@ from scope_ptz.version import __version__
 
 MAX_NAMED = 5
 """Maximum number of findings to list on one line."""
-_MEANINGS: dict[LogFault, str] = {
+_EFFECTS: dict[LogFault, str] = {
     "tasks-changed": "The tasks of this log were changed after it was written. None of its scores is used",
     "card-differs": "The run card does not name the models of the traces. The scores are not those of the named pair",
     "task-differs": "The log contains other versions of published tasks. The published tasks are used",
@@ -28,7 +28,7 @@ def finding_lines(evaluation: Evaluation) -> list[str]:
     """Return a line for each kind of contradiction found in a log, with the names of the first samples."""
     lines = []
     name = Path(evaluation.log).name or evaluation.card.pair
-    for kind, meaning in _MEANINGS.items():
+    for kind, effect in _EFFECTS.items():
         found = [finding for finding in evaluation.findings if finding.kind == kind]
         if not found:
             continue
@@ -39,7 +39,7 @@ def finding_lines(evaluation: Evaluation) -> list[str]:
         version = ""
         if kind == "score-differs" and evaluation.card.package_version != __version__:
             version = f" (the log is from version {evaluation.card.package_version}, the checks are those of {__version__})"
-        lines.append(f"{name}: {meaning}{version}{count_text}. {details[:1].upper()}{details[1:]}{more}.")
+        lines.append(f"{name}: {effect}{version}{count_text}. {details[:1].upper()}{details[1:]}{more}.")
     return lines
 
 

@@ -123,8 +123,8 @@ def comparison_table(key: str, title: str, comparisons: Sequence[PairedCompariso
     return ReportTable(key, title, columns, rows, notes)
 
 
-def are_differences_shown(comparisons: Sequence[PairedComparison]) -> list[bool]:
-    """Return, for each comparison, whether it shows a difference after adjustment for the number of comparisons."""
+def are_differences_significant(comparisons: Sequence[PairedComparison]) -> list[bool]:
+    """Return, for each comparison, whether its difference is significant after adjustment for the number of comparisons."""
     return [difference_text(*p_values) == "yes" for p_values in zip(*_adjusted_p_values(comparisons), strict=True)]
 
 
@@ -164,7 +164,7 @@ def comparison_section(runs: Sequence[ReportRun], comparisons: Sequence[PairedCo
             (),
             (unpaired,),
         )
-    number = sum(are_differences_shown(comparisons))
+    number = sum(are_differences_significant(comparisons))
     smallest = [c.smallest_detectable for c in comparisons if c.smallest_detectable is not None]
     power = (
         f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."

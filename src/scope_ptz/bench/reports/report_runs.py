@@ -50,7 +50,7 @@ class ReportRun:
         label: Unique name in the report, which states how the run differs from other runs.
         planner: The planner's model; None if it is not in the registry.
         perception: The perception model; None if it is not in the registry.
-        other_tasks: A text that states how its tasks differ from those of most pairs on the main task set; empty if they do not.
+        task_difference: How its tasks differ from those of most pairs on the main task set; empty if they do not differ.
     """
 
     number: int
@@ -58,7 +58,7 @@ class ReportRun:
     label: str
     planner: Model | None
     perception: Model | None
-    other_tasks: str = ""
+    task_difference: str = ""
 
     @property
     def kind(self) -> RunKind:
@@ -217,7 +217,7 @@ def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[
     common = main_tasks(ordered)
     notes = [_task_difference(run, common) if run in runs_of_main_set(ordered) else "" for run in ordered]
     return tuple(
-        replace(run, number=number, other_tasks=note, label=f"{run.label} [{note}]" if note else run.label)
+        replace(run, number=number, task_difference=note, label=f"{run.label} [{note}]" if note else run.label)
         for number, (run, note) in enumerate(zip(ordered, notes, strict=True), 1)
     )
 

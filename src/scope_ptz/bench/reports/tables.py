@@ -166,7 +166,7 @@ def _suffixes(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
 
 
 def _escape_formula(text: str) -> str:
-    """Add a leading apostrophe to a text that a spreadsheet would interpret as a formula."""
+    """Add a leading apostrophe to text that a spreadsheet would interpret as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
@@ -198,6 +198,6 @@ _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {
 
 
 def escape(text: str) -> str:
-    """Escape a text for Markdown, and join its lines."""
+    """Escape text for Markdown, and join its lines."""
     plain = " ".join(text.split())
     return plain if plain.replace(".", "").replace(" ", "").isalnum() else plain.translate(_SPECIAL)

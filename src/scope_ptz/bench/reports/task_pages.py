@@ -25,7 +25,7 @@ FRAME_WIDTH = 640
 MAX_PIXELS = 64_000_000
 """Maximum number of pixels in a picture. Larger pictures are not shown."""
 MAX_TEXT_CHARS = 2_000
-"""Maximum length of a text on a page, in characters. Longer texts are truncated."""
+"""Maximum length of each text on a page, in characters. Longer text is truncated."""
 
 
 class OpenedRun(Protocol):
@@ -85,14 +85,14 @@ class FailedRun:
         trial: The trial.
         steps: The planner steps.
         first_frame: Path of the first frame; None if it was not stored.
-        missing: The reason why the steps cannot be shown; empty if they are shown.
+        omission_reason: Why the steps cannot be shown; empty if they are shown.
     """
 
     run: ReportRun
     trial: Trial
     steps: tuple[PageStep, ...] = ()
     first_frame: str | None = None
-    missing: str = ""
+    omission_reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,13 +206,13 @@ def task_pages(
 
 def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
     if open_sample is None:
-        return FailedRun(run, trial, missing="This report was written without trajectories.")
+        return FailedRun(run, trial, omission_reason="This report was written without trajectories.")
     try:
         sample = open_sample(run.evaluation, trial)
         trace = sample.trace
         return FailedRun(run, trial, _steps(trace, sample, frames), _stored_frame(trace.started.frame, sample, frames))
     except ScopeError as error:
-        return FailedRun(run, trial, missing=f"The log does not contain the trajectory: {error}")
+        return FailedRun(run, trial, omission_reason=f"The log does not contain the trajectory: {error}")
 
 
 def _stored_frame(name: str | None, sample: OpenedRun, frames: FrameStore) -> str | None:
@@ -312,7 +312,7 @@ def _value_text(value: Any) -> str:
 
 
 def truncate(text: str) -> str:
-    """Truncate a text to ``MAX_TEXT_CHARS``, and add a note with its full length."""
+    """Truncate text to ``MAX_TEXT_CHARS``, and add a note with its full length."""
     return text if len(text) <= MAX_TEXT_CHARS else f"{text[:MAX_TEXT_CHARS]} … ({len(text):,} characters)"
 
 

@@ -15,7 +15,7 @@ TITLES = {
 MAX_ROWS = 25
 """Maximum number of table rows in the terminal. The report contains all rows."""
 MAX_CELL_CHARS = 72
-"""Maximum length of a cell's text in characters. Longer texts are truncated."""
+"""Maximum length of a cell's text in characters. Longer text is truncated."""
 
 
 def terminal_lines(report: EvaluationReport) -> Iterator[str]:

@@ -81,25 +81,25 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     final = task.behaviour.final
     if final is None:
         return None
-    wrong = pose_difference(final, episode.final)
-    return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
+    differences = pose_difference(final, episode.final)
+    return CheckResult("pose", not differences, "; ".join(differences) or "the final pose is as wanted")
 
 
 def pose_difference(required: FinalPose, actual: CameraPosition) -> list[str]:
     """Return descriptions of the differences from the required pose. The list is empty if the pose is within tolerance."""
-    wrong = []
+    differences = []
     if actual.viewpoint != required.viewpoint:
-        wrong.append(f"at viewpoint {actual.viewpoint}, not {required.viewpoint}")
+        differences.append(f"at viewpoint {actual.viewpoint}, not {required.viewpoint}")
     pan = abs(wrap_pan_deg(actual.pose.pan_deg - required.pan_deg))
     tilt = abs(actual.pose.tilt_deg - required.tilt_deg)
     zoom = abs(actual.pose.zoom / required.zoom - 1)
     if pan > required.tolerance_deg + 1e-6:
-        wrong.append(f"pan is off by {pan:.2f} degrees")
+        differences.append(f"pan is off by {pan:.2f} degrees")
     if tilt > required.tolerance_deg + 1e-6:
-        wrong.append(f"tilt is off by {tilt:.2f} degrees")
+        differences.append(f"tilt is off by {tilt:.2f} degrees")
     if zoom > required.zoom_share + 1e-6:
-        wrong.append(f"zoom is off by {zoom:.1%}")
-    return wrong
+        differences.append(f"zoom is off by {zoom:.1%}")
+    return differences
 
 
 def check_calls(task: Task, episode: Episode) -> CheckResult | None:
@@ -118,8 +118,8 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
         return None
     used = sorted({call.name for call in episode.calls if call.succeeded and call.name in forbidden.tools})
     changed = [change for change in changed_properties(episode.start, episode.final) if change in forbidden.changes]
-    wrong = [f"{name} was called" for name in used] + [f"{name} was changed" for name in changed]
-    return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
+    violations = [f"{name} was called" for name in used] + [f"{name} was changed" for name in changed]
+    return CheckResult("forbidden", not violations, "; ".join(violations) or "nothing forbidden happened")
 
 
 def changed_properties(before: CameraPosition, after: CameraPosition) -> list[str]:

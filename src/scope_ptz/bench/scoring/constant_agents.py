@@ -120,17 +120,17 @@ def constant_replies(tasks: Sequence[Task]) -> tuple[ConstantReply, ...]:
     )
 
 
-def looking_episode(task: Task) -> Episode:
+def observing_episode(task: Task) -> Episode:
     """Return a run, without an answer, of an agent that moves as instructed and observes once."""
     view = next((view for view in task.evidence if view.must_look), None)
     position = _final_position(task, view)
-    calls, looked = list[EpisodeCall](), False
+    calls, has_observed = list[EpisodeCall](), False
     for step in task.reference:
-        if step.tool in _OBSERVING_TOOLS and looked:
+        if step.tool in _OBSERVING_TOOLS and has_observed:
             continue
         arguments: dict[str, object] = dict(step.arguments)
         if step.tool in _OBSERVING_TOOLS:
-            looked, arguments[_OBSERVING_TOOLS[step.tool]] = True, task.instruction
+            has_observed, arguments[_OBSERVING_TOOLS[step.tool]] = True, task.instruction
         calls.append(_call(task, step.tool, arguments, position, view))
     pictures = tuple(SavedPicture(f"{number}.jpg") for number, step in enumerate(task.reference) if step.tool == "take_image")
     return Episode(task.instruction, position, tuple(calls), position, "", "answered", pictures)
@@ -157,7 +157,7 @@ def _call(task: Task, tool: str, arguments: Mapping[str, object], at: CameraPosi
 
 def idle_episode(task: Task) -> Episode:
     """Return a run, without an answer, of an agent that makes no calls."""
-    return replace(looking_episode(task), calls=(), pictures=())
+    return replace(observing_episode(task), calls=(), pictures=())
 
 
 def passes_without_answer(task: Task, episode: Episode) -> bool:
@@ -186,17 +186,17 @@ def find_accepting_tasks(tasks: Sequence[Task], replies: Sequence[ConstantReply]
     return {reply: frozenset(task.id for task in answerable if accepts_reply(task, reply)) for reply in replies}
 
 
-def find_passed_tasks(tasks: Sequence[Task], accepted: TasksByReply, *, looks: bool) -> TasksByReply:
+def find_passed_tasks(tasks: Sequence[Task], accepted: TasksByReply, *, observes: bool) -> TasksByReply:
     """Return, for each reply, the tasks for which it passes all checks.
 
     Args:
         tasks: The tasks.
         accepted: For each reply, the tasks whose answer and outcome checks it passes.
-        looks: Whether the agent moves as instructed and observes once. If False, the agent makes no calls.
+        observes: Whether the agent moves as instructed and observes once. If False, the agent makes no calls.
     """
     candidates = frozenset[str]().union(*accepted.values())
     candidate_tasks = [task for task in tasks if task.id in candidates]
-    passing = {t.id for t in candidate_tasks if passes_without_answer(t, looking_episode(t) if looks else idle_episode(t))}
+    passing = {t.id for t in candidate_tasks if passes_without_answer(t, observing_episode(t) if observes else idle_episode(t))}
     return {reply: ids & passing for reply, ids in accepted.items()}
 
 
@@ -216,7 +216,7 @@ def chance_level(tasks: Sequence[Task]) -> ChanceLevel:
 def _chance_level(tasks: Sequence[Task]) -> ChanceLevel:
     answerable = [task for task in tasks if expects_reply(task)]
     accepted = find_accepting_tasks(tasks, constant_replies(tasks))
-    looking = find_passed_tasks(tasks, accepted, looks=True)
+    looking = find_passed_tasks(tasks, accepted, observes=True)
     by_category = {category: [t for t in tasks if t.category == category] for category in dict.fromkeys(t.category for t in tasks)}
     adaptive_correct = sum(
         max(len(_tasks_in(ids, candidate_tasks)) for ids in looking.values()) for candidate_tasks in by_category.values()
@@ -227,7 +227,7 @@ def _chance_level(tasks: Sequence[Task]) -> ChanceLevel:
     }
     return ChanceLevel(
         tasks=len(tasks),
-        without_calls=_best_score(find_passed_tasks(tasks, accepted, looks=False), answerable),
+        without_calls=_best_score(find_passed_tasks(tasks, accepted, observes=False), answerable),
         accepted=_best_score(accepted, answerable),
         looking=_best_score(looking, answerable),
         adaptive=ConstantAgentScore(BY_CATEGORY, adaptive_correct, sum(consistent.values()), len(answerable)),

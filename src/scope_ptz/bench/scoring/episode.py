@@ -161,22 +161,24 @@ class FrameGeometry:
         return Equirectangular(left, span, top, bottom, round(span * density), round((top - bottom) * density))
 
 
-def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = False, keeps_files: bool = True) -> Episode:
+def episode_of(
+    trace: Trace, preset_viewpoints: PresetViewpoints, *, planner_sees: bool = False, keeps_files: bool = True
+) -> Episode:
     """Build an episode from a trace.
 
     Args:
         trace: The recorded run.
-        places: The viewpoints of the scene's presets.
+        preset_viewpoints: The viewpoints of the scene's presets.
         planner_sees: Whether the planner was shown frames.
         keeps_files: Whether pictures are kept in the run folder, so that their existence can be checked.
     """
     started = trace.started
     geometry = FrameGeometry(started.frame_width, started.frame_height)
     position = start = CameraPosition(started.viewpoint, started.pose.pose())
-    home = started.labels.home_viewpoint or places.home
+    home = started.labels.home_viewpoint or preset_viewpoints.home
     calls, planner_views, states = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
-        call = _episode_call(called, position, places, home, geometry)
+        call = _episode_call(called, position, preset_viewpoints, home, geometry)
         position = states[called.step] = call.after
         calls.append(call)
     if planner_sees:
@@ -198,13 +200,13 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
 
 
 def _episode_call(
-    called: Called, before: CameraPosition, places: PresetViewpoints, home: str, geometry: FrameGeometry
+    called: Called, before: CameraPosition, preset_viewpoints: PresetViewpoints, home: str, geometry: FrameGeometry
 ) -> EpisodeCall:
     outcome = called.outcome
     succeeded = outcome.error is None
     viewpoint = before.viewpoint
     if succeeded and outcome.call.name == "go_to_preset":
-        viewpoint = places.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
+        viewpoint = preset_viewpoints.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
     elif succeeded and outcome.call.name == "go_home":
         viewpoint = home
     after = CameraPosition(viewpoint, called.pose.pose())

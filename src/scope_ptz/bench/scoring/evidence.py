@@ -76,9 +76,9 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
             reported_text = normalized_text(reported, ocr=task.expected.ocr)
             return all(normalized_text(part, ocr=task.expected.ocr) in reported_text for part in str(value).split(TEXT_SEPARATOR))
         case Choice():
-            chosen = all_wordings(str(value), task.expected.options[str(value)]) if value != "same" else ()
-            several = any(len(view.items) > 1 for view in task.evidence)
-            return not chosen or (_is_reported(episode, chosen) if several else names_any(reported, chosen))
+            wordings = all_wordings(str(value), task.expected.options[str(value)]) if value != "same" else ()
+            has_several_items = any(len(view.items) > 1 for view in task.evidence)
+            return not wordings or (_is_reported(episode, wordings) if has_several_items else names_any(reported, wordings))
         case NameSet():
             named = value if isinstance(value, frozenset) else frozenset()
             return all(_is_reported_present(episode, all_wordings(name, task.expected.options[name])) for name in named)
@@ -93,8 +93,8 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
 
 def _is_reported(episode: Episode, wordings: Sequence[str]) -> bool:
     """Return whether the tools reported on a thing: its presence, or a count (even zero)."""
-    counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
-    return _is_reported_present(episode, wordings) or any(names_any(description, wordings) for description in counted)
+    descriptions = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
+    return _is_reported_present(episode, wordings) or any(names_any(description, wordings) for description in descriptions)
 
 
 def _is_reported_present(episode: Episode, wordings: Sequence[str]) -> bool:

@@ -18,7 +18,7 @@ PUBLIC_SUFFIX = ".pub"
 """Suffix of public key files. It is appended to the file name of the private key."""
 RAW_KEY_BYTES = 32  # size of a raw public key
 MAX_KEY_FILE_BYTES = 10_000  # a larger file is not a key
-_OTHERS = 0o077  # permission bits of other users
+_OTHER_USERS_BITS = 0o077  # permission bits of other users
 
 
 def generate_key(path: Path) -> Ed25519PublicKey:
@@ -59,7 +59,7 @@ def load_private_key(path: Path) -> Ed25519PrivateKey:
     from cryptography.hazmat.primitives.serialization import load_pem_private_key
 
     content = _read(path)
-    if os.name == "posix" and path.stat().st_mode & _OTHERS:
+    if os.name == "posix" and path.stat().st_mode & _OTHER_USERS_BITS:
         raise ConfigError(f"Other users can read the key {path}. Run `chmod 600 {path}`, or create a new key.")
     try:
         key = load_pem_private_key(content, password=None)

@@ -124,7 +124,7 @@ def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float 
     return cluster_variance(Scores(scores.values, scores.strata, scores.unit_of_each), weights)
 
 
-def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
+def strata_with_one_cluster(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
     """Return the strata with only one cluster. They add no variance, because their residuals always sum to 0."""
     clusters_by_stratum: dict[Hashable, set[Hashable]] = {}
     for stratum, cluster in zip(scores.strata, scores.clusters, strict=True):
@@ -144,7 +144,7 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
     if (
         clustered is None
         or independent is None
-        or len(strata_without_spread(scores, weights)) == np.count_nonzero([*weights.values()])
+        or len(strata_with_one_cluster(scores, weights)) == np.count_nonzero([*weights.values()])
     ):
         return None
     variance = max(clustered, independent)
@@ -242,7 +242,7 @@ def newcombe(first: Bounded, second: Bounded) -> tuple[float, float] | tuple[Non
 
 
 def _single_cluster_strata(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
-    return tuple(map(str, strata_without_spread(scores, weights)))
+    return tuple(map(str, strata_with_one_cluster(scores, weights)))
 
 
 def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:

@@ -28,7 +28,7 @@ MOST_ANSWER = 8_000
 Line = Annotated[str, Field(max_length=500)]
 MAX_TRACE_CHARS = 2_000_000
 """Maximum length of a compressed trace, in base64 characters."""
-CUT = " [cut]"
+TRUNCATION_MARK = " [cut]"
 """Suffix of a truncated answer."""
 TOOLS = frozenset(get_args(ToolName))
 UNKNOWN_TOOL = "unknown"
@@ -127,7 +127,7 @@ class TrialLine(_Part):
     error_mode: ErrorMode | None = None
     checks: dict[str, bool | None]
     outcome: str | None
-    answer: Annotated[str, Field(max_length=MOST_ANSWER + len(CUT))]
+    answer: Annotated[str, Field(max_length=MOST_ANSWER + len(TRUNCATION_MARK))]
     steps: Count
     tool_calls: dict[str, Count]
     bad_calls: Count
@@ -234,7 +234,7 @@ def write_submission(submission: tuple[Header, list[TrialLine]], out: Path) -> N
 
 
 def remove_secrets(text: str) -> str:
-    """Replace everything in a text that looks like a key, a token or a server address."""
+    """Replace everything in ``text`` that looks like a key, a token or a server address."""
     return _ADDRESS.sub("[removed]", _SECRET.sub("[removed]", text))
 
 
@@ -255,7 +255,7 @@ def secrets_in(content: Any, path: str = "") -> Iterator[str]:
 
 def trial_line(trial: Trial, run: Run | None = None) -> TrialLine:
     """Return the published form of a trial. ``run`` is its published run, for format 2."""
-    answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + CUT
+    answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + TRUNCATION_MARK
     judgements = tuple(
         JudgeSaid(judge=j.judge, prompt=j.prompt, verdict=j.verdict, error_mode=j.error_mode)
         for j in trial.judgements

@@ -27,8 +27,10 @@ from scope_ptz.version import __version__
 
 MAX_BYTES = 200_000_000
 """Maximum size of a submission in bytes."""
-NO_TRACES = "not verifiable: the file uses format 1, which has no traces, so its verdicts and calls are only its author's claims"
-NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
+NO_TRACES_NOTE = (
+    "not verifiable: the file uses format 1, which has no traces, so its verdicts and calls are only its author's claims"
+)
+NOT_RANKED_NOTE = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +106,7 @@ def check_submission(
     totals = totals_of(trials)
     models = (header.card.planner, header.card.perception)
     unranked = not header.card.ranked or any(_is_built_in(model.name) for model in models)
-    notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
+    notes = [NOT_RANKED_NOTE.format(pair=header.card.pair)] if unranked else []
     if broken := totals.headlines.get("infrastructure", 0):
         notes.append(f"{broken} of {totals.trials} trials failed because of infrastructure errors and are excluded from accuracy")
     notes += _provenance_notes(header, trials, provenance)
@@ -135,7 +137,7 @@ def _trace_faults(
 def _provenance_notes(header: Header, lines: Sequence[TrialLine], provenance: Provenance) -> list[str]:
     """Return notes about the limits of the validation: who ran the evaluation, and which verdicts cannot be recomputed."""
     notes = list(provenance.notes)
-    notes += [NO_TRACES] if header.format == 1 else []
+    notes += [NO_TRACES_NOTE] if header.format == 1 else []
     if header.card.isolation is not None:
         notes.append(f"the agent was {header.card.isolation}")
     if judged := sum(line.scored_by == "judge" for line in lines):

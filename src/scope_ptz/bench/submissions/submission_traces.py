@@ -30,7 +30,7 @@ _COMPUTED_FIELDS = (
     "collateral", "input_tokens", "output_tokens", "cost_usd", "times",
 )  # fmt: skip
 """Line fields that are computed from the trace, the most important first."""
-_USABLE_FINDINGS = frozenset({"score-differs", "task-differs", "card-differs"})
+_NONBLOCKING_FINDINGS = frozenset({"score-differs", "task-differs", "card-differs"})
 """Kinds of findings that do not affect the traces, so that the log can still be submitted."""
 
 
@@ -59,7 +59,7 @@ def publish_runs(evaluation: Evaluation, stored_runs: Iterable[RunToVerify]) -> 
     Raises:
         InputError: Runs in the log are missing, repeated or damaged.
     """
-    blocking = [finding for finding in evaluation.findings if finding.kind not in _USABLE_FINDINGS]
+    blocking = [finding for finding in evaluation.findings if finding.kind not in _NONBLOCKING_FINDINGS]
     if blocking:
         first = blocking[0]
         raise InputError(

@@ -9,7 +9,7 @@ from scope_ptz.agent.records import OUTCOMES
 from scope_ptz.bench.answers import ParsedValue, agrees, parse_answer
 from scope_ptz.bench.scoring.trials import RunCard
 from scope_ptz.bench.scoring.verdict import MOVING_TOOLS
-from scope_ptz.bench.submissions.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
+from scope_ptz.bench.submissions.submission import TOOLS, TRUNCATION_MARK, UNKNOWN_TOOL, Header, TrialLine
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.tools.registry import TOOLS as REGISTRY
@@ -70,8 +70,8 @@ def _verdict_faults(line: TrialLine) -> Iterator[str]:
 
 
 def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Yield a fault if parsing the answer again gives another result for the answer check."""
-    if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(CUT):
+    """Yield a fault if parsing the answer again gives a different result for the answer check."""
+    if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(TRUNCATION_MARK):
         return
     if "answer" not in line.checks:
         if line.headline != "infrastructure":
@@ -126,7 +126,9 @@ def _infrastructure_faults(line: TrialLine, task: Task) -> Iterator[str]:
     """
     if line.headline != "infrastructure" or line.outcome in (None, *BROKEN_OUTCOMES):
         return
-    has_full_answer = line.outcome == "answered" and not isinstance(task.expected, ActionOnly) and not line.answer.endswith(CUT)
+    has_full_answer = (
+        line.outcome == "answered" and not isinstance(task.expected, ActionOnly) and not line.answer.endswith(TRUNCATION_MARK)
+    )
     if (
         not line.perception_failures
         or line.checks.get("coverage") is not False

@@ -41,7 +41,7 @@ FINDING_DESCRIPTIONS: dict[FindingKind, str] = {
     "missing-scene": "the scene does not exist",
     "missing-preset": "the scene has no preset of this name",
     "duplicate": "another row asks the same question about the same view",
-    "contradiction": "another row asks the same question about the same view and expects another answer",
+    "contradiction": "another row asks the same question about the same view and expects a different answer",
     "same-at-every-preset": "the question has the same answer at several presets, so the start position does not matter",
     "now-but-full": "the question is about what is visible now, but the row expects a sweep of the full scene",
     "answer-in-question": "the question contains its answer",

@@ -53,18 +53,18 @@ def expected_in_words(expected: AnyExpected) -> str:
     match expected:
         case Number():
             unit = f" ({expected.unit[0]})" if expected.unit else ""
-            give = f", give or take {expected.tolerance:g}" if expected.tolerance else ""
-            return f"{expected.value:g}{unit}{give}"
+            tolerance = f", give or take {expected.tolerance:g}" if expected.tolerance else ""
+            return f"{expected.value:g}{unit}{tolerance}"
         case YesNo():
             wordings = expected.affirms if expected.value else expected.denies
             return f"{'Yes' if expected.value else 'No'}{_alternatives(wordings)}"
         case Choice():
             others = [name for name in expected.options if name != expected.value]
-            wrong = f" (not {', '.join(others)})" if others else ""
-            return f"{expected.value}{_alternatives(expected.options[expected.value])}{wrong}"
+            excluded = f" (not {', '.join(others)})" if others else ""
+            return f"{expected.value}{_alternatives(expected.options[expected.value])}{excluded}"
         case Text():
-            lenient = "; look-alike letters and digits (0/O, 1/I, 5/S, 8/B) count as the same" if expected.ocr else ""
-            return f"the text {_join_with_or(expected.accepted)}{lenient}"
+            ocr_note = "; look-alike letters and digits (0/O, 1/I, 5/S, 8/B) count as the same" if expected.ocr else ""
+            return f"the text {_join_with_or(expected.accepted)}{ocr_note}"
         case NameSet():
             return "all of these and nothing else, in any order: " + ", ".join(expected.value) if expected.value else "none of them"
         case Ordering():

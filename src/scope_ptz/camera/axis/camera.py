@@ -20,7 +20,7 @@ from scope_ptz.camera.capabilities import Capabilities
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState
 from scope_ptz.camera.network.camera import Command, NetworkCamera
 from scope_ptz.camera.network.settling import SettlingCriteria
-from scope_ptz.camera.network.stop_process import StopProcess
+from scope_ptz.camera.network.watchdog_process import WatchdogProcess
 from scope_ptz.errors import CameraError, UnknownNameError
 from scope_ptz.geometry import Axis, Pose, wrap_pan_deg
 
@@ -45,7 +45,7 @@ class AxisCamera(NetworkCamera):
             name, device.limits, device.optics, pictures.width, pictures.height, simulated=False,
             capabilities=device.capabilities, firmware=device.firmware,
         )  # fmt: skip
-        watchdog = StopProcess(client.http, stop_device, {"channel": client.channel})
+        watchdog = WatchdogProcess(client.http, stop_device, {"channel": client.channel})
         super().__init__(info, pictures, settling, watchdog)
         self._client, self._device = client, device
         self._lens = AxisLens(name, client, device.capabilities, settling.poll_s)
@@ -164,9 +164,9 @@ class AxisCamera(NetworkCamera):
         move = requests.continuous_pan_tilt(
             channel, speeds.to_speed(pan_dps), speeds.to_speed(tilt_dps), proportional=proportional
         )  # fmt: skip
-        await self._send(number, partial(self._client.command, replace(move, repeat=False)))
+        await self._send(number, partial(self._client.command, replace(move, retryable=False)))
         if zoom or self._zoom_driven:
-            zooming = replace(requests.continuous_zoom(channel, zoom), repeat=False)
+            zooming = replace(requests.continuous_zoom(channel, zoom), retryable=False)
             await self._send(number, partial(self._client.command, zooming))
             self._zoom_driven = bool(zoom)
 

@@ -59,7 +59,7 @@ class VapixClient:
         Raises:
             CameraError: The device cannot be reached, or lacks the interface.
         """
-        reply = await self.http.get(request.path, request.query, repeat=request.repeat, accept=NOT_IMPLEMENTED_STATUSES)
+        reply = await self.http.get(request.path, request.query, retry=request.retryable, accept=NOT_IMPLEMENTED_STATUSES)
         if reply.status in NOT_IMPLEMENTED_STATUSES:
             raise CameraReplyError(f"The camera at {self.address} does not support {request.path}. Check its model and firmware.")
         return reply

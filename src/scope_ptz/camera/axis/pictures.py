@@ -66,7 +66,7 @@ class AxisPictures(DevicePictures):
         request = requests.mjpeg(channel, self.width, self.height, rate_hz)
         return MjpegStream(self._client.http, request.path, request.query, width=self.width, height=self.height)
 
-    async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
+    async def take_snapshot(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
         reply = await self._client.send(requests.snapshot(self._client.channel, width, height))
         return reply.body, await to_thread.run_sync(partial(decode_jpeg, reply.body, width=width, height=height))
 

@@ -30,12 +30,12 @@ class VapixRequest:
     Attributes:
         path: The path on the device.
         query: Query parameters, not yet URL-encoded.
-        repeat: Whether the request may be sent again after a lost connection. This is safe only if it is idempotent.
+        retryable: Whether the request may be sent again after a lost connection. This is safe only if it is idempotent.
     """
 
     path: str
     query: dict[str, str]
-    repeat: bool = True
+    retryable: bool = True
 
 
 def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> VapixRequest:
@@ -46,7 +46,7 @@ def absolute(channel: int, pan_deg: float, tilt_deg: float, zoom_units: int) -> 
 
 
 def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]) -> VapixRequest:
-    """Centre a point of the picture, and optionally zoom.
+    """Centre a point in the picture, and optionally zoom.
 
     Args:
         channel: The video channel.
@@ -58,7 +58,7 @@ def centre(channel: int, x: float, y: float, percent: int, size: tuple[int, int]
     width, height = size
     point, size_fields = f"{round(x * width)},{round(y * height)}", {"imagewidth": str(width), "imageheight": str(height)}
     command = {"center": point} if percent == 100 else {"areazoom": f"{point},{max(percent, 1)}"}
-    return replace(_ptz(channel, **command, **size_fields), repeat=False)
+    return replace(_ptz(channel, **command, **size_fields), retryable=False)
 
 
 def continuous_pan_tilt(channel: int, pan: int, tilt: int, *, proportional: bool = False) -> VapixRequest:
@@ -123,12 +123,12 @@ def autoiris(channel: int, *, on: bool) -> VapixRequest:
 
 def relative_focus(channel: int, steps: int) -> VapixRequest:
     """Move the focus by a number of steps, positive to focus farther away."""
-    return replace(_ptz(channel, rfocus=str(_clamp_steps(steps))), repeat=False)
+    return replace(_ptz(channel, rfocus=str(_clamp_steps(steps))), retryable=False)
 
 
 def relative_iris(channel: int, steps: int) -> VapixRequest:
     """Move the iris by a number of steps, positive to open it."""
-    return replace(_ptz(channel, riris=str(_clamp_steps(steps))), repeat=False)
+    return replace(_ptz(channel, riris=str(_clamp_steps(steps))), retryable=False)
 
 
 def query(channel: int, topic: Literal["position", "limits", "presetposcam", "speed"]) -> VapixRequest:

@@ -35,7 +35,7 @@ FOCAL_SIGMA = 0.05
 MATCH_SIGMA_PX = 0.7
 """Assumed standard error of a feature position, in pixels."""
 
-REJECT_PX = 2.5
+MAX_MATCH_ERROR_PX = 2.5
 """Maximum error of a match in pixels; matches with larger errors are treated as outliers."""
 
 MAX_PAUSE_S = 60.0
@@ -44,7 +44,7 @@ MAX_PAUSE_S = 60.0
 SAME_FOCAL_TOLERANCE = 0.004
 """Frames whose focal lengths differ by less than this fraction share one correction factor."""
 
-STEPS = 6
+MAX_STEPS = 6
 """Maximum number of Gauss-Newton steps per solution."""
 
 Floats = NDArray[np.float64]
@@ -81,7 +81,7 @@ def adjust(views: Sequence[Perspective], matches: Sequence[PairMatches], times_s
     problem = _Problem(views, _progress(np.array(range(len(views)) if times_s is None else times_s, np.float64)))
     inliers = list(matches)
     for _ in range(2):
-        for _ in range(STEPS):
+        for _ in range(MAX_STEPS):
             if problem.step(inliers) < 1e-7:
                 break
         inliers = problem.exclude_outliers(inliers)
@@ -202,7 +202,7 @@ class _Problem:
         """Return the matches that agree with the solution, omitting pairs with too few of them."""
         focals, inliers = self.focals(), []
         for pair in matches:
-            agreeing = self._distances_px(pair, focals) < REJECT_PX
+            agreeing = self._distances_px(pair, focals) < MAX_MATCH_ERROR_PX
             if agreeing.sum() >= MIN_INLIERS // 2:
                 inliers.append(PairMatches(pair.first, pair.second, pair.first_px[agreeing], pair.second_px[agreeing]))
         return inliers
@@ -226,7 +226,7 @@ def rotation_matrix(vector: Floats) -> Floats:
     return np.asarray(np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross)
 
 
-def turn_deg(a: Floats, b: Floats) -> float:
+def rotation_angle_deg(a: Floats, b: Floats) -> float:
     """Return the angle in degrees of the rotation between two (3, 3) orientations."""
     return math.degrees(2 * math.asin(min(1.0, float(np.linalg.norm(a - b)) / (2 * math.sqrt(2)))))
 

@@ -20,10 +20,10 @@ from scope_ptz.camera.capture.placed_frames import PlacedFrame
 from scope_ptz.geometry import Equirectangular, Perspective, angle_between_deg
 from scope_ptz.simulator.mapping.grid import Grid
 
-UNSEEN = (64, 64, 64)
+UNSEEN_COLOUR = (64, 64, 64)
 """RGB colour of pixels that no frame covers."""
 
-BLOCK = (192, 384)
+BLOCK_PX = (192, 384)
 """Height and width in pixels of the blocks in which a picture is composed."""
 
 MARGIN_PX = 24  # width of the margin around a block, so that neighbouring blocks detect the same moving objects
@@ -55,7 +55,7 @@ FINE_EDGE = 0.06
 MIN_WEIGHT = 1e-7  # weight at the edge of a frame
 MAX_CACHED_FRAMES = 40
 _STEP = 8  # distance in pixels between the points at which directions are computed exactly
-GREY = np.array([0.299, 0.587, 0.114], np.float32)  # luma weights for red, green and blue
+LUMA_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)  # luma weights for red, green and blue
 
 View = Equirectangular | Perspective
 
@@ -111,7 +111,7 @@ class Composer:
 
     def __init__(self, frames: Sequence[PlacedFrame], read: Callable[[int], FramePicture]) -> None:
         self._frames, self._read = frames, read
-        self._middles = np.array([frame.axes[2] for frame in frames]).reshape(-1, 3)
+        self._centres = np.array([frame.axes[2] for frame in frames]).reshape(-1, 3)
         self._reach_deg = np.array([frame.max_off_axis_deg for frame in frames])
         self._pictures: OrderedDict[int, FramePicture] = OrderedDict()
 
@@ -132,7 +132,7 @@ class Composer:
             The picture, (H, W, 3) RGB, and the mask (H, W) of the pixels that some frame covers.
         """
         picture = np.empty((projection.height, projection.width, 3), np.uint8)
-        picture[:] = UNSEEN
+        picture[:] = UNSEEN_COLOUR
         seen = np.zeros(picture.shape[:2], bool)
         blocks = list(_blocks(projection.height, projection.width))
         for number, (rows, columns) in enumerate(blocks):
@@ -162,9 +162,9 @@ class Composer:
     def _frames_near(self, rays: NDArray[np.float64], chosen: Sequence[int]) -> list[int]:
         """Return the indices of the chosen frames that may cover any of the directions."""
         indices = np.array(chosen, dtype=np.int64)
-        middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
-        reach = float(angle_between_deg(rays, middle).max())
-        separations_deg = angle_between_deg(self._middles[indices], middle)
+        centre = rays[rays.shape[0] // 2, rays.shape[1] // 2]
+        reach = float(angle_between_deg(rays, centre).max())
+        separations_deg = angle_between_deg(self._centres[indices], centre)
         return [int(k) for k in indices[separations_deg < reach + self._reach_deg[indices]]]
 
     def _layer(self, index: int, grid: Grid, rays: NDArray[np.float64]) -> _Layer | None:
@@ -226,20 +226,23 @@ def _blend(layers: Sequence[_Layer], density: float) -> tuple[Picture, Mask]:
     trust, disputed = _trust_maps(layers, density)
     fine = [layer.focal_px >= MIN_FINE_DENSITY * densest for layer in layers]
     shares = [layer.weight * weight for layer, weight in zip(layers, trust, strict=True)]
-    peaked = [share**SHARP_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
-    wide = [share**SOFT_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
-    best = np.max([share for share, good in zip(shares, fine, strict=True) if good], axis=0)
-    peaked, wide = _normalise_by_fineness(peaked, fine, best), _normalise_by_fineness(wide, fine, best)
+    sharp_weights = [share**SHARP_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
+    soft_weights = [share**SOFT_POWER + MIN_WEIGHT * (layer.weight > 0) for share, layer in zip(shares, layers, strict=True)]
+    best = np.max([share for share, is_fine in zip(shares, fine, strict=True) if is_fine], axis=0)
+    sharp_weights, soft_weights = (
+        _normalise_by_fineness(sharp_weights, fine, best),
+        _normalise_by_fineness(soft_weights, fine, best),
+    )
     # Where frames disagree, the low band also comes from a single frame, because mixing them would cause ghosting.
-    mixed = [soft + disputed * (sharp - soft) for soft, sharp in zip(wide, peaked, strict=True)]
+    low_weights = [soft + disputed * (sharp - soft) for soft, sharp in zip(soft_weights, sharp_weights, strict=True)]
     low = np.zeros_like(layers[0].low)
-    for layer, weight in zip(layers, mixed, strict=True):
+    for layer, weight in zip(layers, low_weights, strict=True):
         low += weight[..., None] * layer.low
     height, width = layers[0].inside.shape
     picture = _enlarge(low, height, width)
     total, shown = np.zeros((height, width), np.float32), np.zeros((height, width), bool)
     details = np.zeros_like(picture)
-    for layer, weight in zip(layers, peaked, strict=True):
+    for layer, weight in zip(layers, sharp_weights, strict=True):
         shown |= layer.inside & (_enlarge(layer.weight, height, width) > 0)
         if weight.max() < NEGLIGIBLE_WEIGHT:
             continue
@@ -274,22 +277,22 @@ def _trust_maps(layers: Sequence[_Layer], density: float) -> tuple[list[Floats],
     if len(layers) == 1:
         return [np.ones(shape, np.float32)], np.zeros(shape, np.float32)
     coarsest = min(layer.focal_px for layer in layers)
-    mixed = max(layer.focal_px for layer in layers) > coarsest / MIN_FINE_DENSITY
-    cells, limit = (MIXED_ZOOM_CELLS, MIXED_ZOOM_DIFFERENCE) if mixed else (1.0, MOTION_DIFFERENCE)
-    greys = np.stack([_smooth(layer.low @ GREY, layer.focal_px, coarsest, density, cells) for layer in layers])
+    has_mixed_zooms = max(layer.focal_px for layer in layers) > coarsest / MIN_FINE_DENSITY
+    cells, limit = (MIXED_ZOOM_CELLS, MIXED_ZOOM_DIFFERENCE) if has_mixed_zooms else (1.0, MOTION_DIFFERENCE)
+    greys = np.stack([_smooth(layer.low @ LUMA_WEIGHTS, layer.focal_px, coarsest, density, cells) for layer in layers])
     absent = np.stack([layer.weight <= 0.02 for layer in layers])
     greys = np.where(absent, np.nan, greys)
     order = np.sort(greys, axis=0)  # NaN comes last
     count = (~absent).sum(axis=0)
     last_index = np.clip(count - 1, 0, None)
-    middle = (_take_along(order, last_index // 2) + _take_along(order, (last_index + 1) // 2)) / 2
-    differences = np.nan_to_num(np.abs(greys - middle))
+    median = (_select(order, last_index // 2) + _select(order, (last_index + 1) // 2)) / 2
+    differences = np.nan_to_num(np.abs(greys - median))
     moving = np.stack([_moving_areas(layer_map, limit) for layer_map in np.where(count >= 3, differences, 0)])
     trust = [1 - (1 - 1e-3) * _soften(layer_map) for layer_map in moving]
     trusted = np.where(moving, np.nan, greys)
     order = np.sort(trusted, axis=0)
     count = (~np.isnan(trusted)).sum(axis=0)
-    spread = np.nan_to_num(_take_along(order, np.clip(count - 1, 0, None)) - order[0])
+    spread = np.nan_to_num(_select(order, np.clip(count - 1, 0, None)) - order[0])
     return trust, _soften(spread > limit)
 
 
@@ -300,7 +303,7 @@ def _smooth(grey: Floats, focal_px: float, coarsest_px: float, density: float, c
     return grey if sigma < 0.3 else np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
 
 
-def _take_along(stack: Floats, index: NDArray[np.int64]) -> Floats:
+def _select(stack: Floats, index: NDArray[np.int64]) -> Floats:
     return np.asarray(np.take_along_axis(stack, index[None], axis=0)[0])
 
 
@@ -315,17 +318,17 @@ def _soften(mask: Mask) -> Floats:
     """Enlarge a mask and soften its edges. Return values from 0 to 1."""
     if not mask.any():
         return np.zeros(mask.shape, np.float32)
-    grown = cv2.dilate(mask.astype(np.float32), np.ones((7, 7), np.uint8))
-    return np.asarray(cv2.GaussianBlur(grown, (5, 5), 0))
+    enlarged = cv2.dilate(mask.astype(np.float32), np.ones((7, 7), np.uint8))
+    return np.asarray(cv2.GaussianBlur(enlarged, (5, 5), 0))
 
 
-def _sample(picture: Floats, source_px: NDArray[np.floating], kind: int, border: int) -> NDArray[np.float32]:
+def _sample(picture: Floats, source_px: NDArray[np.floating], interpolation: int, border: int) -> NDArray[np.float32]:
     """Sample a picture at pixel coordinates (H, W, 2)."""
-    return np.asarray(cv2.remap(picture, source_px, None, kind, borderMode=border))
+    return np.asarray(cv2.remap(picture, source_px, None, interpolation, borderMode=border))
 
 
 def _coarse_indices(length: int) -> NDArray[np.int64]:
-    """Return the row or column indices of the coarse grid, one near the middle of every four pixels."""
+    """Return the row or column indices of the coarse grid, one near the centre of every four pixels."""
     return np.minimum(np.arange(-(-length // COARSE_PX)) * COARSE_PX + COARSE_PX // 2, length - 1)
 
 
@@ -337,6 +340,6 @@ def _enlarge(coarse: Floats, height: int, width: int) -> Floats:
 
 def _blocks(height: int, width: int) -> Iterator[tuple[slice, slice]]:
     """Yield blocks as row and column slices, column by column, so that consecutive blocks use the same frames."""
-    for left in range(0, width, BLOCK[1]):
-        for top in range(0, height, BLOCK[0]):
-            yield slice(top, min(top + BLOCK[0], height)), slice(left, min(left + BLOCK[1], width))
+    for left in range(0, width, BLOCK_PX[1]):
+        for top in range(0, height, BLOCK_PX[0]):
+            yield slice(top, min(top + BLOCK_PX[0], height)), slice(left, min(left + BLOCK_PX[1], width))

@@ -26,10 +26,10 @@ from scope_ptz.geometry import Limits, Pose
 CLOSE_UP_ZOOM = 4.0
 """Magnification of close-ups, unless the camera's maximum magnification is lower."""
 
-CLOSE_UPS = 40
+DEFAULT_CLOSE_UPS = 40
 """Default maximum number of close-ups."""
 
-RETURN_S = 30.0
+RETURN_TIMEOUT_S = 30.0
 """Maximum time in seconds to return the camera to its original pose after a failed or cancelled capture."""
 
 ATTEMPTS, RETRY_S = 3, 2.0
@@ -52,7 +52,7 @@ class CaptureOptions:
 
     ranges: Ranges = field(default_factory=Ranges)
     zooms: tuple[float, ...] = ()
-    close_ups: int = CLOSE_UPS
+    close_ups: int = DEFAULT_CLOSE_UPS
     overlap: float = OVERLAP
 
 
@@ -135,7 +135,7 @@ def close_up_zoom(settings: CaptureSettings) -> float | None:
 async def take_frames(
     camera: Camera, session: CaptureSession, progress: Progress, *, holder: str, presets: Sequence[str] | None = None
 ) -> None:
-    """Take the frames that a capture still lacks. The camera returns to its original pose, even after an error or cancellation.
+    """Take the frames that a capture is missing. The camera returns to its original pose, even after an error or cancellation.
 
     Args:
         camera: The camera.
@@ -227,7 +227,7 @@ async def _return_afterwards(camera: Camera) -> AsyncIterator[None]:
         yield
     except BaseException:
         # The camera may not respond after a failure. Raise the original error in any case.
-        with anyio.move_on_after(RETURN_S, shield=True):
+        with anyio.move_on_after(RETURN_TIMEOUT_S, shield=True):
             try:
                 await camera.stop()
                 await camera.move(start)

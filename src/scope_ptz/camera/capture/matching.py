@@ -19,7 +19,7 @@ If the reported poses are off by more than this, the features are not matched.
 """
 
 MAX_FEATURES = 1000  # per frame
-RATIO = 0.85  # maximum ratio of the best to the second-best distance within the gate (Lowe's ratio test)
+MAX_DISTANCE_RATIO = 0.85  # maximum ratio of the best to the second-best distance within the gate (Lowe's ratio test)
 MIN_INLIERS = 12
 """Minimum number of matches between two frames. A smaller number could agree by chance."""
 
@@ -71,10 +71,10 @@ def overlapping_pairs(views: Sequence[Perspective]) -> list[tuple[int, int]]:
     """Return the pairs of frames that overlap by at least ``MIN_OVERLAP``."""
     grid = np.stack(np.meshgrid((np.arange(12) + 0.5) / 12, (np.arange(8) + 0.5) / 8), axis=-1)
     rays = [view.directions(grid) for view in views]
-    middles = np.array([view.directions((0.5, 0.5)) for view in views]).reshape(-1, 3)
+    centres = np.array([view.directions((0.5, 0.5)) for view in views]).reshape(-1, 3)
     pairs = []
     for i, view in enumerate(views):
-        separations_deg = angle_between_deg(middles[i + 1 :], middles[i])
+        separations_deg = angle_between_deg(centres[i + 1 :], centres[i])
         for j in (
             i + 1 + np.flatnonzero(separations_deg < view.max_off_axis_deg + np.array([v.max_off_axis_deg for v in views[i + 1 :]]))
         ).tolist():
@@ -148,7 +148,7 @@ def _mutual_best(similarity: NDArray[np.float32]) -> NDArray[np.int64]:
     rest[rows, best] = -1.0
     second = np.maximum(rest.max(axis=1), 0.0)
     # The similarity is the cosine between unit vectors, so their distance is sqrt(2 - 2 * similarity).
-    distinct = np.maximum(1 - top, 0.0) < RATIO**2 * (1 - second)
+    distinct = np.maximum(1 - top, 0.0) < MAX_DISTANCE_RATIO**2 * (1 - second)
     mutual = similarity.argmax(axis=0)[best] == rows
     passing = rows[distinct & mutual & (top > 0)]
     return np.stack([passing, best[passing]], axis=-1)

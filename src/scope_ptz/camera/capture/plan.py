@@ -21,8 +21,8 @@ MAX_OVERLAP = 0.8
 WHOLE_CIRCLE_DEG = 340.0
 """Minimum pan range in degrees to sweep as a full circle. The frames at its two ends overlap."""
 
-EXTREME_REACH = 0.7
-"""Extent of the planned overlap in the highest and lowest rows, as a fraction of the distance from a frame's centre to its edge.
+OUTER_ROW_OVERLAP_EXTENT = 0.7
+"""How far towards the outer edge the highest and lowest rows fully overlap, as a fraction of half a frame's height.
 
 Full overlap up to the edge would require many more frames in these rows.
 """
@@ -97,7 +97,7 @@ def plan_poses(info: CameraInfo, limits: Limits, zoom: float, overlap: float = O
     rows: list[list[Pose]] = []
     for row, tilt in enumerate(tilts):
         inner = spacing / 2
-        outer = EXTREME_REACH * view.vfov_deg / 2
+        outer = OUTER_ROW_OVERLAP_EXTENT * view.vfov_deg / 2
         edges = (tilt + (outer if row == 0 else inner), tilt, tilt - (outer if row == len(tilts) - 1 else inner))
         step = 2 * min(_half_width_deg(replace(view, tilt_deg=tilt), edge) for edge in edges) * (1 - overlap)
         rows.append([Pose(pan, tilt, zoom) for pan in _pans(limits, step, row)])
@@ -126,7 +126,7 @@ def _pans(limits: Limits, step_deg: float, row: int) -> list[float]:
 
 
 def _half_width_deg(view: Perspective, tilt_deg: float) -> float:
-    """Return the largest pan offset in degrees at which a tilt is still in view; at least a tenth of the field of view."""
+    """Return half the width of a view at a given tilt, in degrees of pan; at least a tenth of the field of view."""
     turns = np.arange(0.0, 180.5, 0.5)
     points = view.points(direction(turns, min(max(tilt_deg, -90.0), 90.0)))
     inside = np.all((points >= 0) & (points <= 1), axis=-1)  # false for NaN

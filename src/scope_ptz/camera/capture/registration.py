@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.camera.capture.adjustment import Adjustment, adjust, turn_deg
+from scope_ptz.camera.capture.adjustment import Adjustment, adjust, rotation_angle_deg
 from scope_ptz.camera.capture.hidden_parts import hidden_mask
 from scope_ptz.camera.capture.matching import Features, find_features, match_frames, overlapping_pairs
 from scope_ptz.camera.capture.placed_frames import PlacedFrame
@@ -111,4 +111,6 @@ def _focal_px(shot: Shot, width: int) -> float:
 
 
 def _corrections_deg(views: list[Perspective], adjustment: Adjustment) -> tuple[float, ...]:
-    return tuple(turn_deg(camera_axes(v.pan_deg, v.tilt_deg), axes) for v, axes in zip(views, adjustment.axes, strict=True))
+    return tuple(
+        rotation_angle_deg(camera_axes(v.pan_deg, v.tilt_deg), axes) for v, axes in zip(views, adjustment.axes, strict=True)
+    )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.pack_writer import layer_of
-from scope_ptz.camera.capture.composition import UNSEEN, Composer, FramePicture, View, frame_picture
+from scope_ptz.camera.capture.composition import UNSEEN_COLOUR, Composer, FramePicture, View, frame_picture
 from scope_ptz.camera.capture.hidden_parts import hidden_mask, keep_out_mask
 from scope_ptz.camera.capture.progress import Progress
 from scope_ptz.camera.capture.registration import Registration, measured_optics
@@ -47,7 +47,7 @@ It compensates for resampling twice: frames to the pack, and later the pack to a
 of views is closest to that of the captured frames.
 """
 
-SEEN_STEP = 4  # factor by which the mask of seen pixels is downsampled along each axis
+SEEN_MASK_SCALE = 4  # factor by which the mask of seen pixels is downsampled along each axis
 
 Picture = NDArray[np.uint8]
 
@@ -147,19 +147,19 @@ class _Painter:
         picture, seen = self._composer.compose(view, chosen, progress)
         soft = cv2.GaussianBlur(picture, (0, 0), SHARPENING_SIGMA_PX)
         cv2.addWeighted(picture, 1 + sharpening, soft, -sharpening, 0, dst=picture)
-        picture[~seen] = UNSEEN
+        picture[~seen] = UNSEEN_COLOUR
         hidden = keep_out_mask(self._session.settings, view)
         if hidden is not None:
-            picture[hidden] = UNSEEN
+            picture[hidden] = UNSEEN_COLOUR
             seen[hidden] = False
         return picture, seen
 
     def tile(self, index: int, view: Perspective, wide: Sequence[int]) -> Picture:
         """Return the tile picture for a zoomed frame. Wide frames help to detect moving objects and fill the corners."""
         placed = self._registration.placed
-        middle = placed[index].axes[2]
+        forward = placed[index].axes[2]
         similar = [k for k, other in enumerate(placed) if 0.87 <= other.focal_px / placed[index].focal_px <= MAX_WIDE_DENSITY]
-        nearest = sorted(wide, key=lambda k: -float(placed[k].axes[2] @ middle))[:3]
+        nearest = sorted(wide, key=lambda k: -float(placed[k].axes[2] @ forward))[:3]
         return self.paint(view, sorted({*similar, *nearest}), TILE_SHARPENING)[0]
 
     def _read(self, index: int) -> FramePicture:
@@ -200,7 +200,7 @@ def _manifest(
     empty = np.zeros((32, 64), np.uint16)
     write_ids(viewpoint_folder / "ids.webp", empty)
     write_ids(viewpoint_folder / "depth.webp", empty)
-    small = seen[::SEEN_STEP, ::SEEN_STEP]
+    small = seen[::SEEN_MASK_SCALE, ::SEEN_MASK_SCALE]
     cv2.imwrite(str(viewpoint_folder / "seen.png"), small.astype(np.uint8) * 255)
     base_layer = layer_of(viewpoint_folder, "base.avif", base.shape[1], base.shape[0])
     depth = layer_of(viewpoint_folder, "depth.webp", 64, 32)

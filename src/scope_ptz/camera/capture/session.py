@@ -19,7 +19,7 @@ from scope_ptz.camera.guard.rules import PixelMask, Region
 from scope_ptz.errors import CameraError, OutputError
 from scope_ptz.geometry import Perspective, Pose
 
-SETTINGS, FRAMES, CLOSE_UPS = "capture.json", "frames.jsonl", "close-ups.json"
+SETTINGS_FILE, FRAMES_FILE, CLOSE_UPS_FILE = "capture.json", "frames.jsonl", "close-ups.json"
 
 
 class _StoredModel(BaseModel):
@@ -118,7 +118,7 @@ class CaptureSession:
         if folder.exists():
             self._resume()
         else:
-            self._write(SETTINGS, self._state.model_dump_json(indent=1))
+            self._write(SETTINGS_FILE, self._state.model_dump_json(indent=1))
 
     @property
     def started_at(self) -> str:
@@ -200,7 +200,7 @@ class CaptureSession:
 
     def close_ups(self) -> list[Pose] | None:
         """Return the stored close-up poses; None if they have not been chosen yet."""
-        path = self.folder / CLOSE_UPS
+        path = self.folder / CLOSE_UPS_FILE
         if not path.exists():
             return None
         try:
@@ -210,12 +210,12 @@ class CaptureSession:
 
     def store_close_ups(self, poses: Sequence[Pose]) -> None:
         """Store the close-up poses."""
-        self._write(CLOSE_UPS, json.dumps([(pose.pan_deg, pose.tilt_deg, pose.zoom) for pose in poses]))
+        self._write(CLOSE_UPS_FILE, json.dumps([(pose.pan_deg, pose.tilt_deg, pose.zoom) for pose in poses]))
 
     def finish(self) -> None:
         """Record that every frame has been taken."""
         self._state = self._state.model_copy(update={"complete": True})
-        self._write(SETTINGS, self._state.model_dump_json(indent=1))
+        self._write(SETTINGS_FILE, self._state.model_dump_json(indent=1))
 
     def remove(self) -> None:
         """Remove the folder."""
@@ -223,8 +223,10 @@ class CaptureSession:
 
     def _resume(self) -> None:
         try:
-            state = _State.model_validate_json((self.folder / SETTINGS).read_bytes())
-            lines = (self.folder / FRAMES).read_text(encoding="utf-8").splitlines() if (self.folder / FRAMES).exists() else []
+            state = _State.model_validate_json((self.folder / SETTINGS_FILE).read_bytes())
+            lines = (
+                (self.folder / FRAMES_FILE).read_text(encoding="utf-8").splitlines() if (self.folder / FRAMES_FILE).exists() else []
+            )
         except (OSError, ValidationError, UnicodeDecodeError) as error:
             raise OutputError(
                 f"{self.folder} does not contain a capture that can be resumed. Remove the folder, and run the command again."
@@ -248,7 +250,7 @@ class CaptureSession:
     def _append(self, shot: Shot) -> None:
         self._shots[shot.key] = shot
         try:
-            path = self.folder / FRAMES
+            path = self.folder / FRAMES_FILE
             truncated = path.exists() and path.stat().st_size and not path.read_bytes().endswith(b"\n")
             with path.open("a", encoding="utf-8") as file:
                 file.write(("\n" if truncated else "") + shot.model_dump_json() + "\n")

@@ -21,7 +21,7 @@ DARK, BRIGHT = 12.0, 243.0
 """Usable range of pixel values, on a scale of 0 to 255. Values outside it may be clipped by the sensor."""
 
 MIN_CELLS = 8  # minimum number of cells in an overlap
-PRIOR = 0.02  # weight of the prior for a gain of 1, relative to one overlap; it determines the overall brightness
+PRIOR_WEIGHT = 0.02  # weight of the prior for a gain of 1, relative to one overlap; it determines the overall brightness
 MAX_GAIN = 2.0
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ def gains(frames: Sequence[PlacedFrame], cells: Sequence[NDArray[np.float32]], p
         pairs: The pairs of overlapping frames.
     """
     n = len(frames)
-    normal, rhs = PRIOR * np.eye(n), np.zeros((n, 3))
+    normal, rhs = PRIOR_WEIGHT * np.eye(n), np.zeros((n, 3))
     for i, j in pairs:
         ratio = _log_ratio(frames[i], frames[j], cells[i], cells[j])
         if ratio is None:

@@ -13,8 +13,8 @@ from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensSta
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import Pose
 
-HELD_BACK = "the dry run: this is where it would be"
-HELD_BACK_UNKNOWN = "the dry run: only the camera knows the pose there"
+DRY_RUN = "the dry run: this is where it would be"
+DRY_RUN_UNKNOWN_POSE = "the dry run: only the camera knows the pose there"
 
 
 class DryRunCamera(CameraWrapper):
@@ -50,17 +50,17 @@ class DryRunCamera(CameraWrapper):
         reason = limited_by or f"the {' and '.join(clamped)} limit" if clamped else limited_by
         note = f", held back by {reason}" if reason else ""
         self._report(f"would move to pan {rounded['pan_deg']:g}, tilt {rounded['tilt_deg']:g}, zoom {rounded['zoom']:g}x{note}")
-        return Arrival(target, clamped, f"{reason}, and by {HELD_BACK}" if reason else HELD_BACK)
+        return Arrival(target, clamped, f"{reason}, and by {DRY_RUN}" if reason else DRY_RUN)
 
     async def go_to_preset(self, name: str) -> Arrival:
         if name not in (known := [preset.name for preset in await self.presets()]):
             raise UnknownNameError("preset", name, known)
         self._report(f"would go to the preset '{name}'")
-        return Arrival(await self.pose(), limited_by=HELD_BACK_UNKNOWN)
+        return Arrival(await self.pose(), limited_by=DRY_RUN_UNKNOWN_POSE)
 
     async def go_home(self) -> Arrival:
         self._report("would go home")
-        return Arrival(await self.pose(), limited_by=HELD_BACK_UNKNOWN)
+        return Arrival(await self.pose(), limited_by=DRY_RUN_UNKNOWN_POSE)
 
     async def drive(self, pan_dps: float = 0.0, tilt_dps: float = 0.0, zoom_rate: float = 0.0, *, timeout_s: float = 0.5) -> None:
         check_drive(pan_dps, tilt_dps, zoom_rate, timeout_s)

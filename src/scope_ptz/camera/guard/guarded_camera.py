@@ -125,7 +125,7 @@ class GuardedCamera(CameraWrapper):
             raise KeepOutError(f"The camera cannot be driven into the keep-out region '{region.name}'. It has stopped.")
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Centre a point of the picture, using the device's own command if the rules permit the resulting pose."""
+        """Centre a point in the picture, using the device's own command if the rules permit the resulting pose."""
         current = await self.inner.pose()
         target = self.info.towards(current, x, y, zoom_factor)
         permitted, clamped, _ = self.nearest_permitted(target)
@@ -138,12 +138,12 @@ class GuardedCamera(CameraWrapper):
     async def set_focus(self, action: FocusAction, *, step: float = DEFAULT_STEP) -> LensState:
         check_focus(self.info.name, action, self.info.capabilities.focus, step)
         self._record("focus", action=action, step=step)
-        return await self._carry_out_on_lens(self.inner.set_focus(action, step=step))
+        return await self._carry_out_lens_command(self.inner.set_focus(action, step=step))
 
     async def set_iris(self, action: IrisAction, *, step: float = DEFAULT_STEP) -> LensState:
         check_iris(self.info.name, action, self.info.capabilities.iris, step)
         self._record("iris", action=action, step=step)
-        return await self._carry_out_on_lens(self.inner.set_iris(action, step=step))
+        return await self._carry_out_lens_command(self.inner.set_iris(action, step=step))
 
     async def stop(self) -> None:
         self._record("stop")
@@ -207,7 +207,7 @@ class GuardedCamera(CameraWrapper):
         self._record("arrived", pose=arrival.pose, clamped=arrival.clamped)
         return arrival
 
-    async def _carry_out_on_lens(self, command: Awaitable[LensState]) -> LensState:
+    async def _carry_out_lens_command(self, command: Awaitable[LensState]) -> LensState:
         """Await a lens command and record its outcome."""
         try:
             state = await command

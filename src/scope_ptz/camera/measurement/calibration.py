@@ -173,17 +173,19 @@ async def _measure_response(camera: Camera, base: Pose, progress: Progress) -> _
     stated_deg = camera.info.optics.hfov_deg(base.zoom)
     centre, reported = await _move_and_take(camera, base)
     focal = registration.focal_px(stated_deg, centre.shape[1])
-    rough = []
+    approximate_scales = []
     for pan_deg, tilt_deg in (
         (SMALL_TURN * stated_deg, 0.0),
         (0.0, vertical_turn_deg(camera.info.limits, base, SMALL_TURN * stated_deg / 2)),
     ):
         pair, turned = await _turn_and_match(camera, base, centre, reported, pan_deg, tilt_deg)
         turn_result = registration.rotation(pair, focal)
-        rough.append(turn_result.angle_deg / (abs(turned) or 1.0))
+        approximate_scales.append(turn_result.angle_deg / (abs(turned) or 1.0))
     # Choose the large turns so that the pictures overlap well, however far the camera actually turns per commanded degree.
-    pan_deg = min(LARGE_TURN * stated_deg / max(rough[0], 0.05), 3 * LARGE_TURN * stated_deg)
-    tilt_deg = vertical_turn_deg(camera.info.limits, base, min(LARGE_TURN * stated_deg * 0.5 / max(rough[1], 0.05), 60.0))
+    pan_deg = min(LARGE_TURN * stated_deg / max(approximate_scales[0], 0.05), 3 * LARGE_TURN * stated_deg)
+    tilt_deg = vertical_turn_deg(
+        camera.info.limits, base, min(LARGE_TURN * stated_deg * 0.5 / max(approximate_scales[1], 0.05), 60.0)
+    )
     pairs = [
         await _turn_and_match(camera, base, centre, reported, *turn) for turn in ((pan_deg, 0.0), (-pan_deg, 0.0), (0.0, tilt_deg))
     ]
@@ -192,11 +194,12 @@ async def _measure_response(camera: Camera, base: Pose, progress: Progress) -> _
     pan = statistics.mean(math.copysign(turn.angle_deg, turn.right_deg) / pairs[k][1] for k, turn in enumerate((right, left)))
     tilt = math.copysign(up.angle_deg, up.up_deg) / pairs[2][1]
     # If the camera is tilted up or down, panning also rolls the picture. The ratio of roll to turn gives the actual tilt.
-    seen_tilt = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
-    seen_tilt = seen_tilt if pan > 0 else math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
+    actual_tilt_deg = math.degrees(math.atan2(right.roll_deg - left.roll_deg, right.right_deg - left.right_deg))
+    if pan <= 0:
+        actual_tilt_deg = math.degrees(math.atan2(left.roll_deg - right.roll_deg, left.right_deg - right.right_deg))
     progress(f"The camera pans {pan:+.3f} degrees and tilts {tilt:+.3f} degrees per reported degree.")
     residual = statistics.mean(turn.residual_px for turn in (right, left, up))
-    return _Response(pan, tilt, seen_tilt - tilt * reported.tilt_deg, focal, residual)
+    return _Response(pan, tilt, actual_tilt_deg - tilt * reported.tilt_deg, focal, residual)
 
 
 async def _measure_fields(
@@ -240,12 +243,12 @@ async def _measure_snapshot_s(camera: Camera) -> float:
 
 async def _measure_settling(camera: Camera, base: Pose) -> tuple[float, float]:
     """Return the median seconds for a move, and the median seconds from the reported arrival until the picture has settled."""
-    moves, settlings = [], []
+    move_times_s, settling_times_s = [], []
     for run in range(_TIMED_MOVES):
         started_s = camera.clock.now_s()
         await camera.move(Pose(base.pan_deg + (TIMED_TURN_DEG if run % 2 == 0 else 0.0), base.tilt_deg, base.zoom))
         arrived_s = camera.clock.now_s()
-        moves.append(arrived_s - started_s)
+        move_times_s.append(arrived_s - started_s)
         last_motion_s, before = arrived_s, (await camera.frame()).image
         for _ in range(20):
             frame = await camera.frame()
@@ -253,8 +256,8 @@ async def _measure_settling(camera: Camera, base: Pose) -> tuple[float, float]:
             if fraction is None or fraction < 0.5:
                 break
             last_motion_s, before = camera.clock.now_s(), frame.image
-        settlings.append(last_motion_s - arrived_s)
-    return statistics.median(moves), statistics.median(settlings)
+        settling_times_s.append(last_motion_s - arrived_s)
+    return statistics.median(move_times_s), statistics.median(settling_times_s)
 
 
 async def _move_and_take(camera: Camera, pose: Pose) -> tuple[NDArray[np.uint8], Pose]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MIN_MATCHES = 24
 """Minimum number of matches for a registration. A smaller number could agree by chance."""
 
-_RATIO = 0.75  # Lowe's ratio test
+_MAX_DISTANCE_RATIO = 0.75  # Lowe's ratio test
 _RANSAC_PX = 2.0  # maximum error of an inlier in pixels
 _MAX_FEATURES = 3000  # per picture
 
@@ -90,7 +90,7 @@ def match(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> Matches:
     if min(len(points_1), len(points_2)) < MIN_MATCHES:
         raise _overlap_error()
     pairs = cv2.BFMatcher().knnMatch(descriptors_1, descriptors_2, k=2)
-    good_matches = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < _RATIO * pair[1].distance]
+    good_matches = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < _MAX_DISTANCE_RATIO * pair[1].distance]
     if len(good_matches) < MIN_MATCHES:
         raise _overlap_error()
     pixels_1 = np.array([points_1[m.queryIdx].pt for m in good_matches], np.float64)

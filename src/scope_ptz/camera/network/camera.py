@@ -14,7 +14,7 @@ from anyio import to_thread
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame
 from scope_ptz.camera.capabilities import check_drive
 from scope_ptz.camera.clocks import WallClock
-from scope_ptz.camera.network.drive_watch import DriveWatch
+from scope_ptz.camera.network.dead_mans_switch import DeadMansSwitch
 from scope_ptz.camera.network.errors import CameraSignInError, PositionNotReachedError
 from scope_ptz.camera.network.settling import SettlingCriteria, is_stationary, wait_for_still_picture, wait_until_stationary
 from scope_ptz.errors import CameraError, InputError
@@ -22,13 +22,13 @@ from scope_ptz.geometry import angle_between_deg, direction
 
 if TYPE_CHECKING:
     from scope_ptz.camera.network.device_pictures import DevicePictures
-    from scope_ptz.camera.network.stop_process import StopProcess
+    from scope_ptz.camera.network.watchdog_process import WatchdogProcess
     from scope_ptz.geometry import Axis, Pose
 
-STOP_CHECKS = 40
+MAX_STOP_READINGS = 40
 """Maximum number of position readings after a stop command before the command is sent again."""
 
-MAX_OFF_CENTRE = 0.05
+MAX_CENTRING_ERROR = 0.05
 """Maximum error of a centred point as a fraction of the field of view, and maximum relative error of the zoom."""
 
 Command = Callable[[], Awaitable[None]]
@@ -44,15 +44,15 @@ class NetworkCamera(Camera):
         info: The camera's properties and capabilities.
         pictures: The source of its pictures.
         settling: The criteria for deciding that the camera has settled.
-        watchdog: The process that stops the camera if this process is killed.
+        watchdog: The watchdog process, which stops the camera if the current process is killed.
     """
 
-    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: SettlingCriteria, watchdog: StopProcess) -> None:
+    def __init__(self, info: CameraInfo, pictures: DevicePictures, settling: SettlingCriteria, watchdog: WatchdogProcess) -> None:
         self.clock = WallClock()
         self._info, self._pictures, self._settling = info, pictures, settling
         self._commands = self._sent = 0
         self._send_scope: anyio.CancelScope | None = None
-        self._watch = DriveWatch(info.name, self._send_stop_blocking, watchdog=watchdog)
+        self._dead_mans_switch = DeadMansSwitch(info.name, self._send_stop_blocking, watchdog=watchdog)
 
     @property
     def info(self) -> CameraInfo:
@@ -86,7 +86,7 @@ class NetworkCamera(Camera):
         """Raise ``CameraError`` if the device is known to refuse moves."""
 
     def _centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Command | None:  # noqa: ARG002 - for drivers
-        """Return the device's own command for centring a point of the picture; None if it has none.
+        """Return the device's own command for centring a point in the picture; None if it has none.
 
         Args:
             current: The current pose.
@@ -108,7 +108,7 @@ class NetworkCamera(Camera):
 
     async def move(self, pose: Pose) -> Arrival:
         target, clamped = self._info.limits.clamp(pose)
-        reached = await self._travel(lambda: self._start_move(target), target)
+        reached = await self._move_and_settle(lambda: self._start_move(target), target)
         if reached is None:  # another command has replaced this one
             return Arrival(await self.pose(), clamped)
         if not self._settling.is_near(reached, target):
@@ -117,7 +117,7 @@ class NetworkCamera(Camera):
         return Arrival(reached, clamped)
 
     async def centre_on(self, x: float, y: float, *, zoom_factor: float = 1.0) -> Arrival:
-        """Centre a point of the picture with the device's own command, which is based on exact knowledge of the lens.
+        """Centre a point in the picture with the device's own command, which is based on exact knowledge of the lens.
 
         If the device has no such command, or the resulting pose is wrong, the camera moves to the pose computed from its optics.
         """
@@ -127,12 +127,15 @@ class NetworkCamera(Camera):
         command = None if clamped else self._centring_command(current, target, x, y)
         if command is None:
             return await self.move(requested)
-        reached = await self._travel(command, None)
+        reached = await self._move_and_settle(command, None)
         if reached is None:
             return Arrival(await self.pose())
         optics = self._info.optics
         off_deg = float(angle_between_deg(direction(reached.pan_deg, reached.tilt_deg), direction(target.pan_deg, target.tilt_deg)))
-        near = off_deg <= MAX_OFF_CENTRE * optics.hfov_deg(target.zoom) and abs(reached.zoom / target.zoom - 1) <= MAX_OFF_CENTRE
+        near = (
+            off_deg <= MAX_CENTRING_ERROR * optics.hfov_deg(target.zoom)
+            and abs(reached.zoom / target.zoom - 1) <= MAX_CENTRING_ERROR
+        )
         return Arrival(reached) if near else await self.move(requested)
 
     async def go_home(self) -> Arrival:
@@ -161,23 +164,23 @@ class NetworkCamera(Camera):
         if not self._info.capabilities.drives:
             raise CameraError(f"{self._info.name} cannot be driven at a velocity; move it to a pose.")
         self._check_may_move()
-        driven, sent = self._watch.is_armed, self._sent
-        self._watch.arm(timeout_s)  # before the command, because a drive must be stopped even if its reply is lost
+        driven, sent = self._dead_mans_switch.is_armed, self._sent
+        self._dead_mans_switch.arm(timeout_s)  # before the command, because a drive must be stopped even if its reply is lost
         number = self._next_number()
         try:
             await self._start_drive(number, pan_dps, tilt_dps, zoom_rate, timeout_s)
         except CameraSignInError:
             # An account without permission to move the camera cannot stop it either, but then nothing is moving.
             if driven or self._sent != sent:
-                self._watch.stop_now()
+                self._dead_mans_switch.stop_now()
             else:
-                self._watch.disarm()
+                self._dead_mans_switch.disarm()
             raise
         except BaseException:
-            self._watch.stop_now()
+            self._dead_mans_switch.stop_now()
             raise
         if self._commands == number:
-            self._watch.arm(timeout_s)  # the timeout starts once the camera has received the command
+            self._dead_mans_switch.arm(timeout_s)  # the timeout starts once the camera has received the command
 
     async def stop(self) -> None:
         """Stop any motion and return once the camera is stationary.
@@ -194,28 +197,28 @@ class NetworkCamera(Camera):
                 await self._send_stop()
                 if await self._has_stopped() or self._commands != number:
                     if self._commands == number:
-                        self._watch.disarm()
+                        self._dead_mans_switch.disarm()
                     return
         except BaseException:
-            self._watch.stop_now()
+            self._dead_mans_switch.stop_now()
             raise
-        self._watch.stop_now()
+        self._dead_mans_switch.stop_now()
         raise CameraError(f"{self._info.name} did not stop. Check that no one else is moving it and that no guard tour is running.")
 
     async def close(self) -> None:
         with anyio.CancelScope(shield=True):
             try:
-                await to_thread.run_sync(self._watch.close)
+                await to_thread.run_sync(self._dead_mans_switch.close)
                 await self._pictures.close()
             finally:
                 await self._disconnect()
 
     async def _go(self, start: Command) -> Arrival:
         """Go to a pose that only the device knows, such as a preset."""
-        reached = await self._travel(start, None)
+        reached = await self._move_and_settle(start, None)
         return Arrival(await self.pose() if reached is None else reached)
 
-    async def _travel(self, start: Command, target: Pose | None) -> Pose | None:
+    async def _move_and_settle(self, start: Command, target: Pose | None) -> Pose | None:
         """Start a move and wait until the camera has settled. Return None if another command has replaced the move."""
         self._check_may_move()
         number = self._next_number()
@@ -224,10 +227,10 @@ class NetworkCamera(Camera):
             return self._commands != number
 
         try:
-            if self._watch.is_armed:  # the dead man's switch must not stop this move
+            if self._dead_mans_switch.is_armed:  # the dead man's switch must not stop this move
                 await self._send_stop()
-                self._watch.disarm()
-                await to_thread.run_sync(self._watch.join)
+                self._dead_mans_switch.disarm()
+                await to_thread.run_sync(self._dead_mans_switch.join)
             if await self._send(number, start):
                 reached = await wait_until_stationary(self.pose, self._settling, target, is_superseded)
                 if not is_superseded():
@@ -262,7 +265,7 @@ class NetworkCamera(Camera):
 
     async def _has_stopped(self) -> bool:
         before = await self.pose()
-        for _ in range(STOP_CHECKS):
+        for _ in range(MAX_STOP_READINGS):
             await anyio.sleep(self._settling.poll_s)
             now = await self.pose()
             if is_stationary(before, now):

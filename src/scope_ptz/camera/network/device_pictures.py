@@ -12,7 +12,7 @@ import anyio
 
 from scope_ptz.camera.base import CameraInfo, Frame
 from scope_ptz.camera.network.errors import PictureError
-from scope_ptz.camera.network.live_frames import FROZEN_PATIENCE_S, LiveFrames, make_frame
+from scope_ptz.camera.network.live_frames import MAX_PICTURE_LAG_S, LiveFrames, make_frame
 from scope_ptz.camera.network.pictures import FrozenCheck, check_not_black, is_black
 from scope_ptz.camera.network.pose_track import PoseTrack
 from scope_ptz.camera.network.streams import LiveStream
@@ -29,7 +29,7 @@ RETRIES = 3
 
 
 class DevicePictures(ABC):
-    """Pictures from one channel of a device. Drivers implement ``take_once`` and ``open_stream``.
+    """Pictures from one channel of a device. Drivers implement ``take_snapshot`` and ``open_stream``.
 
     Args:
         width: Width of a frame in pixels.
@@ -45,7 +45,7 @@ class DevicePictures(ABC):
         self._live: list[LiveFrames] = []
 
     @abstractmethod
-    async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
+    async def take_snapshot(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
         """Take a snapshot. Return its bytes, which are identical for identical pictures, and its pixels.
 
         Raises:
@@ -65,7 +65,7 @@ class DevicePictures(ABC):
         Raises:
             PictureError: The picture is damaged, black or frozen, or has the wrong size.
         """
-        give_up_s = monotonic() + FROZEN_PATIENCE_S
+        deadline_s = monotonic() + MAX_PICTURE_LAG_S
         while True:
             track = PoseTrack()
             track.add(monotonic(), await read_pose())
@@ -75,7 +75,7 @@ class DevicePictures(ABC):
             track.add(monotonic(), await read_pose())
             pose = track.at(exposed_s)
             check_not_black(image)
-            if not self._frozen_check.is_lagging(data, pose, give_up_s):
+            if not self._frozen_check.is_lagging(data, pose, deadline_s):
                 return make_frame(image, pose, info, requested_at + exposed_s - requested_s)
             await anyio.sleep(0.1)
 
@@ -85,11 +85,11 @@ class DevicePictures(ABC):
         Raises:
             PictureError: The picture is damaged or frozen.
         """
-        give_up_s = monotonic() + FROZEN_PATIENCE_S
+        deadline_s = monotonic() + MAX_PICTURE_LAG_S
         while True:
             data, image = await self._take(*self._small_size)
             # Black pictures are identical and would therefore look frozen. The next snapshot reports them as black.
-            if is_black(image) or not self._small_frozen_check.is_lagging(data, pose, give_up_s):
+            if is_black(image) or not self._small_frozen_check.is_lagging(data, pose, deadline_s):
                 return image
             await anyio.sleep(0.1)
 
@@ -119,7 +119,7 @@ class DevicePictures(ABC):
         """Take a snapshot, and retake it if it is damaged."""
         for retries_left in range(RETRIES, -1, -1):
             try:
-                return await self.take_once(width, height)
+                return await self.take_snapshot(width, height)
             except PictureError as error:
                 if error.fault == "size" or not retries_left:
                     raise

@@ -112,27 +112,27 @@ class DeviceHttp:
         return cls(address, Credentials(description["user"], description["password"]), verify=verify)
 
     async def get(
-        self, path: str, parameters: Mapping[str, str] | None = None, *, repeat: bool = True, accept: tuple[int, ...] = ()
+        self, path: str, parameters: Mapping[str, str] | None = None, *, retry: bool = True, accept: tuple[int, ...] = ()
     ) -> DeviceReply:
         """Send a GET request.
 
         Args:
             path: The path on the device.
             parameters: The query parameters.
-            repeat: Whether the request may be sent again after a lost connection. This must be false for relative moves, because
+            retry: Whether the request may be sent again after a lost connection. This must be false for relative moves, because
                 the camera could move twice.
             accept: Status codes besides 2xx for which to return the reply instead of raising an error.
 
         Raises:
             CameraError: One of the errors in ``camera.network.errors``.
         """
-        return await self._send("GET", path, parameters, repeat=repeat, accept=accept)
+        return await self._send("GET", path, parameters, retry=retry, accept=accept)
 
     async def post(
-        self, path: str, content: bytes, headers: Mapping[str, str], *, repeat: bool, accept: tuple[int, ...] = ()
+        self, path: str, content: bytes, headers: Mapping[str, str], *, retry: bool, accept: tuple[int, ...] = ()
     ) -> DeviceReply:
         """Send a POST request. ``headers`` describe the content; the other arguments are those of ``get``."""
-        return await self._send("POST", path, None, content=content, headers=headers, repeat=repeat, accept=accept)
+        return await self._send("POST", path, None, content=content, headers=headers, retry=retry, accept=accept)
 
     async def _send(
         self,
@@ -140,12 +140,12 @@ class DeviceHttp:
         path: str,
         parameters: Mapping[str, str] | None,
         *,
-        repeat: bool,
+        retry: bool,
         accept: tuple[int, ...],
         content: bytes | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> DeviceReply:
-        for pause_s in (*(BACKOFF_S if repeat else ()), None):
+        for pause_s in (*(BACKOFF_S if retry else ()), None):
             try:
                 with connection_errors(self.address), anyio.fail_after(self._timeouts.connect_s + self._timeouts.reply_s):
                     async with self._client.stream(method, path, params=parameters, content=content, headers=headers) as response:

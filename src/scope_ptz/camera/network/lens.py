@@ -13,7 +13,7 @@ from scope_ptz.errors import CameraError
 SETTLED_READINGS = 6
 """Number of consecutive equal readings after which the focus counts as settled."""
 
-BLIND_S = 2.0
+UNREPORTED_FOCUS_WAIT_S = 2.0
 """Seconds to wait for a device that does not report its focus position."""
 
 TIMEOUT_S = 15.0
@@ -31,7 +31,7 @@ async def wait_until_focused(read: Callable[[], Awaitable[LensState]], poll_s: f
     """
     state, started_s, equal = await read(), monotonic(), 0
     if state.focus is None:
-        await anyio.sleep(BLIND_S)
+        await anyio.sleep(UNREPORTED_FOCUS_WAIT_S)
         return await read()
     while monotonic() - started_s < TIMEOUT_S:
         await anyio.sleep(poll_s)

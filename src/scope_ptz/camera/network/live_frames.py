@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from scope_ptz.camera.clocks import Clock
     from scope_ptz.camera.network.streams import LiveStream
 
-FROZEN_PATIENCE_S = 2.0
+MAX_PICTURE_LAG_S = 2.0
 """Maximum time in seconds that the picture may lag behind the motors, for example because the encoder freezes during a move."""
 
-SILENT_S = 1.5
+INTERRUPTED_AFTER_S = 1.5
 """Seconds without a frame after which a stream counts as interrupted."""
 
 
@@ -55,7 +55,7 @@ class LiveFrames:
         """The reason why no frames are arriving; empty while they are."""
         if self._poses.problem:
             return self._poses.problem
-        if self._waiting_since_s is not None and monotonic() - self._waiting_since_s > SILENT_S:
+        if self._waiting_since_s is not None and monotonic() - self._waiting_since_s > INTERRUPTED_AFTER_S:
             return f"{self._info.name} is not sending frames. Reconnecting. Check the network and the camera."
         return ""
 
@@ -65,7 +65,7 @@ class LiveFrames:
         Raises:
             CameraError: The stream is lost, the pose cannot be read, or the pictures are damaged, black or frozen.
         """
-        frozen, due_s, give_up_s = FrozenCheck(), float("-inf"), monotonic() + FROZEN_PATIENCE_S
+        frozen, due_s, deadline_s = FrozenCheck(), float("-inf"), monotonic() + MAX_PICTURE_LAG_S
         try:
             while True:
                 await anyio.sleep(max(0.0, due_s - monotonic()))
@@ -74,17 +74,17 @@ class LiveFrames:
                 picture = await self._stream.next()
                 exposed_s = picture.arrived_s - self._latency_s
                 pose = await self._poses.at(exposed_s)
-                if monotonic() - requested_s > SILENT_S:  # an outage does not count as lag
-                    give_up_s = monotonic() + FROZEN_PATIENCE_S
+                if monotonic() - requested_s > INTERRUPTED_AFTER_S:  # an outage does not count as lag
+                    deadline_s = monotonic() + MAX_PICTURE_LAG_S
                 if pose is None:
                     continue  # exposed before the first pose reading
                 check_not_black(picture.image)
-                if frozen.is_lagging(picture.data, pose, give_up_s):
+                if frozen.is_lagging(picture.data, pose, deadline_s):
                     continue
                 due_s = max(due_s + 1.0 / rate_hz, monotonic())
                 self._waiting_since_s = None
                 yield make_frame(picture.image, pose, self._info, exposed_s + self._offset_s)
-                give_up_s = monotonic() + FROZEN_PATIENCE_S  # restarted when the consumer asks for the next frame
+                deadline_s = monotonic() + MAX_PICTURE_LAG_S  # restarted when the consumer asks for the next frame
         finally:
             with anyio.CancelScope(shield=True):
                 await self._poses.close()

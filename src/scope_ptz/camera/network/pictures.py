@@ -105,20 +105,20 @@ class FrozenCheck:
             return _turn_deg(self._stationary_at, pose) > FROZEN_TURN_DEG
         return False
 
-    def is_lagging(self, data: bytes, pose: Pose, give_up_s: float) -> bool:
+    def is_lagging(self, data: bytes, pose: Pose, deadline_s: float) -> bool:
         """Return whether a picture still shows an earlier pose, for example because the encoder freezes during a move.
 
         Args:
             data: The picture's bytes.
             pose: The pose at which it was taken.
-            give_up_s: The ``time.monotonic`` time after which to raise an error instead.
+            deadline_s: The ``time.monotonic`` time after which to raise an error instead.
 
         Raises:
-            PictureError: The picture is still frozen after ``give_up_s``.
+            PictureError: The picture is still frozen after ``deadline_s``.
         """
         if not self.is_frozen(data, pose):
             return False
-        if monotonic() > give_up_s:
+        if monotonic() > deadline_s:
             raise PictureError("The picture is frozen: it does not change while the camera turns. Restart the camera.", "frozen")
         return True
 

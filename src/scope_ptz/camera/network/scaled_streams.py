@@ -1,4 +1,4 @@
-"""Live pictures from devices that cannot stream at the frame size: scaled video, or a sequence of snapshots."""
+"""Live video from devices that cannot stream at the frame size: scaled video, or a sequence of snapshots."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ async def wait_until_stationary(
         before = now
 
 
-GRID = (320, 180)
+COMPARISON_SIZE_PX = (320, 180)
 """Width and height in pixels at which pictures are compared."""
 
 _TILE = 20  # width and height of a tile in pixels
@@ -130,7 +130,7 @@ def moving_fraction(first: NDArray[np.uint8], second: NDArray[np.uint8]) -> floa
     Returns:
         The fraction, from 0 to 1; None if there is too little texture.
     """
-    first_grey, second_grey = _to_grid(first), _to_grid(second)
+    first_grey, second_grey = _to_comparison_size(first), _to_comparison_size(second)
     difference = _tiles(second_grey - first_grey)
     difference = difference - difference.mean(axis=(1, 2), keepdims=True)
     gradient = np.hypot(*np.gradient(first_grey))
@@ -166,14 +166,14 @@ async def wait_for_still_picture(
         before = now
 
 
-def _to_grid(image: NDArray[np.uint8]) -> NDArray[np.float32]:
+def _to_comparison_size(image: NDArray[np.uint8]) -> NDArray[np.float32]:
     import cv2
 
-    small = cv2.resize(image, GRID, interpolation=cv2.INTER_AREA)
+    small = cv2.resize(image, COMPARISON_SIZE_PX, interpolation=cv2.INTER_AREA)
     return np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.float32)
 
 
 def _tiles(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Split an array into tiles, and return an array of shape ``(tiles, 20, 20)``."""
-    rows, columns = GRID[1] // _TILE, GRID[0] // _TILE
+    rows, columns = COMPARISON_SIZE_PX[1] // _TILE, COMPARISON_SIZE_PX[0] // _TILE
     return values.reshape(rows, _TILE, columns, _TILE).swapaxes(1, 2).reshape(-1, _TILE, _TILE)

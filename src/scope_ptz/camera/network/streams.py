@@ -1,4 +1,4 @@
-"""Live picture streams from a device. Only the newest picture is kept, and a stalled or broken stream is reopened."""
+"""Live video streams from a device. Only the newest picture is kept, and a stalled or broken stream is reopened."""
 
 from __future__ import annotations
 

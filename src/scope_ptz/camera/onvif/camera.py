@@ -12,7 +12,7 @@ from scope_ptz.camera.base import Arrival, CameraInfo, PresetInfo
 from scope_ptz.camera.lens import DEFAULT_STEP, FocusAction, IrisAction, LensState, check_focus, check_iris
 from scope_ptz.camera.network.camera import Command, NetworkCamera
 from scope_ptz.camera.network.settling import SettlingCriteria
-from scope_ptz.camera.network.stop_process import StopProcess
+from scope_ptz.camera.network.watchdog_process import WatchdogProcess
 from scope_ptz.camera.onvif.client import OnvifClient, stop_device
 from scope_ptz.camera.onvif.device import OnvifDevice, read_device
 from scope_ptz.camera.onvif.faults import OnvifFaultError
@@ -50,7 +50,7 @@ class OnvifCamera(NetworkCamera):
             simulated=False, capabilities=replace(device.capabilities, focus=lens.focus_actions, iris=lens.iris_actions),
             assumed=device.assumed, firmware=device.firmware,
         )  # fmt: skip
-        watchdog = StopProcess(client.http, stop_device, {"profile": device.ptz_profile})
+        watchdog = WatchdogProcess(client.http, stop_device, {"profile": device.ptz_profile})
         super().__init__(info, pictures, settling, watchdog)
 
     @classmethod
@@ -159,9 +159,9 @@ class OnvifCamera(NetworkCamera):
         await self._client.close()
 
 
-def _check_known(device: OnvifDevice, where: str) -> None:
+def _check_known(device: OnvifDevice, address: str) -> None:
     if device.assumed:
         raise CameraError(
-            f"The {device.name} at {where} does not report its {' and '.join(device.assumed)} over ONVIF. Calibrate the camera "
+            f"The {device.name} at {address} does not report its {' and '.join(device.assumed)} over ONVIF. Calibrate the camera "
             "with `scope camera calibrate`, or add options such as hfov_wide and hfov_tele to the camera spec."
         )

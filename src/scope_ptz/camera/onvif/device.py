@@ -144,7 +144,7 @@ async def read_device(client: OnvifClient, mapping: OnvifMapping, *, width: int 
     )
 
 
-def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") -> tuple[Any, Any]:
+def choose_profiles(profiles: Any, address: str, width: int, requested: str = "") -> tuple[Any, Any]:
     """Return the profile to use for PTZ control and the profile to use for pictures.
 
     Only a profile with a PTZ configuration can control the camera, and on some devices only the substream's profile has one. By
@@ -156,12 +156,12 @@ def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") 
     profiles = [profile for profile in profiles or () if profile.token]
     ptz_profiles = [profile for profile in profiles if getattr(profile, "PTZConfiguration", None) is not None]
     if not ptz_profiles:
-        raise CameraError(f"The camera at {where} has no ONVIF profile with PTZ. PTZ may be off or unsupported.")
+        raise CameraError(f"The camera at {address} has no ONVIF profile with PTZ. PTZ may be off or unsupported.")
     if requested:
         named = [profile for profile in profiles if requested in (profile.token, profile.Name)]
         if not named:
             raise CameraError(
-                f"The camera at {where} has no profile '{requested[:40]}'. Available profiles: {', '.join(map(_name, profiles))}."
+                f"The camera at {address} has no profile '{requested[:40]}'. Available profiles: {', '.join(map(_name, profiles))}."
             )
         return (named[0] if named[0] in ptz_profiles else ptz_profiles[0]), named[0]
     ptz = ptz_profiles[0]
@@ -171,7 +171,7 @@ def choose_profiles(profiles: Any, where: str, width: int, requested: str = "") 
         if getattr(profile, "VideoEncoderConfiguration", None) is not None and _video_source(profile) == _video_source(ptz)
     ]  # fmt: skip
     if not video_profiles:
-        raise CameraError(f"The camera at {where} has no ONVIF profile with video. Create one in the camera's settings.")
+        raise CameraError(f"The camera at {address} has no ONVIF profile with video. Create one in the camera's settings.")
     wide = [profile for profile in video_profiles if profile.VideoEncoderConfiguration.Resolution.Width >= width]
     sizes = {id(profile): profile.VideoEncoderConfiguration.Resolution.Width for profile in video_profiles}
     return ptz, min(wide, key=lambda profile: sizes[id(profile)]) if wide else max(

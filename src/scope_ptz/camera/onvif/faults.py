@@ -27,7 +27,7 @@ class OnvifFaultError(CameraError):
         super().__init__(message)
         self.codes = codes
 
-    def is_any(self, *codes: str) -> bool:
+    def has_any_code(self, *codes: str) -> bool:
         """Return whether the fault has one of the codes."""
         return any(code in self.codes for code in codes)
 

@@ -64,7 +64,7 @@ class OnvifMotors:
         await self._client.call("ptz", "AbsoluteMove", ProfileToken=self._device.ptz_profile, Position=position)
 
     def centring_command(self, current: Pose, target: Pose, x: float, y: float) -> Callable[[], Awaitable[None]] | None:
-        """Return a command that centres a point of the picture with a relative move in fractions of the field of view.
+        """Return a command that centres a point in the picture with a relative move in fractions of the field of view.
 
         Args:
             current: The current pose.
@@ -111,7 +111,7 @@ class OnvifMotors:
             try:
                 await self._client.call("ptz", "ContinuousMove", **arguments, **limit)
             except OnvifFaultError as fault:
-                if not fault.is_any("TimeoutNotSupported", "InvalidArgVal"):
+                if not fault.has_any_code("TimeoutNotSupported", "InvalidArgVal"):
                     raise
                 self._sends_timeout = False
             else:

@@ -68,7 +68,7 @@ class OnvifPictures(DevicePictures):
         self._native_size, self._stream_size, self._stream_kind = native_size, stream_size, stream
         self._video: LiveStream | None = None
 
-    async def take_once(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
+    async def take_snapshot(self, width: int, height: int) -> tuple[bytes, NDArray[np.uint8]]:
         if not self.snapshot_path:
             return await self._take_from_video()
         body = (await self._http.get(self.snapshot_path)).body
@@ -77,7 +77,7 @@ class OnvifPictures(DevicePictures):
 
     def open_stream(self, rate_hz: float) -> LiveStream:  # noqa: ARG002 - the device chooses the rate
         if self._stream_kind == "snapshot" or not self.stream_url:
-            return SnapshotStream(lambda: self.take_once(self.width, self.height))
+            return SnapshotStream(lambda: self.take_snapshot(self.width, self.height))
         return ScaledStream(self._open_video(), self.width, self.height)
 
     async def close(self) -> None:

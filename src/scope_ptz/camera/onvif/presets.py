@@ -72,7 +72,7 @@ class OnvifPresets:
                 await self._client.call("ptz", "SetPreset", **arguments)
                 break
             except OnvifFaultError as fault:
-                if not fault.is_any("MovingPTZ") or not retries_left:
+                if not fault.has_any_code("MovingPTZ") or not retries_left:
                     raise
                 await anyio.sleep(0.1)
         if name not in await self.tokens():

@@ -50,7 +50,7 @@ class PinnedTransport:
             CameraError: One of the errors in ``camera.network.errors``.
         """
         content = to_bytes(envelope)
-        reply = await self._http.post(pinned_path(self._http, address), content, headers, repeat=False, accept=FAULT_STATUSES)
+        reply = await self._http.post(pinned_path(self._http, address), content, headers, retry=False, accept=FAULT_STATUSES)
         return SoapReply(reply.status, _replace_invalid_utf8(reply.body), {"Content-Type": reply.content_type or "text/xml"})
 
     async def aclose(self) -> None:

@@ -45,11 +45,11 @@ def audit_make(
     from scope_ptz.taskgen.facts.robust import TASK_CAMERA
     from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, QuestionDraw, draw_questions
 
-    rows = load_split(tasks)
-    chosen = draw_questions(rows, number, seed)
-    if not chosen:
+    all_tasks = load_split(tasks)
+    sampled = draw_questions(all_tasks, number, seed)
+    if not sampled:
         raise InputError("None of these tasks expects an answer, so there is nothing to ask. Select other tasks with --tasks.")
-    worlds = open_worlds([task for _, task in chosen])
+    worlds = open_worlds([task for _, task in sampled])
     make_context = ground_truth_tools(worlds, TruthCache())
     runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
     try:
@@ -58,12 +58,14 @@ def audit_make(
         raise OutputError(f"{out} already exists. Specify a new folder with --out.") from error
     except OSError as error:
         raise OutputError(f"{out} cannot be created: {error.strerror}.") from error
-    questions = [anyio.run(write_question, q, task, runners[task.world], out, print_error) for q, task in chosen]
-    (out / QUESTIONS).write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in questions), "utf-8")
-    draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(rows))
+    questions = [
+        anyio.run(write_question, question_number, task, runners[task.world], out, print_error) for question_number, task in sampled
+    ]
+    (out / QUESTIONS).write_text("".join(json.dumps(question, ensure_ascii=False) + "\n" for question in questions), "utf-8")
+    draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(all_tasks))
     (out / DRAW).write_text(draw.model_dump_json() + "\n", "utf-8")
     (out / "README.md").write_text(_README, "utf-8")
-    put(f"{len(questions)} questions and {sum(len(row['pictures']) for row in questions)} pictures in {out}")
+    put(f"{len(questions)} questions and {sum(len(question['pictures']) for question in questions)} pictures in {out}")
 
 
 @audit_app.command("score")

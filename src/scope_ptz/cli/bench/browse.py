@@ -28,14 +28,14 @@ def browse(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start view and of the evidence.")] = None,
 ) -> None:
     """List tasks, or show one: instruction, expected answer, reference run, and the frames that contain its evidence."""
-    rows = _matching_tasks(_tasks(tasks), check_category(category), scene)
+    matches = _matching_tasks(_load_tasks(tasks), check_category(category), scene)
     if task:
-        chosen = _task_with_id(rows, task)
+        chosen = _task_with_id(matches, task)
     elif at_random:
-        chosen = random.Random(seed).choice(rows)
+        chosen = random.Random(seed).choice(matches)
     else:
-        for row in rows:
-            put(f"{row.id:<52} {row.instruction}")
+        for candidate in matches:
+            put(f"{candidate.id:<52} {candidate.instruction}")
         return
     from scope_ptz.factory.validation_perception import ground_truth_tools
     from scope_ptz.factory.worlds import open_worlds
@@ -43,7 +43,7 @@ def browse(
 
     worlds = open_worlds([chosen])
     (world,) = worlds.values()
-    for line in summary(chosen, [row for row in _tasks(tasks) if row.paraphrase_of == chosen.id]):
+    for line in summary(chosen, [candidate for candidate in _load_tasks(tasks) if candidate.paraphrase_of == chosen.id]):
         put(line)
     for line in reference_run(chosen, world, ground_truth_tools(worlds)):
         put(line)
@@ -52,25 +52,25 @@ def browse(
             put(f"picture    {path}")
 
 
-def _tasks(name: str) -> tuple[Task, ...]:
+def _load_tasks(name: str) -> tuple[Task, ...]:
     from scope_ptz.bench.tasks.splits import load_split
 
     return load_split(name) if name else (*load_split("all"), *load_split("unseen"))
 
 
 def _matching_tasks(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
-    matches = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
+    matches = [task for task in tasks if category in ("", task.category) and scene in ("", task.scene, task.world)]
     if not matches:
         raise InputError("No task matches. Remove --category or --scene, or select other tasks with --tasks.")
     return matches
 
 
-def _task_with_id(tasks: list[Task], name: str) -> Task:
-    exact = [row for row in tasks if row.id == name]
-    matches = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
+def _task_with_id(tasks: list[Task], task_id: str) -> Task:
+    exact = [task for task in tasks if task.id == task_id]
+    matches = exact or [task for task in tasks if task.id.endswith(f"-{task_id}")]
     if not matches:
-        raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
+        raise InputError(f"There is no task '{task_id}'. List them with 'scope bench browse --category counting'.")
     if len(matches) > 1:
-        names = ", ".join(row.id for row in matches[:MAX_AMBIGUOUS_LISTED])
-        raise InputError(f"Several tasks end with '{name}': {names}. Give a full id.")
+        names = ", ".join(task.id for task in matches[:MAX_AMBIGUOUS_LISTED])
+        raise InputError(f"Several tasks end with '{task_id}': {names}. Give a full id.")
     return matches[0]

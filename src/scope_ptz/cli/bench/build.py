@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import SceneNames, TasksOption
+from scope_ptz.cli.bench.flags import ScenesOption, TasksOption
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, command
 from scope_ptz.errors import InputError, OutputError
@@ -26,7 +26,7 @@ UNSEEN_VARIATIONS = (7, 8, 9)
 def build(
     out: Annotated[Path, typer.Option("--out", help="File for the tasks (JSONL); with --all, a folder.")],
     more_seeds: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
-    scene: SceneNames = None,
+    scene: ScenesOption = None,
     seed: Annotated[
         int, typer.Option(help="Seed for every random choice; a different seed gives a different dataset of the same scenes.")
     ] = 1,
@@ -35,7 +35,7 @@ def build(
         list[int] | None,
         typer.Option("--seeds", min=1, help="Numbers of scene variations to use instead of the scenes, for example 7 8 9."),
     ] = None,
-    whole: Annotated[
+    whole_dataset: Annotated[
         bool, typer.Option("--all", help="Make the whole dataset: every split, its validation and the gold runs.")
     ] = False,
     card: Annotated[Path | None, typer.Option("--card", help="With --all: file for the dataset card (Markdown).")] = None,
@@ -48,15 +48,15 @@ def build(
     from scope_ptz.taskgen.dataset.build import missing_tasks_message
     from scope_ptz.taskgen.dataset.unseen import build_unseen
 
-    numbers = variation_numbers(seeds, more_seeds)
+    variations = variation_numbers(seeds, more_seeds)
     quotas = _quotas(share)
-    if card is not None and not whole:
+    if card is not None and not whole_dataset:
         raise InputError("A card describes a whole dataset. Use --card together with --all, or run 'scope bench card'.")
-    if whole:
-        return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
+    if whole_dataset:
+        return _build_all(scene, out, card, seed, variations or UNSEEN_VARIATIONS, quotas)
     scenes = list(open_scenes(scene).values())
-    if numbers:
-        built = build_unseen(scenes, numbers, quotas, print_error, is_answerable, seed)
+    if variations:
+        built = build_unseen(scenes, variations, quotas, print_error, is_answerable, seed)
     else:
         built = build_tasks(scenes, seed, quotas, print_error, is_answerable)
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,7 @@ def build(
 
 
 def _build_all(
-    scene: list[str] | None, out: Path, card: Path | None, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
+    scene: list[str] | None, out: Path, card: Path | None, seed: int, variations: Sequence[int], quotas: dict[Category, int] | None
 ) -> int:
     from scope_ptz.factory.task_validation import validate_tasks
     from scope_ptz.factory.validation_perception import is_answerable
@@ -77,7 +77,7 @@ def _build_all(
     from scope_ptz.taskgen.dataset.build import build_dataset
 
     is_valid = build_dataset(
-        open_scenes(scene), out, seed, numbers, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
+        open_scenes(scene), out, seed, variations, quotas, validate=validate_tasks, make_gold=_gold_runs, can_answer=is_answerable,
         report=put, notify=print_error,
     )  # fmt: skip
     if card is not None:
@@ -190,15 +190,15 @@ def gold_check(
 
     published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     result = confusion_matrix(runs)
-    worse = result.is_worse_than(published)
+    is_worse = result.is_worse_than(published)
     if as_json:
-        put_json({**result.as_dict(), "published": published, "worse": worse})
+        put_json({**result.as_dict(), "published": published, "worse": is_worse})
     else:
         for line in matrix_lines(runs):
             put(line)
-        verdict = "WORSE" if worse else "not worse"
+        verdict = "WORSE" if is_worse else "not worse"
         put(f"published: {published['named']} named, {published['accepted']} accepted; this result is {verdict}")
-    return FAILED if worse else 0
+    return FAILED if is_worse else 0
 
 
 def _gold_runs(tasks: Sequence[Task], seed: int) -> list[GoldRun]:

@@ -38,8 +38,8 @@ def drafts(
     from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
     from scope_ptz.taskgen.generating.run_draft_file import read_run_drafts, validate_run_drafts
 
-    rows, ledger = read_run_drafts(file), DraftLedger(out)
-    before = len(ledger.entries)
+    run_drafts, ledger = read_run_drafts(file), DraftLedger(out)
+    earlier_count = len(ledger.entries)
     known_tasks = KnownTasks([*(load_split(known) if known else ()), *ledger.kept])
 
     def open_scene(name: str) -> Scene | None:
@@ -49,7 +49,7 @@ def drafts(
             return None
 
     async def work() -> None:
-        await validate_run_drafts(rows, open_scene, task_validator, known_tasks, ledger)
+        await validate_run_drafts(run_drafts, open_scene, task_validator, known_tasks, ledger)
 
     try:
         anyio.run(work)
@@ -59,23 +59,23 @@ def drafts(
         put_json(
             {
                 "drafts": [entry.model_dump(mode="json", include={"fate", "reason", "draft"}) for entry in ledger.entries],
-                "new": len(ledger.entries) - before,
+                "new": len(ledger.entries) - earlier_count,
                 "accepted": len(ledger.kept),
                 "tasks": str(tasks),
                 "review": str(review),
             }
         )
     else:
-        _print_entries(rows, ledger, before)
+        _print_entries(run_drafts, ledger, earlier_count)
         put(f"Accepted {len(ledger.kept)} of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
     return 0 if ledger.kept else FAILED
 
 
-def _print_entries(rows: list[RunDraft], ledger: DraftLedger, first: int) -> None:
+def _print_entries(run_drafts: list[RunDraft], ledger: DraftLedger, first: int) -> None:
     for entry in ledger.entries[first:]:
         text = entry.draft.get("instruction", "") if isinstance(entry.draft, dict) else str(entry.draft or "")
         put(f"{entry.fate:<15} {text[:90]}")
         if entry.reason:
             put(f"{'':<15} {entry.reason}")
-    if not rows:
+    if not run_drafts:
         put("The file contains no drafts. Rate runs as good, then export them again.")

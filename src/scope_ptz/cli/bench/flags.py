@@ -22,14 +22,14 @@ DEFAULT_LOG_FOLDER = Path("evaluations")
 SPLITS = "core, lite, paraphrase, reaction, unseen, all"
 
 TasksOption = Annotated[str, typer.Option("--tasks", help=f"Split ({SPLITS}) or task file (JSONL or YAML).")]
-SceneNames = Annotated[
+ScenesOption = Annotated[
     list[str] | None, typer.Option("--scene", help="Scene to make tasks for (repeatable; default: every scene).")
 ]
-HostKeys = Annotated[
+HostKeysOption = Annotated[
     list[Path] | None,
     typer.Option("--host-key", help="Public key of a trusted host, or folder of such keys (*.pub; repeatable)."),
 ]
-JudgeRepeats = Annotated[
+JudgeRepeatsOption = Annotated[
     int, typer.Option("--judge-repeats", min=1, help="Number of judgements of each run.", rich_help_panel="Judge")
 ]
 
@@ -92,7 +92,7 @@ class EvaluationFlags:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SingleRunFlags(EvaluationFlags):
+class SingleEvaluationFlags(EvaluationFlags):
     """Options for a single evaluation, including those that are not available for sweeps over several pairs."""
 
     pictures: Annotated[

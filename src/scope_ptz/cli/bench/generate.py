@@ -31,7 +31,7 @@ def generate(
     number: Annotated[
         int, typer.Option("--n", min=1, help="Number of tasks, distributed over the categories as in the published splits.")
     ] = 20,
-    want: Annotated[
+    requested: Annotated[
         list[str] | None, typer.Option("--want", metavar="CATEGORY=N", help="Number of tasks of a category, instead of --n.")
     ] = None,
     known: Annotated[str, typer.Option(help="Split or task file with tasks that serve as examples and must not be repeated.")] = "",
@@ -60,7 +60,7 @@ def generate(
 
     request = GenerationRequest(
         scene=open_scenes([scene])[scene],
-        requested=_requested_counts(want or [], number),
+        requested=_requested_counts(requested or [], number),
         known=load_split(known) if known else (),
         runs=read_runs(runs, feedback),
         seed=seed,
@@ -69,7 +69,7 @@ def generate(
     ledger = DraftLedger(out)
     endpoint = _endpoint(url, key_file, timeout)
     try:
-        anyio.run(_draft, request, ledger, endpoint, model, temperature)
+        anyio.run(_draft_tasks, request, ledger, endpoint, model, temperature)
     finally:
         tasks, review = ledger.finish()
     missing = ledger.missing(request.requested)
@@ -81,7 +81,7 @@ def generate(
     return 0
 
 
-async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
+async def _draft_tasks(request: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
     from scope_ptz.factory.task_validation import task_validator
     from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
@@ -94,18 +94,18 @@ async def _draft(request: GenerationRequest, ledger: DraftLedger, endpoint: Endp
         await server.close()
 
 
-def _requested_counts(want: list[str], number: int) -> dict[Category, int]:
-    """Return the number of tasks per category: as given in ``want``, or ``number`` tasks in the published proportions."""
+def _requested_counts(requested: list[str], number: int) -> dict[Category, int]:
+    """Return the number of tasks per category: as given in ``requested``, or ``number`` tasks in the published proportions."""
     from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
-    if not want:
+    if not requested:
         by_remainder = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))
         counts = {name: number * QUOTAS[name] // sum(QUOTAS.values()) for name in QUOTAS}
         for name in by_remainder[: number - sum(counts.values())]:
             counts[name] += 1
         return {name: n for name, n in counts.items() if n}
     counts_by_category: dict[Category, int] = {}
-    for entry in want:
+    for entry in requested:
         category_name, _, count = entry.partition("=")
         category = next((name for name in QUOTAS if name == category_name), None)
         if category is None or not count.isdecimal() or not int(count):
@@ -173,23 +173,23 @@ def import_tasks(
 
     imported = import_file(file, known_scenes(scenes, mapping))
     target = out or Path(f"{file.stem}.imported.jsonl")
-    report = target.with_name(target.name.removesuffix(".jsonl") + ".report.json")
+    report_file = target.with_name(target.name.removesuffix(".jsonl") + ".report.json")
     dump_imported(imported.tasks, target)
-    content = imported.as_dict()
+    report_data = imported.as_dict()
     try:
-        report.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+        report_file.write_text(json.dumps(report_data, indent=1, ensure_ascii=False) + "\n", "utf-8")
     except OSError as error:
-        raise OutputError(f"The report {report} cannot be written: {error.strerror}.") from error
+        raise OutputError(f"The report {report_file} cannot be written: {error.strerror}.") from error
     if as_json:
-        put_json(content, indent=1)
+        put_json(report_data, indent=1)
     else:
         for line in report_lines(imported):
             put(line)
         put("")
-        put(f"{len(imported.tasks)} tasks in {target}, findings for every row in {report}")
-        if any(content["map_to_fill"].values()):
+        put(f"{len(imported.tasks)} tasks in {target}, findings for every row in {report_file}")
+        if any(report_data["map_to_fill"].values()):
             put("Map unknown names of scenes and presets with --map; 'map_to_fill' in the report lists them.")
-    if not imported.tasks and not content["rows"]:
+    if not imported.tasks and not report_data["rows"]:
         print_error(f"{file} contains a header but no rows, so there is nothing to import.")
     elif not imported.tasks:
         known = ", ".join(sorted(known_scenes(scenes, mapping).scenes)) or "none"
@@ -212,9 +212,9 @@ def known_scenes(folder: Path | None, mapping: Path | None) -> SceneNames:
 
     if folder is not None and not folder.is_dir():
         raise InputError(f"The scene folder {folder} does not exist.")
-    search = (*([folder] if folder else []), *scene_search(load_settings()))
+    folders = (*([folder] if folder else []), *scene_search(load_settings()))
     known = {}
-    for name in list_scenes(search):
-        file = load_scene(name, search).file
+    for name in list_scenes(folders):
+        file = load_scene(name, folders).file
         known[name] = ScenePresets({preset.name: preset.viewpoint for preset in file.presets}, file.home_preset, file.start_s)
     return SceneNames(known, read_scene_names(mapping) if mapping else SceneNameMap())

@@ -29,7 +29,7 @@ def keygen(
     as_json: JsonOption = False,
 ) -> None:
     """Create the Ed25519 key with which a host signs results. The private key is written to a file and never shown."""
-    with _hosting_packages():
+    with _explain_missing_package():
         from scope_ptz.bench.signatures.keys import fingerprint, generate_key, public_path, raw_bytes
 
         key_fingerprint = fingerprint(raw_bytes(generate_key(out)))
@@ -88,7 +88,7 @@ def host(
     Each participant gets its own task order, log and submission. A task can be attempted once. Running the same command again
     resumes after an interruption. See docs/hosting.md.
     """
-    with _hosting_packages():
+    with _explain_missing_package():
         from scope_ptz.serve.bench_host.host import Host, lock_folder, participants_file
         from scope_ptz.serve.bench_host.wire import EvaluationSettings, PerceptionSettings
         from scope_ptz.serve.security.access import Access
@@ -116,44 +116,46 @@ def host(
             raise InputError("The host has no participants. Register one with --participant NAME.")
 
         async def work() -> None:
-            opened = Host(out, settings, key, absent=close, notify=lambda line: _print_result(line, as_json=as_json))
-            runs = await opened.check()
+            bench_host = Host(out, settings, key, fail_unfinished=close, notify=lambda line: _print_result(line, as_json=as_json))
+            run_count = await bench_host.check()
             if close:
-                await _close(opened)
+                await _finish_and_close(bench_host)
                 return
-            await _serve(opened, Access(address, opened.tokens, tuple(name or ())), port, runs, until_done, as_json=as_json)
+            await _serve(
+                bench_host, Access(address, bench_host.tokens, tuple(name or ())), port, run_count, until_done, as_json=as_json
+            )
 
         run_async(work)
 
 
-async def _serve(opened: Host, access: Access, port: int, runs: int, until_done: bool, *, as_json: bool) -> None:
+async def _serve(bench_host: Host, access: Access, port: int, run_count: int, until_done: bool, *, as_json: bool) -> None:
     import asyncio
 
     from scope_ptz.serve.bench_host.application import serve_host
 
-    async with serve_host(opened, access, port=port) as bound_port:
+    async with serve_host(bench_host, access, port=port) as bound_port:
         address = f"[{access.host}]" if ":" in access.host else access.host  # IPv6 addresses need brackets.
-        url, names = f"http://{address}:{bound_port}", [token.name for token in opened.tokens.tokens]
+        url, names = f"http://{address}:{bound_port}", [token.name for token in bench_host.tokens.tokens]
         if as_json:
-            put_json({"url": url, "participants": names, "runs": runs})
+            put_json({"url": url, "participants": names, "runs": run_count})
         else:
-            put(f"Evaluating {', '.join(names)} on {runs} runs at {url}/api/v1/messages, and over MCP at {url}/mcp.")
+            put(f"Evaluating {', '.join(names)} on {run_count} runs at {url}/api/v1/messages, and over MCP at {url}/mcp.")
             put("Press Ctrl-C to stop. Running the same command again resumes.")
         sys.stdout.flush()
-        finishing = asyncio.ensure_future(opened.finish(start=False))
+        completion = asyncio.ensure_future(bench_host.wait_until_finished(start=False))
         try:
-            await finishing
+            await completion
             if not until_done:
                 await asyncio.Event().wait()
         finally:
-            finishing.cancel()
+            completion.cancel()
 
 
-async def _close(opened: Host) -> None:
+async def _finish_and_close(bench_host: Host) -> None:
     try:
-        await opened.finish(start=True)
+        await bench_host.wait_until_finished(start=True)
     finally:
-        await opened.close()
+        await bench_host.close()
 
 
 def _register(tokens: TokenFile, names: list[str], *, as_json: bool) -> None:
@@ -177,7 +179,7 @@ def _print_result(line: str, *, as_json: bool) -> None:
 
 
 @contextmanager
-def _hosting_packages() -> Iterator[None]:
+def _explain_missing_package() -> Iterator[None]:
     """Convert the error for a missing package to an ``InputError`` that states how to install the package."""
     try:
         yield

@@ -66,7 +66,7 @@ class _Session:
                 put("Recorded.")
             elif interruption.ends_session:
                 break
-        self._finish()
+        self._print_result()
 
     def _folder(self, task: Task) -> Path:
         return self.out / task.id
@@ -85,7 +85,7 @@ class _Session:
         """Let the person do one task. If the person leaves the task unfinished, its run is deleted.
 
         Returns:
-            The error that states how the person left the task; None if the task is finished.
+            How the person left the task; None if the task is finished.
         """
         import anyio
 
@@ -108,7 +108,7 @@ class _Session:
             shutil.rmtree(folder, ignore_errors=True)
         return interruption
 
-    def _finish(self) -> None:
+    def _print_result(self) -> None:
         from scope_ptz.bench.human_runs import write_result
 
         result = self._result()
@@ -136,7 +136,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Task
     """Record a run in which a person is both planner and perception.
 
     Returns:
-        The error that states how the person left the task; None if the task is finished.
+        How the person left the task; None if the task is finished.
     """
     from scope_ptz.agent.loop import Agent
     from scope_ptz.agent.records import Budgets, RunLabels

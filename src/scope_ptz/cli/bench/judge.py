@@ -76,7 +76,7 @@ def rescore(
                     )
                     total += tally
                     parts = ["checked again"] if checks else []
-                    put(f"{log}: {', '.join([*parts, *_new_judgements(server, tally)])}")
+                    put(f"{log}: {', '.join([*parts, *_judgement_notes(server, tally)])}")
                 if decides:
                     set_deciding_judge(log, decides)
                 if note := other_judges_note(read_log(log).trials):
@@ -93,25 +93,24 @@ def rescore(
     return 0
 
 
-def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> list[str]:
+def _judgement_notes(judge: JudgeServer | None, tally: JudgementTally) -> list[str]:
     """Describe the new judgements in a log."""
     if judge is None:
         return []
     return [f"{tally.total} judgement{'' if tally.total == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
 
 
-def judge_failure(tally: JudgementTally) -> str:
+def judge_failure_text(tally: JudgementTally) -> str:
     """Return a sentence about the judgements that failed because of the judge's server."""
-    first = f", the first with: {tally.failure}" if tally.failure else ""
-    first = first if first.endswith((".", "!", "?")) else f"{first}."
-    return f"{tally.failed} of {tally.total} judgements failed because the judge's server gave no usable reply{first}"
+    cause = f", the first with: {tally.failure}" if tally.failure else ""
+    cause = cause if cause.endswith((".", "!", "?")) else f"{cause}."
+    return f"{tally.failed} of {tally.total} judgements failed because the judge's server gave no usable reply{cause}"
 
 
 def retry_message(tally: JudgementTally) -> str:
     """Return a message about failed judgements that states how to retry them."""
-    return (
-        f"{judge_failure(tally)} Nothing is lost; running the same command again retries {'it' if tally.failed == 1 else 'them'}."
-    )
+    pronoun = "it" if tally.failed == 1 else "them"
+    return f"{judge_failure_text(tally)} Nothing is lost; running the same command again retries {pronoun}."
 
 
 def agree(
@@ -143,12 +142,12 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
     from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
     from scope_ptz.taskgen.gold.judge_results import gold_raters, read_verdicts
 
-    gold = [path for path in logs if path.suffix == ".jsonl"]
+    verdict_files = [path for path in logs if path.suffix == ".jsonl"]
     evaluations = []
     for path in logs:
-        if path not in gold:
+        if path not in verdict_files:
             evaluations.append(with_labels(read_log(path), read_labels(labels_file(path))))
-    verdicts = [verdict for path in gold for verdict in read_verdicts(path)]
+    verdicts = [verdict for path in verdict_files for verdict in read_verdicts(path)]
     return [*collect_raters(evaluations), *gold_raters(verdicts)]
 
 
@@ -175,13 +174,15 @@ def judge_gold(
     from scope_ptz.taskgen.gold.judge_cases import create_cases, judge_all, result_lines
     from scope_ptz.taskgen.gold.judge_results import judge_results, read_verdicts
 
-    earlier = read_verdicts(out)
+    earlier_verdicts = read_verdicts(out)
     cases = create_cases(gold, tasks, passing, limit, open_worlds, ground_truth_tools)
 
     async def work() -> JudgementTally:
         server = await open_requested_judge(judge_settings(judge))
         try:
-            return await judge_all(server, cases, earlier, out, repeats=repeats, concurrency=concurrency, notify=print_error)
+            return await judge_all(
+                server, cases, earlier_verdicts, out, repeats=repeats, concurrency=concurrency, notify=print_error
+            )
         finally:
             await server.close()
 

@@ -84,11 +84,11 @@ def _compare(log: Path, *, as_json: bool) -> None:
     from scope_ptz.errors import InputError
 
     raters = raters_in([log])
-    humans = {rater.name for rater in raters if rater.kind == "person"}
-    if not humans:
+    labellers = {rater.name for rater in raters if rater.kind == "person"}
+    if not labellers:
         raise InputError(f"{log} has no labels yet. Label some runs with 'scope bench label {log} --by NAME'.")
     report = measure_agreement(raters)
-    report = replace(report, pairs=tuple(pair for pair in report.pairs if {pair.first, pair.second} & humans))
+    report = replace(report, pairs=tuple(pair for pair in report.pairs if {pair.first, pair.second} & labellers))
     if as_json:
         put_json(report.as_dict(), indent=1)
         return
@@ -155,16 +155,16 @@ class _LabelSession:
                 case "s":
                     return 1
                 case "b":
-                    return self._back(trial)
+                    return self._go_back(trial)
                 case "?":
                     _print_modes()
                 case verb:
-                    new_label = self._label(verb, command["mode"], (command["note"] or "").strip())
+                    new_label = self._make_label(verb, command["mode"], (command["note"] or "").strip())
                     if new_label is not None:
                         self._save_label(trial, new_label)
                         return 1
 
-    def _label(self, verb: str, mode: str | None, note: str) -> Label | None:
+    def _make_label(self, verb: str, mode: str | None, note: str) -> Label | None:
         from scope_ptz.bench.scoring.error_modes import ErrorMode
         from scope_ptz.bench.scoring.trials import Label
 
@@ -182,7 +182,7 @@ class _LabelSession:
         add_label(self.file, new_label, trial.sample)
         self.labelled.add(trial.sample)
 
-    def _back(self, trial: Trial) -> int:
+    def _go_back(self, trial: Trial) -> int:
         """Move back to the previous run, and ask for its label again."""
         index = self.trials.index(trial)
         if index == 0:
@@ -214,7 +214,7 @@ def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
     from scope_ptz.agent.filmstrip import write_filmstrip
     from scope_ptz.errors import OutputError, ScopeError
 
-    written = list[Path]()
+    paths = list[Path]()
     try:
         for name in files.references:
             path = folder / name
@@ -223,11 +223,11 @@ def write_pictures(files: SampleFiles, folder: Path) -> list[Path]:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(data)
             if _PICTURE.match(name) and path.is_file():
-                written.append(path)
+                paths.append(path)
     except OSError as error:
         raise OutputError(f"{folder} cannot be written to: {error.strerror}. Choose another folder with --pictures.") from error
-    strip = folder / "filmstrip.png"
-    if written and not strip.is_file():
+    filmstrip = folder / "filmstrip.png"
+    if paths and not filmstrip.is_file():
         with suppress(ScopeError):  # One picture is missing or damaged; the others are still shown.
             write_filmstrip(replace(files.trace, folder=folder))
-    return [*([strip] if strip.is_file() else []), *written]
+    return [*([filmstrip] if filmstrip.is_file() else []), *paths]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import SPLITS, HostKeys
+from scope_ptz.cli.bench.flags import SPLITS, HostKeysOption
 from scope_ptz.cli.exit import print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError
@@ -25,7 +25,7 @@ def leaderboard(
             "--tasks", help=f"Task file or split that submissions may cover (repeatable; splits: {SPLITS}; default: core)."
         ),
     ] = None,
-    host_key: HostKeys = None,
+    host_key: HostKeysOption = None,
     title: Annotated[str, typer.Option("--title", help="Title of the page.")] = "SCOPE leaderboard",
     as_json: JsonOption = False,
 ) -> None:

@@ -44,7 +44,7 @@ class LiveProgress(EvaluationProgress):
         self._plan: EvaluationPlan | None = None
         self._trials: dict[str, Trial] = {}
         self._running: dict[str, float] = {}
-        self._started_s = self._printed = time.monotonic()
+        self._started_s = self._last_printed_s = time.monotonic()
         self._live: Live | None = None
 
     def note(self, text: str) -> None:
@@ -66,7 +66,7 @@ class LiveProgress(EvaluationProgress):
         for line in filter(None, (plan.origin, *lines)):
             self._print(line)
         self._plan, self._trials = plan, {trial.sample: trial for trial in plan.finished}
-        self._started_s = self._printed = time.monotonic()
+        self._started_s = self._last_printed_s = time.monotonic()
         if self._console.is_terminal:
             self._live = Live(get_renderable=self._render, console=self._console, refresh_per_second=2)
             self._live.start()
@@ -83,39 +83,43 @@ class LiveProgress(EvaluationProgress):
         self._running.pop(sample, None)
         self._trials[sample] = trial
         now = time.monotonic()
-        if self._live is None and now - self._printed >= PRINT_EVERY_S:
-            self._printed = now
-            self._print(self._line())
+        if self._live is None and now - self._last_printed_s >= PRINT_EVERY_S:
+            self._last_printed_s = now
+            self._print(self._progress_line())
 
     def _seconds_left(self) -> float | None:
-        new = len(self._trials) - len(self._plan.finished) if self._plan is not None else 0
-        if new < 1 or self._plan is None:
+        newly_finished = len(self._trials) - len(self._plan.finished) if self._plan is not None else 0
+        if newly_finished < 1 or self._plan is None:
             return None
-        return (time.monotonic() - self._started_s) / new * (self._plan.runs - len(self._trials))
+        return (time.monotonic() - self._started_s) / newly_finished * (self._plan.runs - len(self._trials))
 
-    def _line(self) -> str:
-        left, rows = self._seconds_left(), self._trials.values()
-        correct = sum(t.headline == "correct" for t in rows)
-        broken = sum(t.headline == "infrastructure" for t in rows)
-        pending = sum(lacks_verdict(t) for t in rows)
-        remaining = f", about {duration_text(left)} left" if left is not None else ""
-        judged = f", {pending} not judged yet" if pending else ""
-        total = self._plan.runs if self._plan is not None else len(rows)
-        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} failed because of infrastructure{remaining}"
+    def _progress_line(self) -> str:
+        seconds_left, trials = self._seconds_left(), self._trials.values()
+        correct = sum(t.headline == "correct" for t in trials)
+        broken = sum(t.headline == "infrastructure" for t in trials)
+        pending = sum(lacks_verdict(t) for t in trials)
+        time_note = f", about {duration_text(seconds_left)} left" if seconds_left is not None else ""
+        pending_note = f", {pending} not judged yet" if pending else ""
+        total = self._plan.runs if self._plan is not None else len(trials)
+        return (
+            f"{len(trials)} of {total} runs: {correct} correct{pending_note}, {broken} failed because of infrastructure{time_note}"
+        )
 
     def _render(self) -> RenderableType:
-        rows = list(self._trials.values())
-        title, total = (self._plan.pair, self._plan.runs) if self._plan is not None else ("", len(rows))
-        head = Text.assemble((title, "bold"), "  ", self._line())
-        bar = ProgressBar(total=total or 1, completed=len(rows), width=60)
+        trials = list(self._trials.values())
+        title, total = (self._plan.pair, self._plan.runs) if self._plan is not None else ("", len(trials))
+        head = Text.assemble((title, "bold"), "  ", self._progress_line())
+        bar = ProgressBar(total=total or 1, completed=len(trials), width=60)
         now = time.monotonic()
-        longest = sorted(self._running.items(), key=lambda item: item[1])[:MAX_RUNNING_SHOWN]
-        names = ", ".join(f"{name.rpartition('#')[0].partition('-')[2]} {now - since:.0f} s" for name, since in longest)
-        more = len(self._running) - len(longest)
+        longest_running = sorted(self._running.items(), key=lambda item: item[1])[:MAX_RUNNING_SHOWN]
+        names = ", ".join(
+            f"{name.rpartition('#')[0].partition('-')[2]} {now - started_s:.0f} s" for name, started_s in longest_running
+        )
+        more = len(self._running) - len(longest_running)
         running = Text(
             f"running  {names or 'nothing yet'}{f' and {more} more' if more > 0 else ''}", style="dim", overflow="ellipsis"
         )
-        return Group(head, bar, category_table(rows), running)
+        return Group(head, bar, category_table(trials), running)
 
 
 def category_table(trials: Iterable[Trial]) -> Table:
@@ -175,11 +179,13 @@ def summary(evaluation: Evaluation) -> RenderableType:
     if events := server_events(trials):
         affected = sum(bool(t.server_events) for t in trials)
         parts.append(Text(f"servers    failed: {counts_text(events)} (in {affected} of {len(trials)} runs)"))
-    timed = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
-    if timed:
-        median, p95 = timed[len(timed) // 2], timed[math.ceil(0.95 * len(timed)) - 1]
-        shared = " (runs shared the machine; measure latency with --latency)" if card.contended else ""
-        parts.append(Text(f"a run      median {_run_time(median)}, 95% within {_run_time(p95)}{shared}", style="dim"))
+    durations_s = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
+    if durations_s:
+        median, p95 = durations_s[len(durations_s) // 2], durations_s[math.ceil(0.95 * len(durations_s)) - 1]
+        contention_note = " (runs shared the machine; measure latency with --latency)" if card.contended else ""
+        parts.append(
+            Text(f"a run      median {_run_duration(median)}, 95% within {_run_duration(p95)}{contention_note}", style="dim")
+        )
     return Group(*parts)
 
 
@@ -191,5 +197,5 @@ def baseline_note(evaluation: Evaluation) -> str:
     return GROUND_TRUTH_NOTE if card.perception.deterministic else ""
 
 
-def _run_time(seconds: float) -> str:
+def _run_duration(seconds: float) -> str:
     return f"{seconds * 1000:.0f} ms" if seconds < 1 else duration_text(seconds)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import HostKeys, published_tasks
+from scope_ptz.cli.bench.flags import HostKeysOption, published_tasks
 from scope_ptz.cli.bench.reading import print_findings, read_log
 from scope_ptz.cli.bench.verify import verify_and_show
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
@@ -98,17 +98,17 @@ def gate(
     from scope_ptz.bench.engine.regression.gate import compare_evaluations
     from scope_ptz.bench.engine.regression.text import comparison_lines, judge_change_note
 
-    now, before = read_log(log), read_log(baseline)
-    for evaluation in (now, before):
+    current, reference = read_log(log), read_log(baseline)
+    for evaluation in (current, reference):
         print_findings(evaluation)
-    comparison = compare_evaluations(now, before, alpha)
+    comparison = compare_evaluations(current, reference, alpha)
     if as_json:
-        rows = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
-        put_json({"passed": comparison.passed, "alpha": alpha, "groups": rows, "left_out": comparison.unscored_tasks}, indent=2)
+        groups = [asdict(comparison.overall), *(asdict(c) for c in comparison.categories)]
+        put_json({"passed": comparison.passed, "alpha": alpha, "groups": groups, "left_out": comparison.unscored_tasks}, indent=2)
     else:
-        for line in comparison_lines(comparison, now):
+        for line in comparison_lines(comparison, current):
             put(line)
-    if note := judge_change_note(now, before):
+    if note := judge_change_note(current, reference):
         print_error(note)
     return 0 if comparison.passed else FAILED
 
@@ -140,17 +140,17 @@ def submission_make(
     print_findings(evaluation)
     with_traces = traces and log.suffix != HUMAN_RESULT_SUFFIX
     header, lines = _lines_with_traces(log, evaluation) if with_traces else submission_lines(evaluation)
-    skip = partial and tasks is None and header.card.split not in SPLITS
-    missing = [] if skip else _coverage_faults(header, lines, tasks)
-    if missing and not partial:
+    skip_coverage = partial and tasks is None and header.card.split not in SPLITS
+    faults = [] if skip_coverage else _coverage_faults(header, lines, tasks)
+    if faults and not partial:
         raise InputError(
-            f"{log} does not cover {tasks or header.card.split}: {_fault_summary(missing)}. A submission must cover a whole split: "
+            f"{log} does not cover {tasks or header.card.split}: {_fault_summary(faults)}. A submission must cover a whole split: "
             "run the remaining tasks without --limit, --category and --scene, or write an incomplete submission with --partial."
         )
     write_submission((header, lines), out)
     put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
-    if missing:
-        print_error(f"{out} is incomplete and not a valid submission: {_fault_summary(missing)}.")
+    if faults:
+        print_error(f"{out} is incomplete and not a valid submission: {_fault_summary(faults)}.")
 
 
 @submission_app.command("validate")
@@ -164,7 +164,7 @@ def submission_validate(
         bool,
         typer.Option("--verify", help="Repeat the calls of every run, and compare the results with the trace. This takes minutes."),
     ] = False,
-    host_key: HostKeys = None,
+    host_key: HostKeysOption = None,
     as_json: JsonOption = False,
 ) -> int:
     """Check that a submission is complete and consistent, and that its verdicts follow from its traces.
@@ -177,17 +177,17 @@ def submission_validate(
     from scope_ptz.bench.submissions.submission_checks import check_submission
 
     result = check_submission(file, _load_tasks(tasks), read_trusted_keys(host_key or ()))
-    verified = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
-    differing = verified.of("differs") if verified is not None else []
+    verification = verify_and_show(result.runs, len(result.runs), file.name, quiet=as_json) if verify else None
+    differing = verification.of("differs") if verification is not None else []
     if as_json:
-        put_json({**result.as_dict(), **({"verified": verified.as_dict()} if verified is not None else {})}, indent=1)
+        put_json({**result.as_dict(), **({"verified": verification.as_dict()} if verification is not None else {})}, indent=1)
     else:
         for fault in result.faults[:MAX_FAULTS_LISTED]:
             print_error(fault)
         if len(result.faults) > MAX_FAULTS_LISTED:
             print_error(f"and {len(result.faults) - MAX_FAULTS_LISTED} more")
         put(result.summary)
-        if verified is not None and result.runs:
+        if verification is not None and result.runs:
             put("frames are not part of a submission, so they were not compared; `scope bench verify LOG` compares them")
     return FAILED if result.faults or differing else 0
 
@@ -197,8 +197,8 @@ def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[
     from scope_ptz.bench.submissions.submission import submission_lines
     from scope_ptz.bench.submissions.submission_traces import publish_runs
 
-    public = publish_runs(evaluation, read_runs(log))
-    return submission_lines(public.evaluation, public.runs, public.places)
+    published = publish_runs(evaluation, read_runs(log))
+    return submission_lines(published.evaluation, published.runs, published.places)
 
 
 def _coverage_faults(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:

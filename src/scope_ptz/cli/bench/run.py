@@ -6,7 +6,14 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.cli.bench.agent_flags import AgentFlags, agent_options
-from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, evaluation_options, judge_settings, parse_price
+from scope_ptz.cli.bench.flags import (
+    JudgeRepeatsOption,
+    SelectionFlags,
+    SingleEvaluationFlags,
+    evaluation_options,
+    judge_settings,
+    parse_price,
+)
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
 
@@ -20,11 +27,11 @@ if TYPE_CHECKING:
 
 def run(
     selection: SelectionFlags,
-    running: SingleRunFlags,
-    external: AgentFlags,
+    evaluation: SingleEvaluationFlags,
+    agent: AgentFlags,
     models: PairFlags,
     judge: JudgeFlags,
-    judge_repeats: JudgeRepeats = 1,
+    judge_repeats: JudgeRepeatsOption = 1,
     as_json: JsonOption = False,
 ) -> int:
     """Run a planner with a perception backend, or an external agent, on the benchmark, and print the scores.
@@ -43,19 +50,19 @@ def run(
 
     judge_options = judge_settings(judge, judge_repeats)
     options = replace(
-        evaluation_options(selection, running, models.options()),
-        agent=external.agent,
-        agent_options=agent_options(external),
-        pictures=running.pictures,
-        variant=running.variant,
-        fresh=running.fresh,
-        resume=running.resume,
-        price=parse_price(running.price),
+        evaluation_options(selection, evaluation, models.options()),
+        agent=agent.agent,
+        agent_options=agent_options(agent),
+        pictures=evaluation.pictures,
+        variant=evaluation.variant,
+        fresh=evaluation.fresh,
+        resume=evaluation.resume,
+        price=parse_price(evaluation.price),
         judge=judge_options if judge_options.requested else None,
     )
     console = Console(highlight=False, stderr=as_json)
 
-    result = _evaluate(options, console, running.progress)
+    result = _evaluate(options, console, evaluation.progress)
     if as_json:
         judgements = {"judge": result.judge, "judgements": asdict(result.judgements)} if result.judgements is not None else {}
         put_json(evaluation_summary(result.evaluation) | judgements)
@@ -67,8 +74,8 @@ def run(
     return _report_failures(result)
 
 
-def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) -> EvaluationResult:
-    """Run the evaluation and show its progress in the terminal. If ``files`` is given, also write progress files to that folder."""
+def _evaluate(options: EvaluationOptions, console: Console, progress_folder: Path | None) -> EvaluationResult:
+    """Run the evaluation, show its progress in the terminal and, if there is a ``progress_folder``, write progress files to it."""
     from contextlib import closing
 
     from scope_ptz.cli.bench.progress import LiveProgress
@@ -77,7 +84,7 @@ def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) 
 
     require_engine()
     results: list[EvaluationResult] = []
-    if files is None:
+    if progress_folder is None:
 
         async def work() -> None:
             results.append(await evaluate(options, progress=LiveProgress(console)))
@@ -86,7 +93,7 @@ def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) 
         return results[0]
     from scope_ptz.factory.progress_files import ProgressFiles, ProgressGroup
 
-    with closing(ProgressFiles(files)) as progress:
+    with closing(ProgressFiles(progress_folder)) as progress:
 
         async def work_with_files() -> None:
             results.append(await evaluate(options, progress=ProgressGroup(LiveProgress(console), progress)))
@@ -99,7 +106,7 @@ def _evaluate(options: EvaluationOptions, console: Console, files: Path | None) 
 def _report_failures(result: EvaluationResult) -> int:
     """Print the failures and how to repeat the failed runs, and return the exit code."""
     from scope_ptz.bench.engine.failure_summary import failure_summary
-    from scope_ptz.cli.bench.judge import judge_failure
+    from scope_ptz.cli.bench.judge import judge_failure_text
 
     evaluation, judgements = result.evaluation, result.judgements
     broken = sum(trial.headline == "infrastructure" for trial in evaluation.trials)
@@ -113,10 +120,10 @@ def _report_failures(result: EvaluationResult) -> int:
         if missing:
             parts.append(f"{missing} {'run is' if missing == 1 else 'runs are'} missing")
         print_error(f"{' and '.join(parts)}; running the same command again repeats {'it' if broken + missing == 1 else 'them'}.")
-    failed = judgements is not None and judgements.failed
-    if judgements is not None and failed:
+    judging_failed = judgements is not None and judgements.failed
+    if judgements is not None and judging_failed:
         print_error(
-            f"{judge_failure(judgements)} No run is lost. Run the same command again to retry, or "
+            f"{judge_failure_text(judgements)} No run is lost. Run the same command again to retry, or "
             f"`scope bench rescore {evaluation.log} --judge-url ...`."
         )
-    return FAILED if broken or missing or failed else 0
+    return FAILED if broken or missing or judging_failed else 0

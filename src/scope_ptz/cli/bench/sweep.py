@@ -66,9 +66,9 @@ def sweep(
 
     require_engine()
     names = pair_names(pairs, paper=paper)
-    shared = evaluation_options(selection, evaluation, servers.options())
+    shared_options = evaluation_options(selection, evaluation, servers.options())
     console = Console(highlight=False, stderr=as_json)
-    results = _run_all(names, shared, console)
+    results = _run_all(names, shared_options, console)
     if as_json:
         put_json(
             {name: {"error": result} if isinstance(result, str) else evaluation_summary(result) for name, result in results.items()}
@@ -101,7 +101,7 @@ def pair_names(text: str | None, *, paper: bool) -> list[str]:
     return names
 
 
-def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
+def _run_all(names: list[str], shared_options: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
     """Run all pairs. Return, for each pair, its evaluation or, if it failed, the error message."""
     import anyio
 
@@ -116,7 +116,7 @@ def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> d
     for number, name in enumerate(names, 1):
         console.rule(f"{number} of {len(names)}: {name}")
         try:
-            evaluation = anyio.run(work, replace(shared, models=_models_of_pair(shared.models, name))).evaluation
+            evaluation = anyio.run(work, replace(shared_options, models=_models_of_pair(shared_options.models, name))).evaluation
             results[name] = evaluation
             for line in failure_summary(evaluation.trials, evaluation.card):
                 print_error(f"{name}: {line}")
@@ -126,12 +126,12 @@ def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> d
     return results
 
 
-def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
+def _models_of_pair(shared_options: ModelOptions, name: str) -> ModelOptions:
     """Return the model options for one pair. For the built-in planner and perception, addresses and keys are removed."""
     from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
 
     planner, _, perception = name.partition("+")
-    options = replace(shared, pair=name)
+    options = replace(shared_options, pair=name)
     if planner == GRAMMAR:
         options = replace(options, planner_url=None, planner_key_file=None, planner_options=())
     if perception in BUILT_IN_PERCEPTION:
@@ -158,8 +158,8 @@ def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[T
     if others:
         yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not model results", others, width)
     failures = [(name, line) for name, e in evaluations for line in failure_summary(e.trials, e.card)]
-    missing = [(name, message) for name, message in results.items() if isinstance(message, str)]
-    for title, rows in (("Server failures", failures), ("Not run", missing)):
+    not_run = [(name, message) for name, message in results.items() if isinstance(message, str)]
+    for title, rows in (("Server failures", failures), ("Not run", not_run)):
         if rows:
             table = _table(title)
             table.add_column("reason", overflow="fold")

@@ -59,13 +59,13 @@ def capture(
     if folder is None:
         raise InputError("Give the scene folder with --to, or set SCOPE_SCENES_DIR.")
     target = scene_folder(camera, folder, name)
-    ranges = Ranges(_range("--pan", pan), _range("--tilt", tilt))
+    ranges = Ranges(_parse_range("--pan", pan), _parse_range("--tilt", tilt))
     options = CaptureOptions(ranges, tuple(zoom or ()), close_ups, overlap)
     if dry_run:
         _print_plan(camera, options, target, as_json=as_json)
         return
     scenes: list[CapturedScene] = []
-    with _ProgressBars(shown=not as_json) as bars:
+    with _ProgressBars(enabled=not as_json) as bars:
 
         async def work() -> None:
             scenes.append(await capture_scene(camera, target, options, bars))
@@ -106,7 +106,7 @@ def _plan_lines(plan: CapturePlan, target: Path) -> list[str]:
     return [*lines, f"It would write {target}. Dry run: the camera did not move, and nothing was written."]
 
 
-def _range(option: str, text: str | None) -> tuple[float, float] | None:
+def _parse_range(option: str, text: str | None) -> tuple[float, float] | None:
     if text is None:
         return None
     try:
@@ -149,13 +149,13 @@ def _scene_lines(scene: CapturedScene) -> list[str]:
 class _ProgressBars:
     """Progress bars on stderr, one for each phase. They are shown only on a terminal."""
 
-    def __init__(self, *, shown: bool) -> None:
+    def __init__(self, *, enabled: bool) -> None:
         from rich.console import Console
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
         self._progress = Progress(
             TextColumn("{task.description:20}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
-            console=Console(stderr=True), disable=not (shown and sys.stderr.isatty()),
+            console=Console(stderr=True), disable=not (enabled and sys.stderr.isatty()),
         )  # fmt: skip
         self._tasks: dict[str, int] = {}
 

@@ -31,8 +31,8 @@ def focus(
 ) -> None:
     """Set the focus, or print it."""
 
-    async def adjust(opened: Camera) -> LensState:
-        return await (opened.lens() if action is None else opened.set_focus(cast("FocusAction", action), step=step))
+    async def adjust(opened_camera: Camera) -> LensState:
+        return await (opened_camera.lens() if action is None else opened_camera.set_focus(cast("FocusAction", action), step=step))
 
     _run(camera, adjust, "focus", dry_run=dry_run, as_json=as_json)
 
@@ -46,8 +46,8 @@ def iris(
 ) -> None:
     """Set the iris, or print it."""
 
-    async def adjust(opened: Camera) -> LensState:
-        return await (opened.lens() if action is None else opened.set_iris(cast("IrisAction", action), step=step))
+    async def adjust(opened_camera: Camera) -> LensState:
+        return await (opened_camera.lens() if action is None else opened_camera.set_iris(cast("IrisAction", action), step=step))
 
     _run(camera, adjust, "iris", dry_run=dry_run, as_json=as_json)
 
@@ -56,8 +56,8 @@ def _run(
     spec: str, adjust: Callable[[Camera], Awaitable[LensState]], setting: str, *, dry_run: bool, as_json: bool
 ) -> None:  # fmt: skip
     async def work() -> None:
-        async with open_for_command(spec, dry_run=dry_run) as opened:
-            state = await adjust(opened)
+        async with open_for_command(spec, dry_run=dry_run) as opened_camera:
+            state = await adjust(opened_camera)
         put_json(asdict(state)) if as_json else put(_lens_text(state, setting))
 
     run_async(work)
@@ -67,5 +67,5 @@ def _lens_text(state: LensState, setting: str) -> str:
     values: tuple[Any, Any] = (state.autofocus, state.focus) if setting == "focus" else (state.autoiris, state.iris)
     mode = {True: "automatic", False: "manual", None: "mode not reported"}[values[0]]
     ends = "near to far" if setting == "focus" else "closed to open"
-    at = "position not reported" if values[1] is None else f"at {values[1]:.0%} from {ends}"
-    return f"{setting}: {mode}, {at}"
+    position = "position not reported" if values[1] is None else f"at {values[1]:.0%} from {ends}"
+    return f"{setting}: {mode}, {position}"

@@ -39,8 +39,8 @@ def snapshot(
     from scope_ptz.tools.sweep import sweep
 
     async def work() -> None:
-        async with open_for_command(camera, dry_run=dry_run) as opened:
-            frame = await (sweep(opened) if full else opened.frame())
+        async with open_for_command(camera, dry_run=dry_run) as opened_camera:
+            frame = await (sweep(opened_camera) if full else opened_camera.frame())
         if dry_run:
             put_json({"file": str(out), "dry_run": True}) if as_json else print_error(f"would write {out}")
             return
@@ -77,36 +77,36 @@ def move(
     as_json: JsonOption = False,
 ) -> None:
     """Move the camera to a pose, by an angle, to a point in the picture, to a preset or home. Without options, print the pose."""
-    numbers = [value for value in (pan, tilt, zoom, by_pan, by_tilt) if value is not None]
-    if not all(math.isfinite(value) for value in numbers) or (zoom is not None and zoom <= 0):
+    values = [value for value in (pan, tilt, zoom, by_pan, by_tilt) if value is not None]
+    if not all(math.isfinite(value) for value in values) or (zoom is not None and zoom <= 0):
         raise InputError("Angles must be finite numbers of degrees, and the magnification must be above 0.")
-    by_pose = pan is not None or tilt is not None or zoom is not None or by_pan != 0.0 or by_tilt != 0.0
-    point = None if centre is None else _point(centre)
-    if sum((by_pose, point is not None, preset is not None, home, stop)) > 1:
+    changes_pose = pan is not None or tilt is not None or zoom is not None or by_pan != 0.0 or by_tilt != 0.0
+    point = None if centre is None else _parse_point(centre)
+    if sum((changes_pose, point is not None, preset is not None, home, stop)) > 1:
         raise InputError("Give only one of: a pose, --centre, --preset, --home, or --stop.")
     if zoom_by != 1.0 and point is None:
         raise InputError("--zoom-by requires --centre X,Y. Use --zoom for an absolute magnification.")
 
-    async def carry_out(opened: Camera) -> Arrival | None:
+    async def carry_out(opened_camera: Camera) -> Arrival | None:
         if stop:
-            await opened.stop()
+            await opened_camera.stop()
         elif point is not None:
-            return await opened.centre_on(*point, zoom_factor=zoom_by)
+            return await opened_camera.centre_on(*point, zoom_factor=zoom_by)
         elif preset is not None:
-            return await opened.go_to_preset(preset)
+            return await opened_camera.go_to_preset(preset)
         elif home:
-            return await opened.go_home()
-        elif by_pose:
-            start = await opened.pose()
+            return await opened_camera.go_home()
+        elif changes_pose:
+            start = await opened_camera.pose()
             requested = {"pan_deg": pan, "tilt_deg": tilt, "zoom": zoom}
             target = replace(start, **{name: value for name, value in requested.items() if value is not None})
-            return await opened.move(target.turned(by_pan, by_tilt))
+            return await opened_camera.move(target.turned(by_pan, by_tilt))
         return None
 
     async def work() -> None:
-        async with open_for_command(camera, dry_run=dry_run) as opened:
-            arrival = await carry_out(opened)
-            pose = (await opened.pose() if arrival is None else arrival.pose).as_dict()
+        async with open_for_command(camera, dry_run=dry_run) as opened_camera:
+            arrival = await carry_out(opened_camera)
+            pose = (await opened_camera.pose() if arrival is None else arrival.pose).as_dict()
         clamped = () if arrival is None else arrival.clamped
         limited_by = "" if arrival is None else arrival.limited_by
         if as_json:
@@ -130,12 +130,12 @@ def presets(
         raise InputError("Give either --save or --remove, not both.")
 
     async def work() -> None:
-        async with open_for_command(camera, dry_run=dry_run) as opened:
+        async with open_for_command(camera, dry_run=dry_run) as opened_camera:
             if save is not None:
-                await opened.save_preset(save)
+                await opened_camera.save_preset(save)
             if remove is not None:
-                await opened.remove_preset(remove)
-            current_presets = await opened.presets()
+                await opened_camera.remove_preset(remove)
+            current_presets = await opened_camera.presets()
         if as_json:
             put_json([{"name": preset.name, "description": preset.description} for preset in current_presets])
         else:
@@ -154,12 +154,12 @@ def watch(
     count: Annotated[int, typer.Option("--count", min=0, help="Number of pictures; 0 continues until Ctrl-C.")] = 0,
     as_json: JsonOption = False,
 ) -> None:
-    """Watch the live picture: print the time and pose of each frame, and save the frames if --out is given."""
+    """Watch the live video: print the time and pose of each frame, and save the frames if --out is given."""
     if not (math.isfinite(rate) and 0 < rate <= 60):
         raise InputError(f"--rate must be above 0 and at most 60 pictures per second; got {rate:g}.")
 
     async def work() -> None:
-        async with open_for_command(camera, realtime=True) as opened, aclosing(opened.frames(rate_hz=rate)) as stream:
+        async with open_for_command(camera, realtime=True) as opened_camera, aclosing(opened_camera.frames(rate_hz=rate)) as stream:
             number = 0
             async for frame in stream:
                 number += 1
@@ -198,7 +198,7 @@ async def open_for_command(spec: str, *, dry_run: bool = False, realtime: bool =
         yield DryRunCamera(opened.camera, print_error) if dry_run else opened.camera
 
 
-def _point(text: str) -> tuple[float, float]:
+def _parse_point(text: str) -> tuple[float, float]:
     try:
         x, y = (float(part) for part in text.split(","))
     except ValueError:

@@ -69,20 +69,20 @@ def probe(
 
     run_async(work)
     record, file = results[0]
-    written = _write_report(record, camera, out) if report else None
+    report_path = _write_report(record, camera, out) if report else None
     if as_json:
         put_json(record.model_dump(mode="json"))
         return
     for line in _probe_lines(record):
         put(line)
     put(f"Stored in {file}")
-    if written is not None:
-        put(f"Report: {written}. It contains no addresses, accounts or serial numbers.")
+    if report_path is not None:
+        put(f"Report: {report_path}. It contains no addresses, accounts or serial numbers.")
 
 
 def calibrate(
     camera: CameraSpecArgument,
-    zooms: Annotated[int, typer.Option("--zooms", min=2, max=20, help="Number of zoom levels to measure.")] = 6,
+    zoom_count: Annotated[int, typer.Option("--zooms", min=2, max=20, help="Number of zoom levels to measure.")] = 6,
     dry_run: DryRunOption = False,
     as_json: JsonOption = False,
 ) -> int:
@@ -93,13 +93,13 @@ def calibrate(
     from scope_ptz.factory.cameras.profiles import calibrate_camera
 
     if dry_run:
-        _print_plan(camera, zooms, as_json=as_json)
+        _print_plan(camera, zoom_count, as_json=as_json)
         return 0
     results: list[tuple[CalibrationRecord, Path]] = []
     show_progress = sys.stderr.isatty() and not as_json
 
     async def work() -> None:
-        results.append(await calibrate_camera(camera, zooms=zooms, progress=print_error if show_progress else lambda _: None))
+        results.append(await calibrate_camera(camera, zooms=zoom_count, progress=print_error if show_progress else lambda _: None))
 
     run_async(work)
     record, file = results[0]
@@ -114,13 +114,13 @@ def calibrate(
     return FAILED if record.contradictions else 0
 
 
-def _print_plan(camera: str, zooms: int, *, as_json: bool) -> None:
+def _print_plan(camera: str, zoom_count: int, *, as_json: bool) -> None:
     from scope_ptz.factory.cameras.profiles import plan_camera_calibration
 
     plans: list[CalibrationPlan] = []
 
     async def work() -> None:
-        plans.append(await plan_camera_calibration(camera, zooms=zooms))
+        plans.append(await plan_camera_calibration(camera, zooms=zoom_count))
 
     run_async(work)
     plan, start = plans[0], plans[0].base.as_dict()
@@ -155,14 +155,14 @@ def _write_report(record: ProbeRecord, camera: str, out: Path | None) -> Path:
 def _probe_lines(record: ProbeRecord) -> list[str]:
     """Return the results of a probe as lines of text."""
     pan = "endless" if record.pan_endless else "{:.1f} to {:.1f} degrees".format(*record.pan_range_deg)
-    table = ", ".join(f"{zoom:.2f}x {hfov:.1f}" for zoom, hfov in record.zoom_table)
-    offers = {
+    zoom_table = ", ".join(f"{zoom:.2f}x {hfov:.1f}" for zoom, hfov in record.zoom_table)
+    offered_capabilities = {
         "drive": record.drives,
         "edit presets": record.edits_presets,
         f"focus ({', '.join(record.focus_actions)})": record.focus,
         f"iris ({', '.join(record.iris_actions)})": record.iris,
     }
-    capabilities = [name for name, offered in offers.items() if offered]
+    capabilities = [name for name, offered in offered_capabilities.items() if offered]
     presets = f"{len(record.presets)}" + (f": {', '.join(record.presets)}" if record.presets else "")
     return [
         f"Model: {record.model}",
@@ -171,7 +171,7 @@ def _probe_lines(record: ProbeRecord) -> list[str]:
         f"Pan: {pan}",
         "Tilt: {:.1f} to {:.1f} degrees".format(*record.tilt_range_deg),
         "Zoom: {:.2f}x to {:.2f}x".format(*record.zoom_range),
-        f"Horizontal field of view in degrees: {table}",
+        f"Horizontal field of view in degrees: {zoom_table}",
         f"Picture: {record.frame_width}x{record.frame_height}, {1000 * record.snapshot_s:.0f} ms (median)",
         f"Capabilities: {', '.join(capabilities) or 'only moves and pictures'}",
         f"Presets: {presets}",
@@ -180,16 +180,16 @@ def _probe_lines(record: ProbeRecord) -> list[str]:
 
 
 def _calibration_lines(record: CalibrationRecord) -> list[str]:
-    signs = [
-        f"{name}: {words[0] if scale > 0 else words[1]}, {abs(scale):.3f} degrees per reported degree"
-        for name, scale, words in (
+    axis_lines = [
+        f"{name}: {directions[0] if scale > 0 else directions[1]}, {abs(scale):.3f} degrees per reported degree"
+        for name, scale, directions in (
             ("Pan", record.pan_scale, ("positive is right", "INVERTED, positive is left")),
             ("Tilt", record.tilt_scale, ("positive is up", "INVERTED, positive is down")),
         )
     ]
     horizon_deg = round(record.tilt_offset_deg, 1) + 0.0  # no negative zero
     return [
-        *signs,
+        *axis_lines,
         f"Horizon: at a reported tilt of 0, the camera points {horizon_deg:+.1f} degrees from the horizon",
         "Zoom     measured reported (horizontal field of view in degrees)",
         *(f"{row.zoom:6.2f}x {row.measured_deg:9.2f} {row.stated_deg:8.2f}" for row in record.fields),

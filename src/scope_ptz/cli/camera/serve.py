@@ -104,27 +104,27 @@ def serve(
         prefetch=prefetch,
     )
     devices = make_devices(options, accounts)
-    generated = [] if settings.virtual_camera_password else accounts
+    generated_accounts = [] if settings.virtual_camera_password else accounts
 
     async def run() -> None:
         async with serve_virtual_cameras(devices, options) as cameras:
-            _print(cameras, accounts, generated, options, as_json=as_json)
+            _print_summary(cameras, accounts, generated_accounts, options, as_json=as_json)
             await release_memory_regularly()
 
     run_async(run)
 
 
-def parse_faults(texts: Sequence[str]) -> dict[str, object]:
+def parse_faults(arguments: Sequence[str]) -> dict[str, object]:
     """Parse faults in the form ``NAME=VALUE``. A value is a number, true, false, a word, or words separated by commas.
 
     Raises:
-        InputError: A text has no equals sign.
+        InputError: An argument has no equals sign.
     """
     faults: dict[str, object] = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals:
-            raise InputError(f"A fault must have the form NAME=VALUE, for example stall_s=2; got '{text[:60]}'.")
+    for argument in arguments:
+        name, separator, value = argument.partition("=")
+        if not separator:
+            raise InputError(f"A fault must have the form NAME=VALUE, for example stall_s=2; got '{argument[:60]}'.")
         if name == "stuck":
             faults[name] = [axis for axis in value.split(",") if axis]
             continue
@@ -135,21 +135,21 @@ def parse_faults(texts: Sequence[str]) -> dict[str, object]:
     return faults
 
 
-def _print(
+def _print_summary(
     cameras: Sequence[ServedCamera],
     accounts: Sequence[Account],
-    generated: Sequence[Account],
+    generated_accounts: Sequence[Account],
     options: VirtualCameraOptions,
     *,
     as_json: bool,
 ) -> None:
-    """Print addresses, accounts and example commands. ``generated`` contains the accounts whose passwords are printed."""
+    """Print addresses, accounts and example commands. ``generated_accounts`` contains the accounts whose passwords are printed."""
     import sys
 
     from scope_ptz.cli.exit import put, put_json
 
     if as_json:
-        passwords = {account.name: account.password for account in generated}
+        passwords = {account.name: account.password for account in generated_accounts}
         rows: list[dict[str, Any]] = [
             {
                 "scene": camera.device.scene.name,
@@ -169,20 +169,22 @@ def _print(
             if camera.certificate is not None:
                 put(f"  certificate (SHA-256): {camera.certificate.fingerprint}")
         for account in accounts:
-            secret = f"password {account.password}" if account in generated else "password from SCOPE_VIRTUAL_CAMERA_PASSWORD"
+            secret = (
+                f"password {account.password}" if account in generated_accounts else "password from SCOPE_VIRTUAL_CAMERA_PASSWORD"
+            )
             put(f"Account {account.name} ({account.role.name.lower()}), {secret}")
         insecure = "--insecure " if options.https else ""
-        sign_in = insecure + (f"--digest --user {accounts[0].name} " if accounts else "")
+        curl_options = insecure + (f"--digest --user {accounts[0].name} " if accounts else "")
         credentials = f"{accounts[0].name}:PASSWORD@" if accounts else ""
         url = cameras[0].url
         put("")
         put("Try:")
-        put(f"  curl {sign_in}-o picture.jpg {url}/axis-cgi/jpg/image.cgi")
-        put(f"  curl {sign_in}'{url}/axis-cgi/com/ptz.cgi?rpan=20'")
+        put(f"  curl {curl_options}-o picture.jpg {url}/axis-cgi/jpg/image.cgi")
+        put(f"  curl {curl_options}'{url}/axis-cgi/com/ptz.cgi?rpan=20'")
         put(f"  ffplay {url.replace('://', f'://{credentials}')}/axis-cgi/mjpg/video.cgi")
         put(f"  ffplay {(cameras[0].rtsp_url or '').replace('rtsp://', f'rtsp://{credentials}')}")
         if options.truth:
-            put(f"  curl {sign_in}{url}/virtual/truth")
+            put(f"  curl {curl_options}{url}/virtual/truth")
         put("")
         put("Press Ctrl-C to stop.")
     sys.stdout.flush()

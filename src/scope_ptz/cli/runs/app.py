@@ -133,8 +133,8 @@ def runs_export(
 
     with open_store(runs_dir) as store:
         store.index()
-        chosen = run or store.ids(filters.run_filter())
-        count = export_runs(store, chosen, out, kind)  # type: ignore[arg-type] # export_runs checks the format
+        run_ids = run or store.ids(filters.run_filter())
+        count = export_runs(store, run_ids, out, kind)  # type: ignore[arg-type] # export_runs checks the format
     if as_json:
         put_json({"runs": count, "file": str(out)})
     else:

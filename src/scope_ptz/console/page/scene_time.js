@@ -81,7 +81,7 @@ export function makeSceneTime(camera) {
   return { element, update };
 }
 
-// The scene time below the live picture. A click opens the controls.
+// The scene time below the live view. A click opens the controls.
 export function makeStageTime() {
   const times = makeSceneTime(() => shared.camera);
   const read = h("span", { className: "clock" });

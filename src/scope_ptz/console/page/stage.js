@@ -1,4 +1,4 @@
-// The live picture: frames from a WebSocket, marks on top of them, and the manual camera controls.
+// The live view: frames from a WebSocket, marks on top of them, and the manual camera controls.
 
 import { command, get, part, tabId, url } from "./api.js";
 import { emit, on, shared } from "./app_state.js";
@@ -20,7 +20,7 @@ export function makeStage() {
   const band = h("div", { className: "band", hidden: true });
   const wait = h("div", { className: "wait" }, h("p", {}, "Connecting to the camera …"));
   const picture = h("div", { className: "view", tabIndex: 0, role: "application",
-    "aria-label": "Live picture. Arrow keys move, plus and minus zoom, H goes home, U undoes, Space stops." },
+    "aria-label": "Live view. Arrow keys move, plus and minus zoom, H goes home, U undoes, Space stops." },
   canvas, overlay, band, wait);
   const read = h("dl", { className: "readout" });
   const rate = h("span", { className: "rate" });

@@ -12,7 +12,7 @@ export const OUTCOMES = {
 };
 const TIMES = [["planner_s", "Planner"], ["perception_s", "Perception"], ["camera_s", "Camera"], ["render_s", "Rendering"], ["tools_s", "Tools"]];
 
-// `live` is true for a run in progress on the real camera, whose marks are drawn on the live picture.
+// `live` is true for a run in progress on the real camera, whose marks are drawn on the live view.
 export function makeTurn(run, { live = false, onEnd = null, kind = "instruction", onConfirm = null } = {}) {
   const steps = h("ol", { className: "steps" });
   const thinking = h("p", { className: "thinking", role: "status" }, "Thinking …");

@@ -15,20 +15,20 @@ CACHE_SIZE = 8192
 
 @dataclass(frozen=True, eq=False)
 class Lexicon:
-    """All concepts, with their names and the kinds that they belong to. The methods cache their results."""
+    """All concepts, with their nouns and the kinds that they belong to. The methods cache their results."""
 
     parents: dict[str, tuple[str, ...]]
     """The kinds to which each concept belongs directly."""
-    names: dict[str, str]
-    """The concept of every noun in the singular."""
+    concepts: dict[str, str]
+    """The concept of each noun. All nouns are in the singular."""
 
     @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
     def concept(self, phrase: str) -> str | None:
-        """Return the concept of a noun in the singular or plural."""
+        """Return the concept of a noun, which may be singular or plural; None for an unknown noun."""
         words = phrase.replace("-", " ").split()
         for form in (phrase, singular_phrase(phrase), " ".join(words), singular_phrase(" ".join(words))):
-            if form in self.names:
-                return self.names[form]
+            if form in self.concepts:
+                return self.concepts[form]
         return None
 
     @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
@@ -42,7 +42,7 @@ class Lexicon:
     @lru_cache(maxsize=CACHE_SIZE)  # noqa: B019
     def all_names(self, concept: str) -> frozenset[str]:
         """Return every noun, in the singular, for the concept or for a more specific one."""
-        return frozenset(name for name, named_concept in self.names.items() if concept in self.kinds(named_concept))
+        return frozenset(name for name, named_concept in self.concepts.items() if concept in self.kinds(named_concept))
 
 
 @lru_cache(maxsize=CACHE_SIZE)
@@ -58,7 +58,7 @@ def singular_phrase(phrase: str) -> str:
 def lexicon() -> Lexicon:
     """Load the lexicon from ``lexicon.txt``."""
     parents: dict[str, tuple[str, ...]] = {}
-    names: dict[str, str] = {}
+    concepts: dict[str, str] = {}
     synonyms: list[tuple[str, str]] = []
     for line in files(__package__).joinpath("lexicon.txt").read_text("utf-8").splitlines():
         if not line.strip() or line.startswith("#"):
@@ -66,12 +66,12 @@ def lexicon() -> Lexicon:
         left, _, right = line.partition(":")
         concept, _, parent_names = (part.strip() for part in left.partition("<"))
         parents[concept] = tuple(p.strip() for p in parent_names.split(",") if p.strip())
-        names[concept] = concept
+        concepts[concept] = concept
         synonyms += [(synonym.strip(), concept) for synonym in right.split(",") if synonym.strip()]
     for synonym, concept in synonyms:
-        names.setdefault(synonym, concept)
-        names.setdefault(synonym.replace("-", " "), concept)
-    return Lexicon(parents, names)
+        concepts.setdefault(synonym, concept)
+        concepts.setdefault(synonym.replace("-", " "), concept)
+    return Lexicon(parents, concepts)
 
 
 def nouns_in(words: Sequence[str], extra_nouns: frozenset[str] = frozenset()) -> list[tuple[int, int]]:

@@ -49,12 +49,12 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
         numerator, denominator = words[0].split("/")
         return NumberPhrase(int(numerator) / int(denominator), 1, "FRACTION") if int(denominator) else NumberPhrase()
     if _DIGITS.fullmatch(words[0]):
-        return _digits(words, spans)
+        return _number_from_digits(words, spans)
     sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
     if start and (len(words) == 1 or not (_DIGITS.fullmatch(words[1]) or words[1] in NUMBER_WORDS)):
         return NumberPhrase()
     if start and _DIGITS.fullmatch(words[1]):
-        inner = _digits(words[1:], spans[1:] if spans else None)
+        inner = _number_from_digits(words[1:], spans[1:] if spans else None)
         return NumberPhrase(-inner.value, inner.used + 1)
     value, used = _cardinal(words[start:])
     if used:
@@ -69,7 +69,7 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     return NumberPhrase()
 
 
-def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> NumberPhrase:
+def _number_from_digits(words: list[str], spans: list[tuple[int, int]] | None) -> NumberPhrase:
     """Return the number that starts with digits, including an ordinal suffix or a fraction after it."""
     value = float(words[0].replace("−", "-"))
     adjacent = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
@@ -83,7 +83,7 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
     """Return the value and length of a cardinal in words: "a hundred", "a dozen", "one hundred and twenty", "one point five"."""
     total, current, used = 0.0, 0.0, 0
     if words[0] in {"a", "an"}:
-        if not _article_is_one(words):
+        if not _article_means_one(words):
             return 0.0, 0
         current, used = 1.0, 1
     digit_count = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
@@ -114,7 +114,7 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
     return total + current + decimals, used + more
 
 
-def _article_is_one(words: list[str]) -> bool:
+def _article_means_one(words: list[str]) -> bool:
     """Return whether the article at the start means one, as in "a hundred", but not in "a couple of times"."""
     if len(words) < 2 or words[1] not in {"hundred", "thousand", "dozen", "couple"}:
         return False

@@ -1,4 +1,4 @@
-"""Split a text into tokens: words, numbers, units and punctuation, with contractions resolved."""
+"""Split text into tokens: words, numbers, units and punctuation, with contractions resolved."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Token:
 
 
 def tokenise(text: str) -> list[Token]:
-    """Return the tokens of a text. The text of a token may differ from the characters at its position."""
+    """Return the tokens of a text. A token's ``text`` may differ from the characters at its position."""
     plain = "".join(c.lower() if len(c.lower()) == 1 else c for c in text).replace("’", "'")
     tokens: list[Token] = []
     for match in _TOKEN.finditer(plain):

@@ -159,8 +159,8 @@ async def serve_virtual_cameras(
             )
         )
         for camera, listener in zip(cameras, listeners, strict=True):
-            await stack.enter_async_context(RtspServer(camera.source, realm=camera.unit.realm).listen(listener))
-            camera.unit.rtsp_port = rtsp_port_of[camera.device]
+            await stack.enter_async_context(RtspServer(camera.source, realm=camera.vapix.realm).listen(listener))
+            camera.vapix.rtsp_port = rtsp_port_of[camera.device]
         if options.discovery:
             discoverable_cameras = [DiscoverableCamera(camera.device, camera.port, tls=options.https) for camera in cameras]
             try:

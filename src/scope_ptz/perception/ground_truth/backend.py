@@ -128,9 +128,13 @@ class GroundTruthPerception(Perception):
         reply = answer(view, parsed)
         if reply.text.startswith(_ABSENCE_BEGINNINGS) and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
-        if reply.text.startswith(_DENIALS) and (unknown := [x for x in find_unknown_nouns(view, parsed) if not is_english_noun(x)]):
+        if reply.text.startswith(_DENIAL_BEGINNINGS) and (
+            unknown := [x for x in find_unknown_nouns(view, parsed) if not is_english_noun(x)]
+        ):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the question. Name a kind of thing.")
-        if reply.text.startswith((*_DENIALS, *_ABSENCE_BEGINNINGS)) and (unstated := find_unknown_qualities(view, parsed)):
+        if reply.text.startswith((*_DENIAL_BEGINNINGS, *_ABSENCE_BEGINNINGS)) and (
+            unstated := find_unknown_qualities(view, parsed)
+        ):
             return unknown_answer(f"I cannot tell: the scene does not say what is {_quote_list(unstated)}")
         return reply
 
@@ -154,12 +158,14 @@ class GroundTruthPerception(Perception):
         if not things and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the description. Name a kind of thing.")
         if not things and (unstated := find_unknown_qualities(view, parsed)):
-            raise NotUnderstoodError(_UNSTATED.format(words=_quote_list(unstated)))
+            raise NotUnderstoodError(_UNSTATED_QUALITIES.format(words=_quote_list(unstated)))
         return things
 
 
-_UNSTATED = "The scene does not say what is {words}, so its ground truth cannot tell. Describe the things by what a picture shows."
-_DENIALS = ("No, there is no ", "No, there are no ")
+_UNSTATED_QUALITIES = (
+    "The scene does not say what is {words}, so its ground truth cannot tell. Describe the things by what a picture shows."
+)
+_DENIAL_BEGINNINGS = ("No, there is no ", "No, there are no ")
 _ABSENCE_BEGINNINGS = (
     "There is no ",
     "There are no ",

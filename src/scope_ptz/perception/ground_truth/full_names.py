@@ -15,7 +15,7 @@ _FUNCTION_WORDS = frozenset({"a", "an", "the", "in", "on", "of", "at", "by", "to
 
 def find_by_full_name(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return the things whose names consist of exactly the words in a phrase."""
-    phrase_words = _words(phrase)
+    phrase_words = _name_words(phrase)
     if not phrase_words:
         return []
     return [
@@ -23,8 +23,8 @@ def find_by_full_name(view: View, phrase: tree.Phrase) -> list[Thing]:
     ]
 
 
-def _words(phrase: tree.Phrase) -> set[str]:
-    """Return all words in a phrase; an empty set if the phrase states no property, or more than a name can contain."""
+def _name_words(phrase: tree.Phrase) -> set[str]:
+    """Return all words in a phrase; an empty set if the phrase states no property, or one that cannot be part of a name."""
     if not (phrase.tests or phrase.ordinal) or phrase.order is not None:
         return set()
     words = {*phrase.words, *(word for word, value in ORDINALS.items() if value == phrase.ordinal)}  # "the Second Chance sign"

@@ -60,9 +60,9 @@ class NoisyPerception(GroundTruthPerception):
         sightings: list[Sighting] = []
         for sighting in truth.sightings:
             missed = rng.random() < self._noise.miss * math.exp(-sighting.pixels / self._noise.miss_scale_px)
-            twice = rng.random() < self._noise.duplicate
+            duplicated = rng.random() < self._noise.duplicate
             shifted = [self._shift_box(sighting, rng) for _ in range(2)]
-            sightings += shifted[: 0 if missed else 2 if twice else 1]
+            sightings += shifted[: 0 if missed else 2 if duplicated else 1]
         return ViewTruth(tuple(sightings), tuple(self._misread(t, rng) for t in truth.texts))
 
     def _shift_box(self, sighting: Sighting, rng: random.Random) -> Sighting:

@@ -23,15 +23,15 @@ from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
 from scope_ptz.perception.ground_truth.view import Thing, View
 
-BACKDROP = frozenset({"surface", "sky"})
+BACKGROUND_CONCEPTS = frozenset({"surface", "sky"})
 """Background concepts, which do not count as objects."""
 
 NEAR_M = 4.0  # maximum gap between things that are next to each other
-ON_SLACK_M = 0.3  # tolerance when testing whether one thing stands on another
+ON_TOLERANCE_M = 0.3  # tolerance when testing whether one thing stands on another
 FLAT_M = 0.5  # things lower than this are flat, such as a road
 DEPTH_STEP_M = 0.5  # minimum distance difference at which one thing is behind another
 SIDE_BAND = 0.4  # fraction of the frame that counts as a side
-SIDE_SLACK = 0.05  # tolerance for horizontal overlap, as a fraction of the frame
+SIDE_TOLERANCE = 0.05  # tolerance for horizontal overlap, as a fraction of the frame
 
 
 def is_in_region(view: View, thing: Thing, region: tree.Region) -> bool:
@@ -52,7 +52,7 @@ def is_in_region(view: View, thing: Thing, region: tree.Region) -> bool:
 
 def _depth_m(view: View, fraction: float) -> float:
     """Return the distance at a fraction of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
-    distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
+    distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKGROUND_CONCEPTS]
     near, far = min(distances), max(distances)
     return float(near * (far / near) ** fraction)
 
@@ -71,17 +71,17 @@ def relation_holds(view: View, a: Thing, kind: tree.RelationKind, b: Thing) -> b
         case "below":
             return ay > by and _overlap_horizontally(a, b, 0.1)
         case "front":
-            return not is_part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
+            return not is_part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_TOLERANCE)
         case "behind":
-            return not is_part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_SLACK)
+            return not is_part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _overlap_horizontally(a, b, SIDE_TOLERANCE)
         case "near" | "facing":
             return not is_part and a.gap_m(b) <= NEAR_M
         case "on":
             return view.belongs(a.id, b.id) or _rests_on(a, b)
 
 
-def _overlap_horizontally(a: Thing, b: Thing, slack: float) -> bool:
-    return a.box.x_min <= b.box.x_max + slack and b.box.x_min <= a.box.x_max + slack
+def _overlap_horizontally(a: Thing, b: Thing, tolerance: float) -> bool:
+    return a.box.x_min <= b.box.x_max + tolerance and b.box.x_min <= a.box.x_max + tolerance
 
 
 def _rests_on(a: Thing, b: Thing) -> bool:
@@ -91,9 +91,12 @@ def _rests_on(a: Thing, b: Thing) -> bool:
     top of ``b``, with a tolerance, and above the base of ``b`` unless ``b`` is flat like a road.
     """
     centre_m = (a.low_m + a.high_m)[:2] / 2
-    is_within = bool(np.all(centre_m >= b.low_m[:2] - ON_SLACK_M) and np.all(centre_m <= b.high_m[:2] + ON_SLACK_M))
-    lowest_m, highest_m = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
-    return is_within and bool(lowest_m - ON_SLACK_M / 2 <= a.low_m[2] <= highest_m) and _volume_m3(a) < _volume_m3(b)
+    is_within = bool(np.all(centre_m >= b.low_m[:2] - ON_TOLERANCE_M) and np.all(centre_m <= b.high_m[:2] + ON_TOLERANCE_M))
+    lowest_m, highest_m = (
+        b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_TOLERANCE_M,
+        b.high_m[2] + ON_TOLERANCE_M,
+    )
+    return is_within and bool(lowest_m - ON_TOLERANCE_M / 2 <= a.low_m[2] <= highest_m) and _volume_m3(a) < _volume_m3(b)
 
 
 def _volume_m3(thing: Thing) -> float:

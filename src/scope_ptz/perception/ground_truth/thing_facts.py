@@ -283,8 +283,8 @@ def _is_context_word(view: View, thing: Thing, word: str) -> bool:
     holder = thing.parent
     while holder is not None:
         words = english.letters(view.instances[holder].name).split()
-        carrier = view.by_id.get(holder)
-        if english.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
+        owner = view.by_id.get(holder)
+        if english.singular(word) in words or (owner is not None and fits_noun(view, owner, word)):
             return True
         holder = view.parents.get(holder)
     return False
@@ -318,8 +318,8 @@ def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Se
         if str(value).lower() not in ABSENT_VALUES and value is not False and all(x in stated for x in others):
             return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
     return any(
-        any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split()
-        for chunk in _split_items(value)
+        any(name in item for name in names) and all(x in value_words(item) for x in others) and "no" not in item.split()
+        for item in _split_items(value)
     )
 
 
@@ -336,7 +336,7 @@ def names_of(noun: str) -> frozenset[str]:
 
 
 def _split_items(value: object) -> list[str]:
-    """Split "orange vest and white helmet" into its parts, so that "white" applies only to the helmet."""
+    """Split "orange vest and white helmet" into items, so that "white" applies only to the helmet."""
     if not isinstance(value, str):
         return []
     text = value.lower().replace(" and ", ",").replace(" with ", ",").replace(";", ",")

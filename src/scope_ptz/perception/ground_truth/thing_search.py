@@ -18,7 +18,7 @@ from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.full_names import find_by_full_name
 from scope_ptz.perception.ground_truth.relations import (
-    BACKDROP,
+    BACKGROUND_CONCEPTS,
     NEAR_M,
     distance_to_corner,
     is_facing,
@@ -114,10 +114,10 @@ def _match_core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tre
     if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
     spans = nouns_in(words, view.nouns)
-    carried = any(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
+    include_parts = any(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
     for start, end in reversed(spans):
         others = [*words[:start], *words[end:]]
-        candidates = _find_by_noun(view, " ".join(words[start:end]), others, carried)
+        candidates = _find_by_noun(view, " ".join(words[start:end]), others, include_parts)
         literal_matches = [t for t in candidates if _modifiers_hold(view, t, others)]
         if literal_matches:
             return literal_matches, (), phrase.order
@@ -126,7 +126,7 @@ def _match_core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tre
         other_words = [x for x in (*words[:start], *words[end:]) if x not in sides]
         matches = [
             t
-            for t in _find_by_noun(view, " ".join(words[start:end]), other_words, carried)
+            for t in _find_by_noun(view, " ".join(words[start:end]), other_words, include_parts)
             if _modifiers_hold(view, t, other_words)
         ]
         if sides and matches:
@@ -134,13 +134,13 @@ def _match_core(view: View, phrase: tree.Phrase) -> tuple[list[Thing], tuple[tre
     return [] if spans else [t for t in view.things if _all_words_hold(view, t, words)], (), phrase.order
 
 
-def _find_by_noun(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
+def _find_by_noun(view: View, noun: str, others: Sequence[str], include_parts: bool) -> list[Thing]:
     """Return the things that a noun names. If no vehicle matches the other words ("yellow vehicle"), machines count as vehicles.
 
-    "Thing" names all independent objects and, if ``carried`` is set ("the things on the van"), their parts.
+    "Thing" names all independent objects and, if ``include_parts`` is set ("the things on the van"), their parts.
     """
     if lexicon().concept(noun) == "thing":
-        return [t for t in view.things if _is_object(view, t) or (carried and not t.concepts & BACKDROP)]
+        return [t for t in view.things if _is_object(view, t) or (include_parts and not t.concepts & BACKGROUND_CONCEPTS)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
     if lexicon().concept(noun) == "vehicle" and others and not any(_modifiers_hold(view, t, others) for t in named):
         return [t for t in view.things if "machine" in t.concepts]
@@ -148,13 +148,13 @@ def _find_by_noun(view: View, noun: str, others: Sequence[str], carried: bool) -
 
 
 def _apply_sides(
-    matches: list[Thing], sides: list[str], many: bool, phrase: tree.Phrase
+    matches: list[Thing], sides: list[str], plural: bool, phrase: tree.Phrase
 ) -> tuple[list[Thing], tuple[tree.Test, ...], tree.Order | None]:
     """Apply words for sides.
 
     "The left sign" is the left-most one, "the left signs" are on the left, and "the top right sign" is nearest to that corner.
     """
-    if many:
+    if plural:
         return matches, (tree.Region(cast("tuple[tree.Side, ...]", tuple(sides))),), phrase.order
     if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
         return matches, (), tree.Order(_SIDES[sides[0]])
@@ -163,7 +163,7 @@ def _apply_sides(
 
 def _is_object(view: View, thing: Thing) -> bool:
     """Return whether a thing is an independent object: neither background nor a part of something else in view."""
-    return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
+    return not thing.concepts & BACKGROUND_CONCEPTS and (thing.parent is None or thing.parent not in view.by_id)
 
 
 def _modifiers_hold(view: View, thing: Thing, others: Sequence[str]) -> bool:
@@ -272,10 +272,10 @@ def _fact_words(thing: Thing) -> Iterable[list[str]]:
 
 def _is_between(view: View, thing: Thing, first: tree.Description, second: tree.Description) -> bool:
     """Return whether a thing is between any two things that match the descriptions."""
-    ones, others = find(view, first), find(view, second)
+    first_things, second_things = find(view, first), find(view, second)
     x = thing.box.centre[0]
-    for a in ones:
-        for b in others:
+    for a in first_things:
+        for b in second_things:
             if a is b or thing in (a, b):
                 continue
             low, high = sorted((a.box.centre[0], b.box.centre[0]))

@@ -1,4 +1,4 @@
-"""Distinguish unknown nouns from the names of things that are not in view, and qualities that no scene states from absent ones."""
+"""Find the words in a request that ground truth cannot interpret: unknown nouns, and qualities that no scene states."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def find_unknown_nouns(view: View, parsed: tree.Description | tree.Question) -> 
 
 
 def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question) -> list[str]:
-    """Return the adjectives beside a noun that the scene says nothing about: "dangerous" in "anything dangerous".
+    """Return the adjectives about which the scene says nothing: "dangerous" in "anything dangerous".
 
     Words that can also be nouns or verbs ("police car", "open gate") are not returned, unless they express an opinion.
     """
@@ -73,7 +73,7 @@ def find_unknown_qualities(view: View, parsed: tree.Description | tree.Question)
 
 
 def _known_words(view: View) -> frozenset[str]:
-    """Return the words that need no explanation: colours, words that add nothing, and those of the scene's facts."""
+    """Return the words that count as known: colours, words without a meaning of their own, and those of the scene's facts."""
     stated = frozenset[str]().union(*view.values.values())
     return english.COLOURS | FILLER_WORDS | IGNORABLE_WORDS | stated
 
@@ -84,8 +84,8 @@ def is_english_noun(phrase: str) -> bool:
 
 
 def _is_unstated_quality(word: str) -> bool:
-    known = parts_of_speech(word)
-    return word in _OPINIONS or ("ADJ" in known and not known & {"NOUN", "VERB", "ADV", "PROPN"})
+    tags = parts_of_speech(word)
+    return word in _OPINIONS or ("ADJ" in tags and not tags & {"NOUN", "VERB", "ADV", "PROPN"})
 
 
 def _phrases(node: Any) -> Iterator[tree.Phrase]:

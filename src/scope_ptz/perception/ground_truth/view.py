@@ -93,7 +93,7 @@ class View:
     """The words that occur in each attribute's values, for the whole scene."""
     nouns: frozenset[str] = field(default=frozenset())
     """Nouns that the scene adds to the lexicon."""
-    hosts: tuple[Thing, ...] = ()
+    cut_off_text_things: tuple[Thing, ...] = ()
     """Things with legible text that are cut off too much to count as visible, such as a sign larger than the frame."""
 
     @cached_property
@@ -119,9 +119,9 @@ class View:
         """Return the texts on a thing and its parts, from top to bottom and from left to right."""
         return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
 
-    def for_reading(self) -> View:
-        """Return a view in which ``hosts`` are added to the things."""
-        return replace(self, things=(*self.things, *self.hosts))
+    def with_cut_off_texts(self) -> View:
+        """Return a view whose things also include ``cut_off_text_things``, for questions about text."""
+        return replace(self, things=(*self.things, *self.cut_off_text_things))
 
     def top_level(self) -> tuple[Thing, ...]:
         """Return the things that are not parts of another visible thing."""
@@ -197,7 +197,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
         instances=facts.instances,
         values=facts.values,
         nouns=facts.nouns,
-        hosts=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
+        cut_off_text_things=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
     )
 
 

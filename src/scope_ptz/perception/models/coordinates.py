@@ -1,8 +1,8 @@
 """Convert the coordinates in model replies to boxes and points in [0, 1].
 
 Models use pixels of the image as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
-percent (Molmo) or fractions (Moondream). Invalid boxes and points are dropped with a note, and boxes that exceed the frame are
-clipped.
+percent (Molmo) or fractions (Moondream). Invalid boxes and points are dropped with a note, and boxes that extend beyond the frame
+are clipped.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_p
     """
     if min(width, height) < 1 or max(width, height) / min(width, height) > MAX_ASPECT:
         raise PerceptionError(
-            f"A picture of {width}x{height} is too narrow for a model. Its sides may differ by at most 1:{MAX_ASPECT:.0f}."
+            f"A picture of {width}x{height} is too narrow for a model. Its aspect ratio may be at most {MAX_ASPECT:.0f}:1."
         )
     new_width, new_height = max(factor, round(width / factor) * factor), max(factor, round(height / factor) * factor)
     if new_width * new_height > max_pixels:
@@ -156,7 +156,7 @@ def locations_in_frame(
     points: dict[tuple[float, ...], Point] = {}
     for location in raw:
         if len(location.numbers) not in (2, 4):
-            counts["no place"] += 1
+            counts["without coordinates"] += 1
             continue
         numbers = _swap_axes(location.numbers) if convention.y_first and not location.named else location.numbers
         if not all(map(math.isfinite, numbers)):
@@ -168,16 +168,16 @@ def locations_in_frame(
             else:
                 _add_location(_point(unit, location, counts), points, counts)
     if raw and not boxes and not points:
-        raise PerceptionError(f"None of the places in the reply lie in the picture ({_counts_text(counts)}).", kind="malformed")
+        raise PerceptionError(f"None of the locations in the reply is in the picture ({_counts_text(counts)}).", kind="malformed")
     return _limit_locations(list(boxes.values()), list(points.values()), counts, limit)
 
 
-_WITHOUT_LOCATION = ("not finite", "no place")
+_WITHOUT_LOCATION = ("not finite", "without coordinates")
 """Names of the counts of entries without usable coordinates. If one of these counts is not zero, the list is incomplete."""
 
 
 def _limit_locations(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> ReplyLocations:
-    notes = [f"Among the places in the reply: {_counts_text(counts)}."] if counts else []
+    notes = [f"Among the locations in the reply: {_counts_text(counts)}."] if counts else []
     within = max(len(boxes), len(points)) <= limit
     complete = within and not any(counts[kind] for kind in _WITHOUT_LOCATION)
     if not within:
@@ -243,13 +243,13 @@ def _box(unit: list[float], location: RawLocation, counts: Counter[str]) -> Box 
     return Box(x_min=x_min, y_min=y_min, x_max=x_max, y_max=y_max, label=location.label, score=_score(location.score))
 
 
-BORDER_SLACK = 0.02
+BORDER_TOLERANCE = 0.02
 """Maximum distance outside the frame, as a fraction of its size, at which a point still counts as on the border."""
 
 
 def _point(unit: list[float], location: RawLocation, counts: Counter[str]) -> Point | None:
     x, y = unit
-    if not (-BORDER_SLACK <= x <= 1 + BORDER_SLACK and -BORDER_SLACK <= y <= 1 + BORDER_SLACK):
+    if not (-BORDER_TOLERANCE <= x <= 1 + BORDER_TOLERANCE and -BORDER_TOLERANCE <= y <= 1 + BORDER_TOLERANCE):
         counts["outside the picture"] += 1
         return None
     if not (0 <= x <= 1 and 0 <= y <= 1):

@@ -42,14 +42,14 @@ def parse_locations(text: str) -> ParsedLocations:
         PerceptionError: The reply cannot be parsed (kind "malformed").
     """
     visible = remove_reasoning(text)
-    body, fits = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
+    body, within_limit = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
     documents, reply_complete = _parse_documents(body)
     locations = tuple(location for document in documents for location in _collect_locations(document)) or tuple(
         _tagged_locations(body)
     )
     if locations:
-        return ParsedLocations(locations, fits and reply_complete)
-    if fits and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
+        return ParsedLocations(locations, within_limit and reply_complete)
+    if within_limit and reply_complete and (any(_is_empty(d) for d in documents) or _says_none(body)):
         return ParsedLocations(())
     truncation_note = "" if reply_complete else " (cut off before the first one was complete)"
     raise PerceptionError(f"The reply contains no readable boxes or points{truncation_note}: {excerpt(text)}", kind="malformed")
@@ -83,7 +83,7 @@ def excerpt(text: str, limit: int = 160) -> str:
     return repr(flat if len(flat) <= limit else flat[:limit] + "…")
 
 
-_UNKNOWN = re.compile(
+_UNKNOWN_ANSWER = re.compile(
     r"^\W*(unknown|n/a|not (visible|legible|readable|clear|sure|possible to (tell|say))\b"
     r"|((i am |i['’]m )?(sorry|unfortunately),? (but )?)?(i|we)( am|'m|’m)? (can(not|'t|’t)|unable to|not able to) "
     r"(tell|say|determine|answer|know|read|help|assist|provide|identify|make out|see (it|that|enough|clearly|the answer))\b"
@@ -97,10 +97,10 @@ _UNKNOWN = re.compile(
 
 def is_unknown_answer(answer: str) -> bool:
     """Return whether an answer states that the question cannot be answered from the picture."""
-    return bool(_UNKNOWN.match(answer))
+    return bool(_UNKNOWN_ANSWER.match(answer))
 
 
-_NONE = re.compile(
+_NONE_FOUND = re.compile(
     r"^\W*((none|nothing)( (is|are|of (the|these|them)|in|on|here|there|that|fits?|found|visible|detected)\b[^.{}\[\]]{0,80})?"
     r"|(there (are|is)|i (can )?(see|find|detect)|i found) (no|none|nothing|not any)\b[^{}\[\]]{0,120}"
     r"|no [^{}\[\]]{1,80}? (found|visible|present|detected|seen|in (the|this) (image|picture|frame|view|photo))"
@@ -110,16 +110,16 @@ _NONE = re.compile(
 
 
 def _says_none(body: str) -> bool:
-    return len(body) < 240 and not any(c.isdigit() for c in body) and bool(_NONE.match(body))
+    return len(body) < 240 and not any(c.isdigit() for c in body) and bool(_NONE_FOUND.match(body))
 
 
-_START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
+_JSON_START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
 
 
 def _parse_documents(body: str) -> tuple[list[Any], bool]:
     """Return every JSON document in a text, repaired where needed, and whether the last one was closed."""
     decoder, documents, position = json.JSONDecoder(), list[Any](), 0
-    while start := _START.search(body, position):
+    while start := _JSON_START.search(body, position):
         try:
             document, position = decoder.raw_decode(body, start.start())
         except (ValueError, RecursionError):

@@ -151,8 +151,8 @@ class RouterPerception(Perception):
         results = [o.result for o in outcomes if o.result is not None]
         ranked = [o.result for o in outcomes if o.usable and o.result is not None] or results
         if not ranked:
-            note = " ".join(dict.fromkeys(str(error) for _, error in failed))
-            raise PerceptionError(note, kind=failed[0][1].kind, attempts=attempts)
+            message = " ".join(dict.fromkeys(str(error) for _, error in failed))
+            raise PerceptionError(message, kind=failed[0][1].kind, attempts=attempts)
         best = ranked[0]
         failures = tuple(f"{name} failed: {error}" for name, error in failed)
         update: dict[str, Any] = {"notes": best.notes + failures, "attempts": attempts, "latency_s": latency_s}
@@ -225,12 +225,14 @@ def _point_agreement(a: Points, b: Points) -> float:
 _Location = TypeVar("_Location")
 
 
-def _paired_fraction(ones: Sequence[_Location], others: Sequence[_Location], same: Callable[[_Location, _Location], bool]) -> float:
+def _paired_fraction(
+    first: Sequence[_Location], second: Sequence[_Location], is_same: Callable[[_Location, _Location], bool]
+) -> float:
     """Return the fraction of all boxes or points that can be paired one to one. Two empty results agree fully."""
-    unpaired, pairs = list(others), 0
-    for one in ones:
-        partner = next((i for i, other in enumerate(unpaired) if same(one, other)), None)
+    unpaired, pairs = list(second), 0
+    for one in first:
+        partner = next((i for i, other in enumerate(unpaired) if is_same(one, other)), None)
         if partner is not None:
             unpaired.pop(partner)
             pairs += 1
-    return 2 * pairs / (len(ones) + len(others)) if ones or others else 1.0
+    return 2 * pairs / (len(first) + len(second)) if first or second else 1.0

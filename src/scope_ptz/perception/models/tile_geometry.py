@@ -78,7 +78,7 @@ def non_maximum_suppression(boxes: Iterable[Box], threshold: float) -> list[Box]
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _TileBox:
     """A box in whole-image coordinates, its tile, and whether the tile's borders cut the box."""
 
     tile: PanoramaTile
@@ -89,32 +89,32 @@ class _Part:
 
 def merge_boxes(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
     """Merge the boxes from all tiles. The boxes of an object that appears in several tiles become one."""
-    result: list[_Part] = []
+    result: list[_TileBox] = []
     for tile, boxes in parts:
         for box in boxes:
             cut_left, cut_right = tile.left > 0 and box.x_min < TILE_BORDER, tile.right < width and box.x_max > 1 - TILE_BORDER
-            part = _Part(tile, tile.box_to_image(box, width), cut_left, cut_right)
-            duplicate = next((i for i, other in enumerate(result) if other.tile != tile and _is_same(other, part)), None)
+            tile_box = _TileBox(tile, tile.box_to_image(box, width), cut_left, cut_right)
+            duplicate = next((i for i, other in enumerate(result) if other.tile != tile and _is_same(other, tile_box)), None)
             if duplicate is None:
-                result.append(part)
+                result.append(tile_box)
             else:
-                result[duplicate] = _Part(
-                    tile, _union_box(result[duplicate].box, part.box), result[duplicate].cut_left, part.cut_right
+                result[duplicate] = _TileBox(
+                    tile, _union_box(result[duplicate].box, tile_box.box), result[duplicate].cut_left, tile_box.cut_right
                 )
-    return [part.box for part in result]
+    return [tile_box.box for tile_box in result]
 
 
-def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
+def merge_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, max_dx: float) -> list[Point]:
     """Merge the points from all tiles. If points in different tiles mark the same object, only the first one is kept.
 
-    Two points mark the same object if they differ by at most ``near`` in x, a fraction of the width, and by at most ``5 * near`` in
-    y, a fraction of the height.
+    Two points mark the same object if they differ by at most ``max_dx`` in x, a fraction of the width, and by at most
+    ``5 * max_dx`` in y, a fraction of the height.
     """
     result: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.point_to_image(p, width) for p in points):
-            duplicates = (p for other, p in result if other != tile)
-            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in duplicates):
+            points_in_other_tiles = (p for other, p in result if other != tile)
+            if all(abs(p.x - point.x) > max_dx or abs(p.y - point.y) > 5 * max_dx for p in points_in_other_tiles):
                 result.append((tile, point))
     return [point for _, point in result]
 
@@ -140,7 +140,7 @@ def _intersection(a: Box, b: Box) -> float:
     return width * height if width > 0 and height > 0 else 0.0
 
 
-def _is_same(left: _Part, right: _Part) -> bool:
+def _is_same(left: _TileBox, right: _TileBox) -> bool:
     """Return whether ``right``, a box from a tile further to the right, continues or repeats ``left``."""
     a, b = left.box, right.box
     smaller = min(a.width * a.height, b.width * b.height)

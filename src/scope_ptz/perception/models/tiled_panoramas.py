@@ -22,8 +22,8 @@ MAX_CONCURRENT_TILES = 4
 SAME_POINT = 0.15
 """Maximum distance between two points in different tiles that mark the same object.
 
-The points may differ by ``SAME_POINT / 5`` of the panorama's height horizontally, and by ``SAME_POINT / (width / height)`` of its
-height vertically.
+In pixels, the points may differ by ``SAME_POINT * height / 5`` horizontally, and by ``SAME_POINT * height * height / width``
+vertically.
 """
 
 FULL_TURN_DEG = 359.5  # a panorama at least this wide wraps around

@@ -52,7 +52,7 @@ def build_messages(
         switch: Text to append to the user messages to switch the model's reasoning on or off.
         shorten_oldest: How many of the oldest exchanges to shorten.
     """
-    writer = _Writer(notation, shorten_oldest, in_parts=accepts_images)
+    builder = _MessageListBuilder(notation, shorten_oldest, in_parts=accepts_images)
     briefing = state.briefing
     start_poses = [turn.start for turn in state.conversation] + [briefing.pose]
     first = start_poses[0] or briefing.pose
@@ -61,18 +61,18 @@ def build_messages(
         system += _TEXT_TOOLS + "\n".join(
             json.dumps(tool["function"], ensure_ascii=False) for tool in simplify_schemas(state.tools)
         )
-    writer.add({"role": "system", "content": system})
+    builder.add({"role": "system", "content": system})
     for turn, start in zip(state.conversation, start_poses[:-1], strict=True):
-        writer.user(_instruction(turn.instruction, None if start == first else start, switch))
+        builder.add_user(_instruction(turn.instruction, None if start == first else start, switch))
         for exchange in turn.exchanges:
-            writer.exchange(exchange)
-        writer.add({"role": "assistant", "content": turn.reply})
-    writer.user(_instruction(state.instruction, start_poses[-1] if state.conversation else None, switch))
+            builder.add_exchange(exchange)
+        builder.add({"role": "assistant", "content": turn.reply})
+    builder.add_user(_instruction(state.instruction, start_poses[-1] if state.conversation else None, switch))
     for exchange in state.history:
-        writer.exchange(exchange)
+        builder.add_exchange(exchange)
     if accepts_images and state.view is not None:
-        writer.pictures([state.view])
-    return writer.messages
+        builder.add_pictures([state.view])
+    return builder.messages
 
 
 def _instruction(text: str, start: Pose | None, switch: str) -> str:
@@ -83,11 +83,11 @@ def _instruction(text: str, start: Pose | None, switch: str) -> str:
     return f"{where}{text}{' ' + switch if switch else ''}"
 
 
-class _Writer:
+class _MessageListBuilder:
     """Builds the list of messages. Consecutive user messages are merged, because chat templates require alternating roles."""
 
     def __init__(self, notation: Notation, shorten_oldest: int, *, in_parts: bool) -> None:
-        """Set up the writer.
+        """Create the builder.
 
         Args:
             notation: How tool calls are exchanged.
@@ -102,7 +102,7 @@ class _Writer:
     def add(self, message: Message) -> None:
         self.messages.append(message)
 
-    def user(self, content: str | list[Message]) -> None:
+    def add_user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
             # The old message is not changed in place, because a caller may still refer to it.
@@ -110,21 +110,21 @@ class _Writer:
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
 
-    def pictures(self, pictures: Sequence[Picture]) -> None:
-        self.user([part for picture in pictures for part in _picture_parts(picture)])
+    def add_pictures(self, pictures: Sequence[Picture]) -> None:
+        self.add_user([part for picture in pictures for part in _picture_parts(picture)])
 
-    def exchange(self, exchange: Exchange) -> None:
-        brief = self._exchanges < self._shorten_oldest
+    def add_exchange(self, exchange: Exchange) -> None:
+        is_shortened = self._exchanges < self._shorten_oldest
         self._exchanges += 1
         if self._notation == "native":
-            self._add_native_calls(exchange, brief)
+            self._add_native_calls(exchange, is_shortened)
         else:
-            self._add_text_calls(exchange, brief)
+            self._add_text_calls(exchange, is_shortened)
         pictures = [o.picture for o in exchange.outcomes if o.picture is not None]
-        if pictures and self._in_parts and not brief:
-            self.pictures(pictures)
+        if pictures and self._in_parts and not is_shortened:
+            self.add_pictures(pictures)
 
-    def _add_native_calls(self, exchange: Exchange, brief: bool) -> None:
+    def _add_native_calls(self, exchange: Exchange, is_shortened: bool) -> None:
         ids = [self._unique_id(outcome.call.id) for outcome in exchange.outcomes]
         calls = [
             {"id": i, "type": "function", "function": {"name": valid_tool_name(o.call.name), "arguments": _arguments(o.call)}}
@@ -132,13 +132,13 @@ class _Writer:
         ]
         self.add({"role": "assistant", "content": exchange.thought, "tool_calls": calls})
         for call_id, outcome in zip(ids, exchange.outcomes, strict=True):
-            self.add({"role": "tool", "tool_call_id": call_id, "content": observation(outcome, brief=brief)})
+            self.add({"role": "tool", "tool_call_id": call_id, "content": observation(outcome, is_shortened=is_shortened)})
 
-    def _add_text_calls(self, exchange: Exchange, brief: bool) -> None:
+    def _add_text_calls(self, exchange: Exchange, is_shortened: bool) -> None:
         calls = "\n".join(_call_element(outcome) for outcome in exchange.outcomes)
         self.add({"role": "assistant", "content": f"{exchange.thought}\n{calls}".strip()})
-        results = (f"<tool_response>\n{observation(o, brief=brief)}\n</tool_response>" for o in exchange.outcomes)
-        self.user("\n".join(results))
+        results = (f"<tool_response>\n{observation(o, is_shortened=is_shortened)}\n</tool_response>" for o in exchange.outcomes)
+        self.add_user("\n".join(results))
 
     def _unique_id(self, call_id: str) -> str:
         """Return a call's id, or a new one if the id is empty or already used. Some servers give every call the same id."""

@@ -69,7 +69,7 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
 
 
 def _attempts_with_usage(reply: ChatReply) -> tuple[Attempt, ...]:
-    """Return the attempts behind a reply without a decision. The last attempt includes the tokens that the reply used."""
+    """Return the attempts that led to a reply without a decision. The last attempt includes the tokens that the reply used."""
     cost = {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens}
     return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 

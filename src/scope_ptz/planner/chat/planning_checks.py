@@ -44,19 +44,19 @@ async def check_planning(
             await planner.close()
 
 
-def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange) -> State:
-    """Return a state for which the correct decision is obvious."""
+def state_for(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange) -> State:
+    """Return the planner's state for an instruction and its history so far."""
     briefing = Briefing(presets=("gate", "highway"), pose=Pose(), limits=Limits())
     return State(instruction=instruction, briefing=briefing, history=history, tools=tuple(tools))
 
 
-def picture_step() -> Exchange:
+def picture_exchange() -> Exchange:
     """Return a step in which a picture was taken."""
     return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_PICTURE_RESULT),))
 
 
 async def _check_call(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools))
+    decision = await planner.step(state_for(PICTURE_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
         return "failed", f"no call; the model answered: {_describe_briefly(decision)}"
     if "take_image" not in [call.name for call in decision.calls]:
@@ -68,7 +68,7 @@ async def _check_call(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> 
 
 
 async def _check_arguments(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(TURN_INSTRUCTION, tools))
+    decision = await planner.step(state_for(TURN_INSTRUCTION, tools))
     if not isinstance(decision, CallTools):
         return "partly", f"no call; the model answered: {_describe_briefly(decision)}"
     call = decision.calls[0]
@@ -78,7 +78,7 @@ async def _check_arguments(planner: ChatPlanner, tools: Sequence[dict[str, Any]]
 
 
 async def _check_answer(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
-    decision = await planner.step(probe(PICTURE_INSTRUCTION, tools, picture_step()))
+    decision = await planner.step(state_for(PICTURE_INSTRUCTION, tools, picture_exchange()))
     if not isinstance(decision, Finish):
         return "partly", f"the model makes another call although the task is done: {_describe_briefly(decision)}"
     if "<think" in decision.text:

@@ -38,7 +38,7 @@ class SeparatedReply:
 
 
 def separate_reasoning(text: str, field: str = "") -> SeparatedReply:
-    """Separate a reply into text and reasoning.
+    """Separate a reply into its answer and its reasoning.
 
     Args:
         text: The reply's content, as returned by the server.

@@ -31,7 +31,7 @@ _CallParser = Callable[[str, Signatures], list[WrittenCall]]
 
 @dataclass(frozen=True, slots=True)
 class FoundCalls:
-    """The calls found in a text.
+    """The calls found in the text of a reply.
 
     Attributes:
         rest: The text without the calls.
@@ -44,7 +44,7 @@ class FoundCalls:
 
 
 def find_calls(text: str, tools: Signatures, *, tagged_only: bool = False) -> FoundCalls:
-    """Return the calls in a text, in order.
+    """Return the calls in the text of a reply, in order.
 
     Args:
         text: The text of a reply.
@@ -87,7 +87,7 @@ def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG
 
 
 def _json_chunks(body: str) -> list[str]:
-    """Split a text into JSON values. An incomplete value at the end becomes the last item."""
+    """Split text into JSON values. An incomplete value at the end becomes the last item."""
     decoder, chunks, position = JSONDecoder(), [], 0
     while position < len(body):
         if body[position].isspace() or body[position] in ",;":
@@ -203,7 +203,7 @@ _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTA
 
 
 def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
-    """Return JSON or Python calls in code fences, or in a text that consists of calls, possibly after prose."""
+    """Return JSON or Python calls in code fences, or in text that consists of calls, possibly after prose."""
     fences = [(m, _calls_to_tools(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
@@ -220,7 +220,7 @@ def _find_untagged(text: str, tools: Signatures) -> FoundCalls:
 
 
 def _calls_to_tools(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Parse a text that consists only of calls to offered tools. Return an empty list for any other text."""
+    """Parse text that consists only of calls to offered tools. Return an empty list for any other text."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

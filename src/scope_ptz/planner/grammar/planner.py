@@ -10,12 +10,12 @@ from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, 
 from scope_ptz.planner.confirmations import yes_or_no
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.execution.camera_history import position_history
-from scope_ptz.planner.grammar.execution.closer_look import offer_text, offered
+from scope_ptz.planner.grammar.execution.closer_look import offer_in, offer_text
 from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.instruction_tree import Forbid, LookCloser, Thing
 
 GRAMMAR_VERSION = "3"
-"""Version of the plans, in traces and run cards. It is raised when any instruction gets a different plan."""
+"""Version of the grammar in traces and run cards. It is raised when any instruction gets a different plan."""
 
 
 class GrammarPlanner(Planner):
@@ -38,7 +38,7 @@ def decide(state: State) -> Decision:
 
 def meaning_of(state: State) -> Understanding:
     """Return the meaning of an instruction, which may be the answer to an offer to go closer."""
-    offer = offered(state.conversation[-1].reply) if state.conversation else None
+    offer = offer_in(state.conversation[-1].reply) if state.conversation else None
     if offer is not None and (reply := yes_or_no(state.instruction)) is not None:
         thing, question = offer
         return Understanding((LookCloser(Thing(thing), question),) if reply == "yes" else (Forbid(any_move=True),))
@@ -49,7 +49,7 @@ def meaning_of(state: State) -> Understanding:
 
 @lru_cache(maxsize=64)
 def _understand_first_turn(instruction: str, presets: tuple[str, ...]) -> Understanding:
-    """Return the meaning of the first instruction of a conversation. Each step of its run asks for it again."""
+    """Return the meaning of a conversation's first instruction, cached because each step of its run needs it again."""
     return understand(instruction, presets)
 
 

@@ -24,24 +24,24 @@ class Proposal:
         instruction: The instruction for which the calls were planned.
         texts: The instruction, and the descriptions of the calls that the user confirmed earlier.
         exchanges: The calls already carried out for this instruction, with their results.
-        first: Index, in the conversation, of the turn with the instruction.
+        instruction_index: Index, in the conversation, of the turn with the instruction.
     """
 
     calls: tuple[ToolCall, ...]
     instruction: str
     texts: tuple[str, ...]
     exchanges: tuple[Exchange, ...]
-    first: int
+    instruction_index: int
 
 
-def confirmation_question(calls: Sequence[ToolCall], missing: Sequence[str]) -> str:
+def confirmation_question(calls: Sequence[ToolCall], unsupported: Sequence[str]) -> str:
     """Return the question that asks the user to confirm calls.
 
     Args:
         calls: The calls, in order.
-        missing: The parts of the calls that neither the instruction nor earlier results support.
+        unsupported: The parts of the calls that neither the instruction nor earlier results support.
     """
-    reasons = english.listing(list(dict.fromkeys(missing))[:_MAX_REASONS])
+    reasons = english.listing(list(dict.fromkeys(unsupported))[:_MAX_REASONS])
     return f"You did not mention {reasons}. {_BEGIN}{_SEPARATOR.join(call_in_words(call) for call in calls)}{_END}"
 
 
@@ -78,7 +78,7 @@ def _split(text: str) -> list[str]:
 def pending_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
     """Return the proposal that is waiting for the user's confirmation; None if the last turn proposed no calls.
 
-    A turn that only confirms earlier calls continues the turn before it, so the proposal belongs to the first instruction.
+    A turn that only confirms calls continues the turn before it, so its proposal belongs to the instruction that started them.
     """
     if not conversation or not (calls := proposed_calls(conversation[-1].reply)):
         return None
@@ -92,5 +92,5 @@ def pending_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
         instruction=turns[0].instruction,
         texts=(turns[0].instruction, *confirmed),
         exchanges=tuple(exchange for turn in turns for exchange in turn.exchanges),
-        first=first,
+        instruction_index=first,
     )

@@ -47,9 +47,9 @@ class Evidence:
     Attributes:
         user_words: The user's words outside negated clauses, in order and in lower case.
         base_forms: The base forms of all words from the user and from perception.
-        observed_words: The words in texts from perception, in lower case, without quoted text on signs.
+        observed_words: The words in text from perception, in lower case, without quoted text on signs.
         numbers: The numbers in the user's words and in results.
-        keep_still: Whether the user asks for the camera not to move.
+        keep_still: Whether the user forbids camera moves.
     """
 
     user_words: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ def collect_evidence(texts: Sequence[str], exchanges: Iterable[Exchange]) -> Evi
     results = [outcome.result for exchange in exchanges for outcome in exchange.outcomes if outcome.result]
     observed = [str(result[name]) for result in results for name in _OBSERVATION_FIELDS if result.get(name)]
     described = [str(result["description"]) for result in results if result.get("description")]
-    user_words = tuple(word for text in texts for word in _drop_negated(words_of(text)))
+    user_words = tuple(word for text in texts for word in _without_negated(words_of(text)))
     observed_words = tuple(word for text in observed for word in words_of(_QUOTED.sub(" ", text)))
     counts = tuple(float(result["count"]) for result in results if isinstance(result.get("count"), int | float))
     return Evidence(
@@ -81,13 +81,13 @@ def collect_evidence(texts: Sequence[str], exchanges: Iterable[Exchange]) -> Evi
 
 
 def words_of(text: str) -> list[str]:
-    """Return the words, numbers and punctuation marks in a text, in lower case."""
+    """Return the words, numbers and punctuation marks of a text, in lower case."""
     plain = unicodedata.normalize("NFKC", text).lower().replace("’", "'").replace("−", "-")
     return _WORD.findall(plain)
 
 
 def base_form(word: str) -> str:
-    """Return a word's singular in British spelling, so that all forms of a word are equal."""
+    """Return a word's singular in British spelling, so that different forms of a word compare equal."""
     word = _SPELLINGS.get(word, word).removesuffix("'s")
     return english.singular(word) if word.isalpha() else word
 
@@ -108,7 +108,7 @@ def _numbers(words: list[str]) -> Iterator[float]:
         i += max(number.used, 1)
 
 
-def _drop_negated(words: Sequence[str]) -> Iterator[str]:
+def _without_negated(words: Sequence[str]) -> Iterator[str]:
     """Yield the words that are not part of a clause such as "but do not zoom"."""
     is_negated = False
     for word in words:

@@ -67,14 +67,14 @@ class HybridPlanner(Planner):
             return decision.model_copy(update={"planned_by": MODEL_PART})
         earlier = [exchange for turn in state.conversation for exchange in turn.exchanges]
         evidence = collect_evidence(user_texts, [*earlier, *state.history])
-        earlier_calls, missing = _successful_calls(state.history), list[str]()
+        earlier_calls, unsupported = _successful_calls(state.history), list[str]()
         valid = [call for call in decision.calls if _is_valid(call, state)]
         for call in valid:
-            missing += unsupported_parts(call, evidence, earlier_calls)
+            unsupported += unsupported_parts(call, evidence, earlier_calls)
             earlier_calls.append(call)
-        if not missing:
+        if not unsupported:
             return decision.model_copy(update={"planned_by": MODEL_PART})
-        text = confirmation_question(valid, missing)
+        text = confirmation_question(valid, unsupported)
         return Finish(
             kind="clarification",
             text=text,
@@ -111,13 +111,13 @@ def _confirmed_texts(proposal: Proposal) -> tuple[str, ...]:
 
 def _resumed_state(state: State, proposal: Proposal) -> State:
     """Return a state in which the model continues the confirmed instruction as if the user had not been asked."""
-    start = state.conversation[proposal.first].start
+    start = state.conversation[proposal.instruction_index].start
     briefing = state.briefing if start is None else state.briefing.model_copy(update={"pose": start})
     return state.model_copy(
         update={
             "instruction": proposal.instruction,
             "briefing": briefing,
             "history": (*proposal.exchanges, *state.history),
-            "conversation": state.conversation[: proposal.first],
+            "conversation": state.conversation[: proposal.instruction_index],
         }
     )

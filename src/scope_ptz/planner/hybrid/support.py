@@ -50,7 +50,7 @@ _ACTION_WORDS = {
     ),
     TRACK_OBJECT.name: frozenset({"track", "follow", "keep", "tail", "trail", "watch", "stay", "monitor"}),
 }
-"""The words for each tool. The instruction must contain at least one of them."""
+"""The action words of each tool. The instruction must contain at least one of them."""
 
 _WHOLE_SCENE_WORDS = frozenset(
     {"whole", "entire", "everywhere", "around", "sweep", "scan", "full", "anywhere", "panorama", "site", "surroundings", "complete"}
@@ -96,12 +96,12 @@ def unsupported_parts(call: ToolCall, evidence: Evidence, earlier_calls: Sequenc
         parts.append({GO_HOME.name: "the home view", TAKE_IMAGE.name: "a picture"}.get(call.name, "the move"))
     if arguments.get("view") == "full" and not _mentions(evidence, _WHOLE_SCENE_WORDS):
         parts.append("the whole scene")
-    if evidence.keep_still and _moves(call):
+    if evidence.keep_still and _moves_camera(call):
         parts.append("a move")
     return parts
 
 
-def _moves(call: ToolCall) -> bool:
+def _moves_camera(call: ToolCall) -> bool:
     return call.name in {ADJUST_PTZ.name, GO_TO_PRESET.name, GO_HOME.name, ZOOM_TO_OBJECT.name, TRACK_OBJECT.name}
 
 
@@ -135,12 +135,16 @@ def _unsupported_zoom(move: AdjustPtz, evidence: Evidence) -> list[str]:
     direction = "in" if factor > 1 else "out"
     change = 100 * abs(factor - 1)
     amounts = (factor, 1 / factor, change, change / 100)
-    parts = [] if _mentions(evidence, _ZOOM_WORDS[direction]) and not _is_opposed(direction, evidence) else [f"zooming {direction}"]
+    parts = (
+        []
+        if _mentions(evidence, _ZOOM_WORDS[direction]) and not _contradicts_zoom(direction, evidence)
+        else [f"zooming {direction}"]
+    )
     return parts + ([] if any(_has_number(amount, evidence) for amount in amounts) else [f"the factor {factor:g}"])
 
 
-def _is_opposed(direction: str, evidence: Evidence) -> bool:
-    """Return whether the user names only the opposite zoom direction: "zoom out" opposes zooming in, but "zoom" alone does not."""
+def _contradicts_zoom(direction: str, evidence: Evidence) -> bool:
+    """Return whether a zoom in contradicts the user, who says only "zoom out"."""
     return (
         direction == "in"
         and any(pair == ("zoom", "out") for pair in pairwise(evidence.user_words))
@@ -194,8 +198,8 @@ def _unsupported_words(text: str, evidence: Evidence) -> list[str]:
     """Return the content words of a description or question that the evidence does not contain."""
     words = dict.fromkeys(word for word in words_of(text) if any(c.isalnum() for c in word))
     skipped = FUNCTION_WORDS | ABOUT_THE_PICTURE
-    missing = [w for w in words if w not in skipped and base_form(w) not in skipped and not _is_supported(w, evidence)]
-    return [f'"{word}"' for word in missing]
+    unsupported = [w for w in words if w not in skipped and base_form(w) not in skipped and not _is_supported(w, evidence)]
+    return [f'"{word}"' for word in unsupported]
 
 
 def _is_supported(word: str, evidence: Evidence) -> bool:

@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit to the prompt or to an instruction. If ``apply`` returns a text unchanged, the text is not measured again."""
+    """An edit to the prompt or to an instruction. If ``apply`` changes nothing, the text is not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]

@@ -29,7 +29,7 @@ class _Model(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
-class FirstCall(_Model):
+class CallRecord(_Model):
     """A tool call: the tool's name and the arguments."""
 
     name: str
@@ -46,7 +46,7 @@ class InstructionRow(_Model):
 
     instruction: str
     kind: str
-    calls: tuple[FirstCall, ...]
+    calls: tuple[CallRecord, ...]
     alternatives: tuple[str, ...] = ()
 
 
@@ -67,7 +67,7 @@ class PlannerTrial(_Model):
     row: InstructionRow
     edit: str
     asked: str
-    calls: tuple[FirstCall, ...] = ()
+    calls: tuple[CallRecord, ...] = ()
     invalid: int = 0
     text: str = ""
     failure: str | None = None
@@ -101,7 +101,7 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
         if not line.strip():
             continue
         try:
-            parsed = _Line.model_validate_json(line)
+            parsed = _InstructionLine.model_validate_json(line)
             if parsed.calls:
                 rows.append(InstructionRow.model_validate(parsed.model_dump()))
         except ValidationError as error:
@@ -113,7 +113,7 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
     return tuple(rows)
 
 
-class _Line(BaseModel):
+class _InstructionLine(BaseModel):
     """A line in a file of instructions with expected calls."""
 
     instruction: str
@@ -137,7 +137,7 @@ async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None =
     seconds = perf_counter() - began
     requested = decision.calls if isinstance(decision, CallTools) else ()
     calls = tuple(
-        FirstCall(name=c.name, arguments=c.arguments) for c in requested if c.problem is None and _is_valid(c.name, c.arguments)
+        CallRecord(name=c.name, arguments=c.arguments) for c in requested if c.problem is None and _is_valid(c.name, c.arguments)
     )
     return PlannerTrial(
         row=row,
@@ -162,15 +162,15 @@ def _is_valid(name: str, arguments: dict[str, Any]) -> bool:
     return True
 
 
-def is_expected_call(row: InstructionRow, call: FirstCall) -> bool:
-    """Return whether a call is correct as the first call: it uses an alternative tool or is equivalent to the expected call."""
+def is_expected_call(row: InstructionRow, call: CallRecord) -> bool:
+    """Return whether a call may be the first: it uses an alternative tool, or is equivalent to the expected first call."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True
-    return call.name == expected.name and have_same_arguments(expected, call)
+    return call.name == expected.name and have_equivalent_arguments(expected, call)
 
 
-def have_same_arguments(one: FirstCall, other: FirstCall) -> bool:
+def have_equivalent_arguments(one: CallRecord, other: CallRecord) -> bool:
     """Return whether two calls to the same tool have equivalent arguments.
 
     Numbers may differ by ``_TOLERANCE``. Descriptions must consist of the same words, apart from articles, "all", "any" and a final
@@ -180,7 +180,7 @@ def have_same_arguments(one: FirstCall, other: FirstCall) -> bool:
     required_words = {
         key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value
     }
-    expected_call = FirstCall(
+    expected_call = CallRecord(
         name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in required_words.items()}
     )
     try:
@@ -202,27 +202,27 @@ def _words(text: str) -> list[str]:
     return [w.removesuffix("s") for w in re.findall(r"\w+", text.lower()) if w not in ("the", "a", "an", "all", "any")]
 
 
-def is_same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
+def use_same_tools(one: Sequence[CallRecord], other: Sequence[CallRecord]) -> bool:
     """Return whether two sequences of calls use the same tools, up to the length of the shorter one."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))
 
 
-def are_same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
-    """Return whether two sequences of calls use the same tools and arguments, up to the length of the shorter one."""
-    return is_same_choice(one, other) and all(have_same_arguments(a, b) for a, b in zip(one, other, strict=False))
+def make_same_calls(one: Sequence[CallRecord], other: Sequence[CallRecord]) -> bool:
+    """Return whether two sequences of calls use the same tools and equivalent arguments, up to the length of the shorter one."""
+    return use_same_tools(one, other) and all(have_equivalent_arguments(a, b) for a, b in zip(one, other, strict=False))
 
 
-def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
+def is_inverted(row: InstructionRow, calls: Sequence[CallRecord]) -> bool:
     """Return whether the first move is opposite to the expected one: right for left, up for down, or in for out."""
     expected = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
     actual = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
     return expected is not None and actual is not None and any(e * a < 0 for e, a in zip(expected, actual, strict=True))
 
 
-def _directions(call: FirstCall) -> tuple[float, float, float]:
-    """Return a move's pan, tilt and zoom. Only the signs matter, because they give the directions. An invalid call gives zeros."""
+def _directions(call: CallRecord) -> tuple[float, float, float]:
+    """Return the pan, tilt and zoom of a move, whose signs are its directions. An invalid call gives zeros."""
     try:
         move = AdjustPtz.model_validate(call.arguments)
     except ValidationError:

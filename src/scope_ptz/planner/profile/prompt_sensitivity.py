@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.prompts import Prompt
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
-from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, are_same_calls, ask_once, is_same_choice, load_rows
+from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, make_same_calls, use_same_tools
 
 AGAIN = "repeated unchanged"
 _Z = 1.96  # the normal quantile for a 95% interval
@@ -49,10 +49,10 @@ class Rate(_Model):
 
 
 class EditEffect(_Model):
-    """The effect of an edit.
+    """The effect of an edit on a planner's calls.
 
     Attributes:
-        tools_changed: The rate at which the planner chose other tools than without the edit.
+        tools_changed: The rate at which the planner chose different tools than without the edit.
         calls_changed: The rate at which the tools or their arguments changed.
         right: The rate at which the first call with the edit was the expected one.
         inverted: The rate of inverted moves with the edit, among the instructions that request a move.
@@ -197,7 +197,7 @@ class _Pair:
 
     @property
     def changed(self) -> bool:
-        return not is_same_choice(self.unedited.calls, self.edited.calls)
+        return not use_same_tools(self.unedited.calls, self.edited.calls)
 
 
 def _pairs(cases: Sequence[_Case], trials: Sequence[PlannerTrial], unedited: Mapping[str, PlannerTrial]) -> list[_Pair]:
@@ -224,7 +224,7 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
         edit=name,
         where=where,
         tools_changed=_changed_rate(pairs),
-        calls_changed=Rate.over(not are_same_calls(pair.unedited.calls, pair.edited.calls) for pair in pairs),
+        calls_changed=Rate.over(not make_same_calls(pair.unedited.calls, pair.edited.calls) for pair in pairs),
         right=Rate.over(pair.edited.right for pair in pairs),
         inverted=_inverted_rate(pair.edited for pair in pairs),
     )
@@ -232,10 +232,10 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
 
 def _inverted_rate(trials: Iterable[PlannerTrial]) -> Rate:
     """Return the rate of inverted moves among the instructions that request a move."""
-    return Rate.over(t.inverted for t in trials if _moves(t))
+    return Rate.over(t.inverted for t in trials if _requests_move(t))
 
 
-def _moves(trial: PlannerTrial) -> bool:
+def _requests_move(trial: PlannerTrial) -> bool:
     return any(call.name == "adjust_ptz" for call in trial.row.calls)
 
 

@@ -42,7 +42,7 @@ async def serve_host(host: Host, access: Access, *, port: int = 8000) -> AsyncIt
         async with serve_mcp_channel(host, access) as mcp:
             routes = [Route("/", root), *http_routes(host, access), mcp]
             app = Starlette(routes=routes, exception_handlers={HTTPException: http_error, ScopeError: scope_error})
-            async with serve_app(AccessMiddleware(app, access), listener, host.closing) as bound:
-                yield bound
+            async with serve_app(AccessMiddleware(app, access), listener, host.closing) as bound_port:
+                yield bound_port
     finally:
         await host.close()

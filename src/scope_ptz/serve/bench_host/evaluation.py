@@ -51,9 +51,9 @@ MAX_RESTARTS = 3
 """A worker that has ended this many times without progress is not restarted."""
 MAX_WAIT_S = 300.0
 """Maximum time, in seconds, for which ``hello`` waits for the next run."""
-BROKEN = "The host cannot continue this evaluation. Its operator must restart it. No task was lost."
-ALL_DONE = "All tasks have been attempted. The evaluation is finished."
-ABSENT = "The participant did not continue before the host closed the evaluation."
+CANNOT_CONTINUE = "The host cannot continue this evaluation. Its operator must restart it. No task was lost."
+ALL_ATTEMPTED = "All tasks have been attempted. The evaluation is finished."
+PARTICIPANT_ABSENT = "The participant did not continue before the host closed the evaluation."
 
 
 class NotYourTurnError(ScopeError):
@@ -88,11 +88,11 @@ class HostedEvaluation:
         settings: The worker's settings.
         journal: The participant's journal.
         open_link: Function that starts a worker.
-        absent: Whether to fail all unfinished runs, so that the evaluation can be finished without the participant.
+        fail_unfinished: Whether to fail all unfinished runs, so that the evaluation can be finished without the participant.
     """
 
-    def __init__(self, settings: WorkerSettings, journal: Journal, open_link: OpenLink, *, absent: bool = False) -> None:
-        self.settings, self.journal, self._open_link, self._absent = settings, journal, open_link, absent
+    def __init__(self, settings: WorkerSettings, journal: Journal, open_link: OpenLink, *, fail_unfinished: bool = False) -> None:
+        self.settings, self.journal, self._open_link, self._fail_unfinished = settings, journal, open_link, fail_unfinished
         self.phase: Phase = "finished" if journal.submission is not None else "stopped"
         self.runs: int | None = None
         self._run = ""
@@ -102,7 +102,7 @@ class HostedEvaluation:
         self._link: HostSide | None = None
         self._supervisor: asyncio.Task[None] | None = None
         self._changed = asyncio.Condition()
-        self._answer: asyncio.Future[HostMessage] | None = None
+        self._pending_reply: asyncio.Future[HostMessage] | None = None
 
     @property
     def finished(self) -> bool:
@@ -164,63 +164,63 @@ class HostedEvaluation:
             if self.phase == "turn" and self._task is not None:
                 return self._task
             if self.phase == "finished":
-                return End(reason=ALL_DONE)
-            self._check_alive()
-            answer = await self._deliver(line)
-        return await answer
+                return End(reason=ALL_ATTEMPTED)
+            self._require_not_failed()
+            reply = await self._deliver(line)
+        return await reply
 
     async def _continue(self, line: bytes) -> HostMessage:
         async with self._changed:
             if self.phase == "finished":
-                raise NotYourTurnError(ALL_DONE)
-            self._check_alive()
+                raise NotYourTurnError(ALL_ATTEMPTED)
+            self._require_not_failed()
             if self.phase == "working":
                 raise NotYourTurnError("Your earlier message is still being processed. Wait for its reply.")
             if self.phase != "turn":
-                ended = f" The last one ended: {self._last.message}" if isinstance(self._last, Error) else ""
-                raise NotYourTurnError(f"No task is in progress.{ended} Send hello to begin the next one.")
-            answer = await self._deliver(line)
-        return await answer
+                last_error = f" The last one ended: {self._last.message}" if isinstance(self._last, Error) else ""
+                raise NotYourTurnError(f"No task is in progress.{last_error} Send hello to begin the next one.")
+            reply = await self._deliver(line)
+        return await reply
 
-    def _check_alive(self) -> None:
+    def _require_not_failed(self) -> None:
         if self.phase == "failed":
-            raise NotReadyError(BROKEN)
+            raise NotReadyError(CANNOT_CONTINUE)
 
     async def _deliver(self, line: bytes) -> asyncio.Future[HostMessage]:
-        """Record a message, pass it to the worker, and return a future for the answer. The caller must hold ``_changed``."""
+        """Record a message, pass it to the worker, and return a future for the reply. The caller must hold ``_changed``."""
         assert self._link is not None  # noqa: S101 - the worker offered the run
         text = line[: MAX_MESSAGE_BYTES + 1].decode("utf-8", "replace")
         self.journal.record(self._run, text)
-        begins, self.phase = self.phase == "offered", "working"
-        self._answer = answer = asyncio.get_running_loop().create_future()
-        if begins:
+        begins_run, self.phase = self.phase == "offered", "working"
+        self._pending_reply = reply = asyncio.get_running_loop().create_future()
+        if begins_run:
             await self._link.send(Begin(run=self._run))
         await self._link.send(Deliver(run=self._run, line=text))
-        return answer
+        return reply
 
     def _respond(self, message: HostMessage) -> None:
-        """Answer the agent's pending message, if any, and keep the answer in case the agent loses its connection."""
+        """Reply to the agent's pending message, if any, and keep the reply in case the agent loses its connection."""
         self._last = message
-        if self._answer is not None and not self._answer.done():
-            self._answer.set_result(message)
+        if self._pending_reply is not None and not self._pending_reply.done():
+            self._pending_reply.set_result(message)
 
     async def _supervise(self) -> None:
         """Run the worker, and restart it if it ends early."""
         failures = 0
         while not self.finished and failures < MAX_RESTARTS:
-            ended = self.journal.ended
+            ended_runs = self.journal.ended
             try:
                 await self._run_worker()
             except Exception:  # for example, a full disk; other participants' evaluations continue
                 logger.exception("The evaluation of %s stopped", self.settings.participant)
-            failures = failures + 1 if self.journal.ended == ended else 1
+            failures = failures + 1 if self.journal.ended == ended_runs else 1
             if not self.finished:
                 await self._set_phase("preparing")
         if not self.finished:
             logger.warning("The evaluation of %s cannot continue. Restart the host to try again.", self.settings.participant)
             await self._set_phase("failed")
-            if self._answer is not None and not self._answer.done():
-                self._answer.set_exception(NotReadyError(BROKEN))
+            if self._pending_reply is not None and not self._pending_reply.done():
+                self._pending_reply.set_exception(NotReadyError(CANNOT_CONTINUE))
 
     async def _run_worker(self) -> None:
         """Start a worker, and handle its events until it ends."""
@@ -259,7 +259,7 @@ class HostedEvaluation:
         """Offer a run to the agent. A run that began before a restart is resumed from the journal."""
         self._run, self._task, self._last = run, None, None
         self._replay = deque(self.journal.messages(run))
-        if self._replay or self._absent or self.journal.has_ended(run):
+        if self._replay or self._fail_unfinished or self.journal.has_ended(run):
             self.phase = "working"
             await link.send(Begin(run=run))
             await self._send_next_recorded(link)
@@ -271,14 +271,14 @@ class HostedEvaluation:
         if self._replay:
             await link.send(Deliver(run=self._run, line=self._replay.popleft()))
         else:
-            await link.send(AgentGone(run=self._run, reason=ABSENT))
+            await link.send(AgentGone(run=self._run, reason=PARTICIPANT_ABSENT))
 
     async def _handle_message(self, event: MessageToAgent, link: HostSide) -> None:
         if isinstance(event.message, TaskMessage):
             self._task = event.message
         if isinstance(event.message, Error):
             self._respond(event.message)  # the run is about to end
-        elif self._replay or self._absent or self.journal.has_ended(event.run):
+        elif self._replay or self._fail_unfinished or self.journal.has_ended(event.run):
             await self._send_next_recorded(link)
         else:
             self.phase = "turn"

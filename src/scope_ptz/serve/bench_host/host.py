@@ -57,7 +57,7 @@ class Host:
         settings: The evaluation settings.
         key: Private key file for signing submissions.
         open_link: Function that starts a worker.
-        absent: Whether to fail all unfinished runs, so that all evaluations can be finished without their participants.
+        fail_unfinished: Whether to fail all unfinished runs, so that all evaluations can be finished without their participants.
         notify: Function that receives a line of text when an evaluation is finished.
 
     Raises:
@@ -72,11 +72,11 @@ class Host:
         key: Path,
         *,
         open_link: OpenLink = ProcessLink.start,
-        absent: bool = False,
+        fail_unfinished: bool = False,
         notify: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.folder, self.settings, self.key = folder.resolve(), settings, key.resolve()
-        self._open_link, self._absent, self._notify = open_link, absent, notify
+        self._open_link, self._fail_unfinished, self._notify = open_link, fail_unfinished, notify
         self._evaluations: dict[str, HostedEvaluation] = {}
         self._state = _load_state(self.folder, settings)
         self.tokens = TokenFile(participants_file(self.folder))
@@ -106,11 +106,11 @@ class Host:
         if participant not in self._evaluations:
             settings = self._worker_settings(participant)
             self._evaluations[participant] = HostedEvaluation(
-                settings, Journal(settings.folder), self._open_link, absent=self._absent
+                settings, Journal(settings.folder), self._open_link, fail_unfinished=self._fail_unfinished
             )
         return self._evaluations[participant]
 
-    async def finish(self, *, start: bool) -> None:
+    async def wait_until_finished(self, *, start: bool) -> None:
         """Wait until every registered participant's evaluation has finished or failed.
 
         Args:
@@ -176,7 +176,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
 
 def _load_state(folder: Path, settings: EvaluationSettings) -> _State:
     """Read a folder's state, or create it with a new secret seed. Raises ``InputError`` and ``OutputError``."""
-    path, digest = folder / STATE_FILE, _digest_of_file(settings.tasks)
+    path, digest = folder / STATE_FILE, _task_file_digest(settings.tasks)
     try:
         state = _State.model_validate_json(path.read_bytes())
     except FileNotFoundError:
@@ -192,7 +192,7 @@ def _load_state(folder: Path, settings: EvaluationSettings) -> _State:
     return state
 
 
-def _digest_of_file(tasks: str) -> str:
+def _task_file_digest(tasks: str) -> str:
     path = Path(tasks)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""

@@ -13,7 +13,7 @@ from scope_ptz.serve.bench_host.evaluation import HostedEvaluation, NotReadyErro
 from scope_ptz.serve.bench_host.host import Host
 from scope_ptz.serve.http.errors import error_reply
 from scope_ptz.serve.security.access import Access
-from scope_ptz.serve.security.rate_limits import Kind
+from scope_ptz.serve.security.rate_limits import RequestKind
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.error_codes import status_of
 from scope_ptz.serve.site.errors import TooManyRequestsError
@@ -36,7 +36,7 @@ def http_routes(host: Host, access: Access) -> list[Route]:
     async def health(_: Request) -> Response:
         return JSONResponse({"status": "ok"})
 
-    def _evaluation(request: Request, kind: Kind) -> HostedEvaluation:
+    def _evaluation(request: Request, kind: RequestKind) -> HostedEvaluation:
         client: Client = request.state.client
         access.limits.count(client.name, kind)
         return host.evaluation(client.name)

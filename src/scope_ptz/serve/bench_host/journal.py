@@ -115,10 +115,10 @@ class Journal:
             return
         except OSError as error:
             raise InputError(f"The journal {self.path} cannot be read: {error.strerror}.") from error
-        whole = content[: content.rfind(b"\n") + 1]
-        if len(whole) < len(content):  # the host was killed while it was writing the last line
-            self._truncate(len(whole))
-        for number, line in enumerate(whole.splitlines(), 1):
+        complete_lines = content[: content.rfind(b"\n") + 1]
+        if len(complete_lines) < len(content):  # the host was killed while it was writing the last line
+            self._truncate(len(complete_lines))
+        for number, line in enumerate(complete_lines.splitlines(), 1):
             try:
                 self._apply(_ENTRY.validate_json(line))
             except ValidationError as error:

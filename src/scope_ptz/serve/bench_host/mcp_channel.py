@@ -51,7 +51,7 @@ from scope_ptz.serve.mcp.http import MAX_SESSIONS, McpEndpoint, client_of
 from scope_ptz.serve.mcp.pictures import UNTRUSTED_META
 from scope_ptz.serve.mcp.server import Context
 from scope_ptz.serve.mcp.tool import ToolArguments, failure, parse_arguments, remove_titles, reply
-from scope_ptz.serve.mcp.untrusted import enclose_in_markers, mark_texts
+from scope_ptz.serve.mcp.untrusted import enclose_in_markers, mark_picture_text
 from scope_ptz.serve.security.access import MAX_BODY_BYTES, MCP_PATH, Access
 from scope_ptz.serve.security.rate_limits import RateLimits
 from scope_ptz.tools.registry import TOOLS
@@ -111,7 +111,7 @@ class _Handlers:
         self._host, self._limits = host, limits
         self._tools = {tool.name: tool for tool in _listed_tools()}
         # Agents may send several calls at once. A participant's calls are processed one after the other.
-        self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
+        self._locks: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
 
     def input_schema(self, name: str) -> dict[str, Any] | None:
         """Return the schema of a tool's arguments; None if there is no such tool."""
@@ -131,14 +131,14 @@ class _Handlers:
         try:
             participant = self._count(context, "command")
             message = _message(params.name, params.arguments or {})
-            async with self._turns[participant]:
-                answer = await self._host.evaluation(participant).exchange(encode_message(message))
+            async with self._locks[participant]:
+                reply_message = await self._host.evaluation(participant).exchange(encode_message(message))
         except ScopeError as error:
             return failure(_message_for_agent(error), host_status_of(error)[1])
         except Exception:  # a bug must not reveal internals to the participant
             logger.exception("The MCP tool %s failed unexpectedly", params.name)
             return failure("The host failed. Its operator can find the reason in its log.", "failed")
-        return _result(params.name, answer)
+        return _result(params.name, reply_message)
 
     def _count(self, context: Context, kind: Literal["read", "command"]) -> str:
         """Count a request, and return the participant's name."""
@@ -152,7 +152,7 @@ def _message_for_agent(error: ScopeError) -> str:
 
 
 def _listed_tools() -> list[ListedTool]:
-    own = [
+    own_tools = [
         ListedTool(
             name=name,
             description=model.__doc__ or name,
@@ -161,7 +161,7 @@ def _listed_tools() -> list[ListedTool]:
         )
         for name, model in _OWN_TOOLS.items()
     ]
-    camera = [
+    camera_tools = [
         ListedTool(
             name=tool.name,
             title=tool.title or tool.name,
@@ -171,7 +171,7 @@ def _listed_tools() -> list[ListedTool]:
         )
         for tool in TOOLS.values()
     ]
-    return [*own, *camera]
+    return [*own_tools, *camera_tools]
 
 
 def _schema_of(model: type[ToolArguments]) -> dict[str, Any]:
@@ -204,10 +204,10 @@ def _result(name: str, message: HostMessage) -> CallToolResult:
             return reply(message.instruction, data)
         case Results():
             (result,) = message.results
-            perceived = name in TOOLS.perceiving
+            perceives = name in TOOLS.perceiving
             text = result.error if result.error is not None else str((result.result or {}).get("message", ""))
-            data = {"result": mark_texts(result.result, perceived=perceived), "error": result.error}
-            return reply(enclose_in_markers(text) if perceived else text, data, failed=result.error is not None)
+            data = {"result": mark_picture_text(result.result, perceives=perceives), "error": result.error}
+            return reply(enclose_in_markers(text) if perceives else text, data, failed=result.error is not None)
         case View():
             return _view_result(message)
         case End():

@@ -13,11 +13,11 @@ MAX_LINE_BYTES = 64 * 1024 * 1024
 """Maximum size of a line in bytes. A simulated camera's frame takes less than 1 MB."""
 
 
-class _Part(BaseModel):
+class _WireModel(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class PerceptionSettings(_Part):
+class PerceptionSettings(_WireModel):
     """The perception that the host provides to all participants. It has the same fields as ``factory.models.ModelOptions``."""
 
     perception: str | None = None
@@ -27,7 +27,7 @@ class PerceptionSettings(_Part):
     perception_options: tuple[str, ...] = ()
 
 
-class EvaluationSettings(_Part):
+class EvaluationSettings(_WireModel):
     """Settings for hosted evaluations. All evaluations in a host's folder have the same settings.
 
     Attributes:
@@ -49,7 +49,7 @@ class EvaluationSettings(_Part):
     task_s: Annotated[float, Field(gt=0)] = 1800.0
 
 
-class WorkerSettings(_Part):
+class WorkerSettings(_WireModel):
     """The first line that a worker receives.
 
     Attributes:
@@ -69,14 +69,14 @@ class WorkerSettings(_Part):
     check_only: bool = False
 
 
-class Begin(_Part):
+class Begin(_WireModel):
     """A command to begin the offered run."""
 
     type: Literal["begin"] = "begin"
     run: str
 
 
-class Deliver(_Part):
+class Deliver(_WireModel):
     """A message from the agent, as sent. ``run`` is the key of the run that the message belongs to."""
 
     type: Literal["deliver"] = "deliver"
@@ -84,7 +84,7 @@ class Deliver(_Part):
     line: str = Field(repr=False)
 
 
-class AgentGone(_Part):
+class AgentGone(_WireModel):
     """The agent will send no more messages in this run."""
 
     type: Literal["gone"] = "gone"
@@ -92,21 +92,21 @@ class AgentGone(_Part):
     reason: str
 
 
-class Ready(_Part):
+class Ready(_WireModel):
     """The worker has loaded its tasks. ``runs`` is the number of runs in the evaluation."""
 
     type: Literal["ready"] = "ready"
     runs: int
 
 
-class RunOffered(_Part):
+class RunOffered(_WireModel):
     """A run is waiting for its agent. ``run`` is an opaque key that stays the same after a restart."""
 
     type: Literal["offered"] = "offered"
     run: str
 
 
-class MessageToAgent(_Part):
+class MessageToAgent(_WireModel):
     """A message for the agent."""
 
     type: Literal["sent"] = "sent"
@@ -114,7 +114,7 @@ class MessageToAgent(_Part):
     message: Annotated[HostMessage, Field(discriminator="type")]
 
 
-class RunEnded(_Part):
+class RunEnded(_WireModel):
     """The agent's part in a run has ended."""
 
     type: Literal["over"] = "over"
@@ -122,14 +122,14 @@ class RunEnded(_Part):
     reason: str
 
 
-class Finished(_Part):
+class Finished(_WireModel):
     """Every run has ended. ``submission`` is the path of the signed submission."""
 
     type: Literal["finished"] = "finished"
     submission: Path
 
 
-class Failed(_Part):
+class Failed(_WireModel):
     """The worker cannot continue. The message is for the operator only."""
 
     type: Literal["failed"] = "failed"

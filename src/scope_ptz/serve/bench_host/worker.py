@@ -109,7 +109,7 @@ class Worker:
         options = replace(options, hosted_agent=agent)
         for attempt in range(LOCK_ATTEMPTS):
             try:
-                return Path((await evaluate(options, progress=_Samples(self))).evaluation.log)
+                return Path((await evaluate(options, progress=_RunningSample(self))).evaluation.log)
             except InputError as error:
                 if "already running" not in str(error) or attempt == LOCK_ATTEMPTS - 1:
                     raise
@@ -136,13 +136,13 @@ class Worker:
 
     def _order(self, entries: Sequence[Entry]) -> list[Entry]:
         """Return the tasks in the participant's order, which depends only on the secret seed and the tasks."""
-        rows = sorted(entries, key=lambda entry: entry.facts.id)
-        random.Random(f"{self._settings.order_seed}:order").shuffle(rows)
-        return rows
+        ordered = sorted(entries, key=lambda entry: entry.facts.id)
+        random.Random(f"{self._settings.order_seed}:order").shuffle(ordered)
+        return ordered
 
 
-class _Samples(EvaluationProgress):
-    """Tells the worker which sample begins."""
+class _RunningSample(EvaluationProgress):
+    """Records in the worker which sample is running."""
 
     def __init__(self, worker: Worker) -> None:
         self._worker = worker
@@ -193,8 +193,8 @@ def _write_submission(log: Path, out: Path) -> Path:
     from scope_ptz.bench.submissions.submission import submission_lines, write_submission
     from scope_ptz.bench.submissions.submission_traces import publish_runs
 
-    public = publish_runs(read_evaluation(log), read_runs(log))
-    header, lines = submission_lines(public.evaluation, public.runs, public.places)
+    published = publish_runs(read_evaluation(log), read_runs(log))
+    header, lines = submission_lines(published.evaluation, published.runs, published.places)
     write_submission((header.model_copy(update={"evaluated": "hosted"}), lines), out)
     return out
 

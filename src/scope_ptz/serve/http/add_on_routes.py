@@ -80,7 +80,7 @@ async def add_on_requests(
 
     An event's data has the fields `number`, `operation` and `arguments`. When the stream ends, the connection ends.
     """
-    add_on = _find(station, client, connection)
+    add_on = _find_connection(station, client, connection)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
     return StreamingResponse(_events(add_on, site.closing), media_type="text/event-stream", headers=headers)
 
@@ -90,7 +90,7 @@ async def update_add_on_scene(
     station: StationDep, client: StoppingOperator, connection: Connection, body: SceneDescription
 ) -> Response:
     """Replace the description of the scene, for example after cameras were added or another file was opened."""
-    station.add_on.update(_find(station, client, connection), body)
+    station.add_on.update(_find_connection(station, client, connection), body)
     station.preset_changes += 1
     return Response(status_code=204)
 
@@ -100,8 +100,8 @@ async def add_on_reply(
     station: StationDep, client: StoppingOperator, connection: Connection, number: Number, body: ReplyBody
 ) -> Response:
     """Reply to a request."""
-    failed = None if body.error is None else CameraError(_one_line(body.error))
-    _answer(_find(station, client, connection), number, failed or body.result or {})
+    error = None if body.error is None else CameraError(_one_line(body.error))
+    _answer(_find_connection(station, client, connection), number, error or body.result or {})
     return Response(status_code=204)
 
 
@@ -120,7 +120,7 @@ async def add_on_picture(
     version: Annotated[str, Query(max_length=60, description="Identifies the state of the scene in the picture")] = "",
 ) -> Response:
     """Reply to a request with a picture, a PNG file of at most 32 MiB."""
-    add_on = _find(station, client, connection)
+    add_on = _find_connection(station, client, connection)
     _answer(add_on, number, Picture(await request.body(), version))
     return Response(status_code=204)
 
@@ -128,12 +128,12 @@ async def add_on_picture(
 @router.delete("/{connection}", status_code=204, responses=_ERRORS)
 async def disconnect_add_on(station: StationDep, client: StoppingOperator, connection: Connection) -> Response:
     """Disconnect a Blender instance."""
-    _find(station, client, connection).end()
+    _find_connection(station, client, connection).end()
     station.preset_changes += 1
     return Response(status_code=204)
 
 
-def _find(station: Station, client: Client, connection: str) -> AddOnConnection:
+def _find_connection(station: Station, client: Client, connection: str) -> AddOnConnection:
     """Return a camera's current connection, if it has this id and belongs to the client."""
     current = station.add_on.current
     if current is None or current.id != connection or current.owner != client.key:

@@ -36,7 +36,7 @@ from scope_ptz.version import __version__
 API_PREFIX = "/api"
 VERSION_PREFIX = "/v1"
 
-_MODULES = (
+_ROUTE_MODULES = (
     session_routes,
     camera_routes,
     card_routes,
@@ -71,7 +71,7 @@ def api_application(site: Site, access: Access) -> FastAPI:
         redirect_slashes=False,
     )
     app.state.site, app.state.access = site, access
-    for module in _MODULES:
+    for module in _ROUTE_MODULES:
         app.include_router(module.router, prefix=VERSION_PREFIX)
     add_error_handlers(app)
     if access.needs_token:

@@ -46,19 +46,19 @@ _ERRORS = responses(404, 409)
 @router.get("", responses=responses())
 async def benchmark(site: SiteDep, client: Viewer) -> BenchmarkModel:  # noqa: ARG001 - checks the token
     """Return the pairs and splits that can be evaluated, and the id of the evaluation in progress."""
-    splits = await site.journal.in_thread(installed_splits)
+    splits = await site.library.in_thread(installed_splits)
     return BenchmarkModel(
         pairs=list(site.pairs.names),
-        splits=[SplitModel(name=each.name, tasks=each.tasks, by_category=each.by_category) for each in splits],
+        splits=[SplitModel(name=split.name, tasks=split.tasks, by_category=split.by_category) for split in splits],
         missing=missing_packages(),
-        running=await site.journal.in_thread(site.evaluations.running),
+        running=await site.library.in_thread(site.evaluations.running),
     )
 
 
 @router.get("/evaluations", responses=responses())
 async def list_evaluations(site: SiteDep, client: Viewer) -> list[EvaluationModel]:  # noqa: ARG001 - checks the token
     """List the evaluations that were started on the server, newest first."""
-    return [EvaluationModel.of(each) for each in await site.journal.in_thread(site.evaluations.all)]
+    return [EvaluationModel.of(status) for status in await site.library.in_thread(site.evaluations.all)]
 
 
 @router.post("/evaluations", status_code=202, responses=responses(404, 409, 507))
@@ -66,14 +66,14 @@ async def start_evaluation(site: SiteDep, client: RunOperator, body: EvaluationS
     """Start an evaluation and reply immediately. It runs in a separate process. Only one evaluation runs at a time."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    split = next((each for each in await site.journal.in_thread(installed_splits) if each.name == body.split), None)
+    split = next((installed for installed in await site.library.in_thread(installed_splits) if installed.name == body.split), None)
     if split is None:
         raise InputError(f"The split '{body.split}' is not installed. `GET /benchmark` lists the installed splits.")
     categories = tuple(dict.fromkeys(body.categories))
     if missing_categories := [name for name in categories if name not in split.by_category]:
         raise InputError(f"The split '{body.split}' has no tasks in the category {missing_categories[0].replace('_', ' ')}.")
     request = EvaluationRequest(site.pairs.check(body.pair), body.split, body.limit, categories)
-    return await _status(site, await site.journal.in_thread(partial(site.evaluations.start, request, client.name)))
+    return await _status(site, await site.library.in_thread(partial(site.evaluations.start, request, client.name)))
 
 
 @router.get("/evaluations/{evaluation}", responses=_ERRORS)
@@ -85,21 +85,21 @@ async def evaluation_state(site: SiteDep, client: Viewer, evaluation: Evaluation
 @router.post("/evaluations/{evaluation}/cancel", status_code=202, responses=_ERRORS)
 async def cancel_evaluation(site: SiteDep, client: StoppingOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Cancel an evaluation. Finished runs are kept, and the evaluation can be resumed."""
-    await site.journal.in_thread(partial(site.evaluations.cancel, evaluation))
+    await site.library.in_thread(partial(site.evaluations.cancel, evaluation))
     return await _status(site, evaluation)
 
 
 @router.post("/evaluations/{evaluation}/resume", status_code=202, responses=responses(404, 409, 507))
 async def resume_evaluation(site: SiteDep, client: RunOperator, evaluation: EvaluationId) -> EvaluationModel:  # noqa: ARG001 - checks the token
     """Resume an evaluation that has ended: run its missing and broken runs."""
-    await site.journal.in_thread(partial(site.evaluations.resume, evaluation))
+    await site.library.in_thread(partial(site.evaluations.resume, evaluation))
     return await _status(site, evaluation)
 
 
 @router.delete("/evaluations/{evaluation}", status_code=204, responses=_ERRORS)
 async def remove_evaluation(site: SiteDep, client: Operator, evaluation: EvaluationId) -> Response:  # noqa: ARG001 - checks the token
     """Remove an evaluation that has ended, with its logs and its report."""
-    await site.journal.in_thread(partial(site.evaluations.remove, evaluation))
+    await site.library.in_thread(partial(site.evaluations.remove, evaluation))
     return Response(status_code=204)
 
 
@@ -135,21 +135,21 @@ async def list_trials(
 async def trial_details(site: SiteDep, client: Viewer, evaluation: EvaluationId, sample: Sample) -> TrialDetails:  # noqa: ARG001 - checks the token
     """Return a run with its checks, its steps and the names of its pictures."""
     trial = await _trial(site, evaluation, sample)
-    steps, start, missing = [], None, ""
+    steps, start_picture, trace_error = [], None, ""
     try:
         folder = site.evaluations.folder(evaluation)
-        trace = await site.journal.in_thread(partial(site.trajectories.trace, folder, trial))
-        steps = [TrialStep.model_validate(each) for each in steps_of(trace)]
-        start = next((name for name, position in picture_names(trace).items() if position is None), None)
+        trace = await site.library.in_thread(partial(site.trajectories.trace, folder, trial))
+        steps = [TrialStep.model_validate(step) for step in steps_of(trace)]
+        start_picture = next((name for name, position in picture_names(trace).items() if position is None), None)
     except TraceError as error:
-        missing = str(error)
+        trace_error = str(error)
     return TrialDetails(
         trial=TrialModel.of(trial),
         demands=list(trial.task.demands),
-        checks=[CheckModel(name=each.name, passed=each.passed, reason=each.reason) for each in trial.checks],
-        start_picture=start,
+        checks=[CheckModel(name=check.name, passed=check.passed, reason=check.reason) for check in trial.checks],
+        start_picture=start_picture,
         steps=steps,
-        missing=missing,
+        missing=trace_error,
     )
 
 
@@ -170,8 +170,10 @@ async def trial_picture(
     """Return a picture from a run, optionally with numbered boxes around the detections."""
     trial = await _trial(site, evaluation, sample)
     folder = site.evaluations.folder(evaluation)
-    read = partial(site.trajectories.picture, folder, trial, f"{part}/{name}", marks=marks)
-    return Response(await site.journal.in_thread(read), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=3600"})
+    read_picture = partial(site.trajectories.picture, folder, trial, f"{part}/{name}", marks=marks)
+    return Response(
+        await site.library.in_thread(read_picture), media_type="image/jpeg", headers={"Cache-Control": "private, max-age=3600"}
+    )
 
 
 @router.post("/evaluations/{evaluation}/report", status_code=202, responses=responses(404, 409, 507))
@@ -179,7 +181,7 @@ async def make_report(site: SiteDep, client: RunOperator, evaluation: Evaluation
     """Start writing an evaluation's report. When the report is complete, the evaluation's field `report` is `ready`."""
     if missing := missing_packages():
         raise ConfigError(missing)
-    await site.journal.in_thread(partial(site.evaluations.make_report, evaluation))
+    await site.library.in_thread(partial(site.evaluations.make_report, evaluation))
     return await _status(site, evaluation)
 
 
@@ -190,8 +192,8 @@ async def make_report(site: SiteDep, client: RunOperator, evaluation: Evaluation
 )
 async def report_page(site: SiteDep, client: Viewer, evaluation: EvaluationId) -> FileResponse:  # noqa: ARG001 - checks the token
     """Return the report's first page."""
-    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
-    page = await site.journal.in_thread(folder.report_page)
+    folder = await site.library.in_thread(partial(site.evaluations.folder, evaluation))
+    page = await site.library.in_thread(folder.report_page)
     if page is None:
         raise TraceError("This evaluation has no report yet, or runs have ended since it was written. Create it first.")
     return FileResponse(page, media_type="text/html", headers={"Content-Security-Policy": REPORT_POLICY})
@@ -213,24 +215,24 @@ async def report_file(
     name: Annotated[str, Path(min_length=1, max_length=120)],
 ) -> FileResponse:
     """Return a page, picture or table from the report."""
-    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
-    path = await site.journal.in_thread(partial(folder.report_file, part, name))
+    folder = await site.library.in_thread(partial(site.evaluations.folder, evaluation))
+    path = await site.library.in_thread(partial(folder.report_file, part, name))
     if path is None:
         raise UnknownNameError("report file", name[:120], ())
     return FileResponse(path, media_type=_MEDIA_TYPES[part], headers={"Content-Security-Policy": REPORT_POLICY})
 
 
 async def _status(site: Site, evaluation: str) -> EvaluationModel:
-    return EvaluationModel.of(await site.journal.in_thread(partial(site.evaluations.status, evaluation)))
+    return EvaluationModel.of(await site.library.in_thread(partial(site.evaluations.status, evaluation)))
 
 
 async def _trials(site: Site, evaluation: str) -> list[Trial]:
-    folder = await site.journal.in_thread(partial(site.evaluations.folder, evaluation))
-    return await site.journal.in_thread(folder.trials)
+    folder = await site.library.in_thread(partial(site.evaluations.folder, evaluation))
+    return await site.library.in_thread(folder.trials)
 
 
 async def _trial(site: Site, evaluation: str, sample: str) -> Trial:
-    trial = next((each for each in await _trials(site, evaluation) if each.sample == sample), None)
+    trial = next((candidate for candidate in await _trials(site, evaluation) if candidate.sample == sample), None)
     if trial is None:
         raise UnknownNameError("run in this evaluation", sample[:120], ())
     return trial

@@ -14,7 +14,7 @@ from scope_ptz.serve.site.virtual_cameras import VirtualCamera
 from scope_ptz.simulator.clock import MAX_SPEED, MAX_TIME_S, MIN_SPEED
 
 
-def _number(value: object) -> object:
+def _to_float(value: object) -> object:
     """Convert an integer to a float; JSON does not distinguish the two."""
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
@@ -27,17 +27,17 @@ class SceneTimeModel(BaseModel):
     speed: float
 
     @classmethod
-    def of(cls, now: SceneTime | None) -> SceneTimeModel | None:
+    def of(cls, scene_time: SceneTime | None) -> SceneTimeModel | None:
         """Create the model for a scene time; None for a camera that shows the real world."""
-        return None if now is None else cls(time_s=now.time_s, playing=now.playing, speed=now.speed)
+        return None if scene_time is None else cls(time_s=scene_time.time_s, playing=scene_time.playing, speed=scene_time.speed)
 
 
 class SceneTimeBody(Body):
     """A change to the scene time. Omitted fields stay the same."""
 
-    time_s: Annotated[float, Field(ge=0.0, le=MAX_TIME_S, allow_inf_nan=False), BeforeValidator(_number)] | None = None
+    time_s: Annotated[float, Field(ge=0.0, le=MAX_TIME_S, allow_inf_nan=False), BeforeValidator(_to_float)] | None = None
     playing: bool | None = None
-    speed: Annotated[float, Field(ge=MIN_SPEED, le=MAX_SPEED, allow_inf_nan=False), BeforeValidator(_number)] | None = None
+    speed: Annotated[float, Field(ge=MIN_SPEED, le=MAX_SPEED, allow_inf_nan=False), BeforeValidator(_to_float)] | None = None
 
 
 class VirtualCameraBody(Body):

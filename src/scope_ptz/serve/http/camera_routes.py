@@ -35,7 +35,7 @@ async def list_cameras(site: SiteDep, client: Viewer) -> list[CameraSummary]:  #
         CameraSummary(
             name=station.name,
             open=station.is_open,
-            run=station.running.id if station.running else None,
+            run=station.current_run.id if station.current_run else None,
             holder=station.control.holder.name if station.control.holder else None,
         )
         for station in site.stations.values()
@@ -63,9 +63,9 @@ async def camera_state(site: SiteDep, station: StationDep, client: Viewer) -> Ca
         top_speed=SpeedModel(**asdict(info.capabilities.top_speed)),
         edits_presets=info.capabilities.edits_presets,
         fields_of_view=list(info.optics.table),
-        presets=[PresetModel.of(each) for each in await presets_of(site, station).all()],
-        keep_out=_keep_out(camera),
-        run=station.running.id if station.running else None,
+        presets=[PresetModel.of(preset) for preset in await presets_of(site, station).all()],
+        keep_out=_keep_out_regions(camera),
+        run=station.current_run.id if station.current_run else None,
         can_undo=station.can_undo,
         control=control_model(station, client),
         assumed=list(info.assumed),
@@ -79,13 +79,13 @@ def control_model(station: Station, client: Client) -> ControlModel:
         holder=holder.name if holder else None,
         since=control.since if holder else None,
         mine=holder is not None and holder.key == client.key,
-        requests=[ControlRequestModel(client=each.key, name=each.name, since=each.since) for each in control.requests],
+        requests=[ControlRequestModel(client=request.key, name=request.name, since=request.since) for request in control.requests],
     )
 
 
-def _keep_out(camera: Camera) -> list[RegionModel]:
-    for each in layers(camera):
-        if isinstance(each, GuardedCamera):
-            regions = each.rules.keep_out
+def _keep_out_regions(camera: Camera) -> list[RegionModel]:
+    for layer in layers(camera):
+        if isinstance(layer, GuardedCamera):
+            regions = layer.rules.keep_out
             return [RegionModel(name=region.name, pan_deg=region.pan_deg, tilt_deg=region.tilt_deg) for region in regions]
     return []

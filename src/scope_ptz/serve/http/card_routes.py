@@ -41,7 +41,7 @@ async def camera_card(site: SiteDep, station: StationDep, client: Viewer) -> Cam
         configured=card.configured,
         has_picture=card.has_picture,
         open=station.is_open,
-        run=station.running.id if station.running else None,
+        run=station.current_run.id if station.current_run else None,
         control=control_model(station, client),
         scene_time=None if opened is None else SceneTimeModel.of(scene_time(opened.camera)),
         virtual_camera=VirtualCameraModel.of(site.virtual_cameras.find(station.name)),

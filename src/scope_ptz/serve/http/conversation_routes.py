@@ -31,7 +31,7 @@ async def conversations(
     site: SiteDep, client: Viewer, camera: Annotated[str | None, Query(max_length=120)] = None
 ) -> list[ConversationRow]:
     """List the client's conversations, most recently used first."""
-    return await site.journal.in_thread(partial(list_conversations, site.journal.store.database, owner=client.name, camera=camera))
+    return await site.library.in_thread(partial(list_conversations, site.library.store.database, owner=client.name, camera=camera))
 
 
 @router.post("", status_code=201, responses=responses(404, 503))
@@ -39,15 +39,15 @@ async def start_conversation(site: SiteDep, client: Operator, body: Conversation
     """Start a conversation about a camera. Instructions in it may refer to earlier ones."""
     camera, pair = site.station(body.camera).name, site.pairs.check(body.pair)
     title = body.title.encode("utf-8", "replace").decode()
-    return await site.journal.in_thread(
-        partial(add_conversation, site.journal.store.database, camera=camera, pair=pair, owner=client.name, title=title)
+    return await site.library.in_thread(
+        partial(add_conversation, site.library.store.database, camera=camera, pair=pair, owner=client.name, title=title)
     )
 
 
 @router.get("/{conversation}", responses=responses(404, 503))
 async def conversation_state(site: SiteDep, client: Viewer, conversation: ConversationId) -> ConversationRow:
     """Return a conversation. `GET /runs?conversation=...` lists its runs."""
-    return await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+    return await site.library.in_thread(partial(load_conversation, site.library.store.database, conversation, owner=client.name))
 
 
 @router.patch("/{conversation}", responses=responses(404, 503))
@@ -55,17 +55,17 @@ async def change_conversation(
     site: SiteDep, client: Operator, conversation: ConversationId, body: ConversationChange
 ) -> ConversationRow:
     """Change the title or the pair of a conversation."""
-    database = site.journal.store.database
-    await site.journal.in_thread(partial(load_conversation, database, conversation, owner=client.name))
+    database = site.library.store.database
+    await site.library.in_thread(partial(load_conversation, database, conversation, owner=client.name))
     pair = None if body.pair is None else site.pairs.check(body.pair)
     title = None if body.title is None else body.title.encode("utf-8", "replace").decode()
-    await site.journal.in_thread(partial(touch_conversation, database, conversation, title=title, pair=pair))
-    return await site.journal.in_thread(partial(load_conversation, database, conversation, owner=client.name))
+    await site.library.in_thread(partial(touch_conversation, database, conversation, title=title, pair=pair))
+    return await site.library.in_thread(partial(load_conversation, database, conversation, owner=client.name))
 
 
 @router.delete("/{conversation}", status_code=204, responses=responses(404, 503))
 async def remove_conversation(site: SiteDep, client: Operator, conversation: ConversationId) -> Response:
     """Remove a conversation. Its runs are kept."""
-    await site.journal.in_thread(partial(remove_stored_conversation, site.journal.store.database, conversation, owner=client.name))
-    site.journal.forget(conversation)
+    await site.library.in_thread(partial(remove_stored_conversation, site.library.store.database, conversation, owner=client.name))
+    site.library.forget(conversation)
     return Response(status_code=204)

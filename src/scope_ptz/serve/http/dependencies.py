@@ -10,7 +10,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 
 from scope_ptz.serve.security.access import Access
-from scope_ptz.serve.security.rate_limits import Kind
+from scope_ptz.serve.security.rate_limits import RequestKind
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.presets import Presets
 from scope_ptz.serve.site.site import Site
@@ -49,7 +49,7 @@ def client_of(connection: HTTPConnection) -> Client:
     return client
 
 
-def _client_dependency(kind: Kind, *, needs_operator: bool) -> Callable[[Request], Client]:
+def _client_dependency(kind: RequestKind, *, needs_operator: bool) -> Callable[[Request], Client]:
     def dependency(request: Request) -> Client:
         client = _operator(request) if needs_operator else client_of(request)
         access_of(request).limits.count(client.key, kind, client.name)
@@ -80,7 +80,7 @@ def station_of(socket: WebSocket, camera: str) -> Station:
 
 def presets_of(site: Site, station: Station) -> Presets:
     """Return a camera's presets."""
-    return Presets(station, site.journal.root / "thumbnails")
+    return Presets(station, site.library.root / "thumbnails")
 
 
 SiteDep = Annotated[Site, Depends(_site)]

@@ -61,7 +61,7 @@ async def list_runs(
 ) -> RunList:
     """List runs, newest first. Only a conversation's owner can list its runs."""
     if conversation is not None:
-        await site.journal.in_thread(partial(load_conversation, site.journal.store.database, conversation, owner=client.name))
+        await site.library.in_thread(partial(load_conversation, site.library.store.database, conversation, owner=client.name))
     filters = run_filter(
         text=text,
         kind=kind,
@@ -75,17 +75,17 @@ async def list_runs(
         since=since,
         until=until,
     )
-    store = site.journal.store
-    await site.journal.settle()
-    page = await site.journal.in_thread(partial(store.runs, filters, limit=limit, after=after))
-    count = await site.journal.in_thread(partial(store.count, filters))
+    store = site.library.store
+    await site.library.wait_for_indexing()
+    page = await site.library.in_thread(partial(store.runs, filters, limit=limit, after=after))
+    count = await site.library.in_thread(partial(store.count, filters))
     return RunList(runs=page.runs, next=page.next, count=count, count_is_limit=count >= MAX_COUNT)
 
 
 @router.get("/runs/values", responses=responses(503))
 async def run_values(site: SiteDep, client: Viewer) -> dict[str, list[str]]:  # noqa: ARG001 - checks the token
     """Return the cameras, planners, perception backends and outcomes of all stored runs, for menus."""
-    return await site.journal.in_thread(partial(distinct_values, site.journal.store.database))
+    return await site.library.in_thread(partial(distinct_values, site.library.store.database))
 
 
 @router.get(
@@ -99,7 +99,7 @@ async def run_values(site: SiteDep, client: Viewer) -> dict[str, list[str]]:  # 
 async def export_runs(
     site: SiteDep,
     client: Viewer,  # noqa: ARG001 - checks the token
-    form: Annotated[AnyFormat, Query(alias="format")] = "jsonl",
+    export_format: Annotated[AnyFormat, Query(alias="format")] = "jsonl",
     text: Annotated[str, Query(max_length=200)] = "",
     camera: Annotated[str | None, Query(max_length=120)] = None,
     outcome: Annotated[str | None, Query(max_length=40)] = None,
@@ -116,21 +116,21 @@ async def export_runs(
         since=since,
         until=until,
     )
-    store = site.journal.store
-    number, name = tempfile.mkstemp(suffix=f".{form}")
-    os.close(number)
+    store = site.library.store
+    descriptor, name = tempfile.mkstemp(suffix=f".{export_format}")
+    os.close(descriptor)
     path = FilePath(name)
     try:
-        ids = (await site.journal.in_thread(partial(store.ids, filters)))[:MAX_EXPORT]
-        await site.journal.in_thread(partial(write_export, store, ids, path, form))
+        ids = (await site.library.in_thread(partial(store.ids, filters)))[:MAX_EXPORT]
+        await site.library.in_thread(partial(write_export, store, ids, path, export_format))
     except BaseException:
-        await site.journal.in_thread(partial(path.unlink, missing_ok=True))
+        await site.library.in_thread(partial(path.unlink, missing_ok=True))
         raise
-    kind, suffix = ("application/zip", "zip") if form == "zip" else ("application/x-ndjson", "jsonl")
+    media_type, suffix = ("application/zip", "zip") if export_format == "zip" else ("application/x-ndjson", "jsonl")
     return FileResponse(
         path,
-        media_type=kind,
-        filename=f"{'drafts' if form == 'drafts' else 'runs'}.{suffix}",
+        media_type=media_type,
+        filename=f"{'drafts' if export_format == 'drafts' else 'runs'}.{suffix}",
         background=BackgroundTask(path.unlink, missing_ok=True),
     )
 
@@ -150,19 +150,19 @@ async def list_run_drafts(
     Runs that cannot become drafts are listed with the reason.
     """
     filters = run_filter(text=text, camera=camera, outcome=outcome, rating="good", since=since, until=until)
-    store = site.journal.store
-    await site.journal.settle()
-    page = await site.journal.in_thread(partial(store.runs, filters, limit=MAX_DRAFTS))
-    return await site.journal.in_thread(lambda: list(run_drafts(store, [run.id for run in page.runs])))
+    store = site.library.store
+    await site.library.wait_for_indexing()
+    page = await site.library.in_thread(partial(store.runs, filters, limit=MAX_DRAFTS))
+    return await site.library.in_thread(lambda: list(run_drafts(store, [run.id for run in page.runs])))
 
 
 @router.get("/runs/{run}/details", responses=_ERRORS)
 async def run_details(site: SiteDep, client: Viewer, run: RunId) -> RunDetails:  # noqa: ARG001 - checks the token
     """Return the stored data for a run: its times, calls, pictures and feedback."""
-    store = site.journal.store
-    await site.journal.settle()
-    stored = await site.journal.in_thread(partial(store.run, run))
-    feedback = await site.journal.in_thread(partial(feedback_on, store.database, run))
+    store = site.library.store
+    await site.library.wait_for_indexing()
+    stored = await site.library.in_thread(partial(store.run, run))
+    feedback = await site.library.in_thread(partial(feedback_on, store.database, run))
     return RunDetails(run=stored.run, steps=stored.steps, frames=stored.frames, feedback=feedback)
 
 
@@ -195,8 +195,8 @@ async def run_picture(
 ) -> Response:
     """Return a picture from a run, either as it was taken or with numbered boxes drawn on it."""
     data = await stored_picture(site, run, f"{part}/{name}", marks=marks)
-    kind = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
-    return Response(data, media_type=kind, headers={"Cache-Control": "private, max-age=3600"})
+    media_type = "image/jpeg" if marks or name.endswith(".jpg") else "image/png"
+    return Response(data, media_type=media_type, headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.get(
@@ -217,30 +217,30 @@ async def filmstrip(site: SiteDep, client: Viewer, run: RunId) -> Response:  # n
             raise TraceError("This run has no pictures.")
         return path.read_bytes()
 
-    return Response(await site.journal.in_thread(read), media_type="image/png")
+    return Response(await site.library.in_thread(read), media_type="image/png")
 
 
 @router.put("/runs/{run}/kept", status_code=204, responses=_ERRORS)
 async def keep_run(site: SiteDep, client: Operator, run: RunId, body: KeepRequest) -> Response:  # noqa: ARG001 - checks the token
     """Set whether to keep a run when old runs are removed."""
-    await site.journal.in_thread(partial(keep, site.journal.store.database, run, kept=body.kept))
+    await site.library.in_thread(partial(keep, site.library.store.database, run, kept=body.kept))
     return Response(status_code=204)
 
 
 @router.get("/runs/{run}/feedback", tags=["feedback"], responses=_ERRORS)
 async def list_feedback(site: SiteDep, client: Viewer, run: RunId) -> list[FeedbackRow]:  # noqa: ARG001 - checks the token
     """List the feedback on a run."""
-    return await site.journal.in_thread(partial(feedback_on, site.journal.store.database, run))
+    return await site.library.in_thread(partial(feedback_on, site.library.store.database, run))
 
 
 @router.post("/runs/{run}/feedback", status_code=201, tags=["feedback"], responses=_ERRORS)
 async def give_feedback(site: SiteDep, client: Operator, run: RunId, body: FeedbackBody) -> FeedbackRow:
     """Rate a run or one of its calls. Later feedback by the same person on the same run or call replaces earlier feedback."""
-    await site.journal.settle()
-    return await site.journal.in_thread(
+    await site.library.wait_for_indexing()
+    return await site.library.in_thread(
         partial(
             add_feedback,
-            site.journal.store.database,
+            site.library.store.database,
             run,
             body.rating,
             body.comment,
@@ -253,5 +253,5 @@ async def give_feedback(site: SiteDep, client: Operator, run: RunId, body: Feedb
 @router.delete("/feedback/{number}", status_code=204, tags=["feedback"], responses=_ERRORS)
 async def withdraw_feedback(site: SiteDep, client: Operator, number: Annotated[int, Path(ge=0, le=2**53)]) -> Response:
     """Withdraw feedback that the client gave."""
-    await site.journal.in_thread(partial(remove_feedback, site.journal.store.database, number, actor=client.name))
+    await site.library.in_thread(partial(remove_feedback, site.library.store.database, number, actor=client.name))
     return Response(status_code=204)

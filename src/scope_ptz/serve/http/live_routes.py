@@ -37,13 +37,13 @@ Width = Annotated[int, Query(ge=160, le=3840, description="Maximum width in pixe
 async def frame(
     station: StationDep,
     client: Viewer,  # noqa: ARG001 - checks the token
-    form: Annotated[Literal["jpeg", "png"], Query(alias="format")] = "jpeg",
+    image_format: Annotated[Literal["jpeg", "png"], Query(alias="format")] = "jpeg",
     width: Width = 3840,
 ) -> Response:
     """Take a picture. The header `Scope-Frame` contains the picture's pose, field of view and time."""
     picture = await (await station.camera()).frame()
-    data = await to_thread.run_sync(_png, picture) if form == "png" else await to_thread.run_sync(_jpeg, picture, width)
-    return Response(data, media_type=f"image/{form}", headers={"Scope-Frame": json.dumps(frame_facts(picture))})
+    data = await to_thread.run_sync(_png, picture) if image_format == "png" else await to_thread.run_sync(_jpeg, picture, width)
+    return Response(data, media_type=f"image/{image_format}", headers={"Scope-Frame": json.dumps(frame_facts(picture))})
 
 
 @router.get(
@@ -58,7 +58,7 @@ async def motion_jpeg(
     width: Width = 1280,
     frames: Annotated[int | None, Query(ge=1, le=100_000, description="Number of frames after which the stream ends")] = None,
 ) -> StreamingResponse:
-    """Stream the live picture as Motion JPEG, for video players and pages without scripts."""
+    """Stream the live video as Motion JPEG, for video players and pages without scripts."""
     await station.get_open_camera()
 
     async def parts() -> AsyncIterator[bytes]:
@@ -82,7 +82,7 @@ async def motion_jpeg(
 
 @router.websocket("/live")
 async def live(socket: WebSocket, camera: str, width: int = 1280) -> None:
-    """Stream the live picture to a page. ``docs/http-api.md`` describes the messages."""
+    """Stream the live video to a page. ``docs/http-api.md`` describes the messages."""
     client = client_of(socket)
     try:
         station = station_of(socket, camera)
@@ -99,7 +99,7 @@ async def live(socket: WebSocket, camera: str, width: int = 1280) -> None:
 
 
 class _Watcher:
-    """A client of the live picture, which gets the newest frame after it has acknowledged the previous one."""
+    """A client of the live video, which gets the newest frame after it has acknowledged the previous one."""
 
     def __init__(self, socket: WebSocket, station: Station, width: int) -> None:
         self._socket, self._station, self._width = socket, station, width
@@ -109,7 +109,7 @@ class _Watcher:
 
     async def run(self, closing: asyncio.Event) -> None:
         """Send frames until the client disconnects or the server shuts down."""
-        work = [asyncio.create_task(each) for each in (self._send(), self._receive(), closing.wait())]
+        work = [asyncio.create_task(coroutine) for coroutine in (self._send(), self._receive(), closing.wait())]
         try:
             done, _ = await asyncio.wait(work, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
@@ -148,7 +148,7 @@ class _Watcher:
         station = self._station
         holder = station.control.holder
         state = {
-            "run": station.running.id if station.running else None,
+            "run": station.current_run.id if station.current_run else None,
             "holder": holder.name if holder else None,
             "control": station.control.changes,
             "presets": station.preset_changes,
@@ -162,8 +162,8 @@ class _Watcher:
 
     async def _message(self, picture: LiveFrame) -> bytes:
         facts = {**frame_facts(picture.frame), "number": picture.number, "taken": picture.taken}
-        head = json.dumps(facts).encode()
-        return len(head).to_bytes(4, "big") + head + await picture.jpeg(self._width)
+        header = json.dumps(facts).encode()
+        return len(header).to_bytes(4, "big") + header + await picture.jpeg(self._width)
 
 
 def frame_facts(frame: Frame) -> dict[str, Any]:
@@ -184,8 +184,8 @@ def _scene_time_state(station: Station) -> dict[str, Any] | None:
 
     The scene time itself is part of each frame.
     """
-    now = scene_time(station.open_camera.camera) if station.open_camera is not None else None
-    return None if now is None else {"playing": now.playing, "speed": now.speed}
+    time = scene_time(station.open_camera.camera) if station.open_camera is not None else None
+    return None if time is None else {"playing": time.playing, "speed": time.speed}
 
 
 async def _until_closing(closing: asyncio.Event, pictures: AsyncIterator[LiveFrame | None]) -> AsyncIterator[LiveFrame | None]:

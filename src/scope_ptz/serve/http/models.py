@@ -156,12 +156,12 @@ class PresetModel(BaseModel):
     @classmethod
     def of(cls, known: KnownPreset) -> PresetModel:
         """Create the model for a preset."""
-        preset, place = known.preset, known.place
+        preset, position = known.preset, known.position
         return cls(
             name=preset.name,
             description=preset.description,
-            pose=None if place is None else PoseModel.of(place.pose),
-            viewpoint=None if place is None else place.viewpoint,
+            pose=None if position is None else PoseModel.of(position.pose),
+            viewpoint=None if position is None else position.viewpoint,
             has_picture=known.has_picture,
         )
 

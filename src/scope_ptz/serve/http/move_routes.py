@@ -41,11 +41,11 @@ _ERRORS = responses(404, 409, 503)
 async def move(station: StationDep, client: Operator, body: Move) -> ArrivalModel:
     """Go to an absolute pose. The server replies when the camera has arrived."""
     async with station.command(client) as camera:
-        now = await camera.pose()
+        current = await camera.pose()
         target = Pose(
-            now.pan_deg if body.pan_deg is None else body.pan_deg,
-            now.tilt_deg if body.tilt_deg is None else body.tilt_deg,
-            now.zoom if body.zoom is None else body.zoom,
+            current.pan_deg if body.pan_deg is None else body.pan_deg,
+            current.tilt_deg if body.tilt_deg is None else body.tilt_deg,
+            current.zoom if body.zoom is None else body.zoom,
         )
         return ArrivalModel.of(await camera.move(target))
 
@@ -104,7 +104,7 @@ async def undo(station: StationDep, client: Operator) -> ArrivalModel:
 @router.get("/presets", responses=_ERRORS)
 async def list_presets(site: SiteDep, station: StationDep, client: Viewer) -> list[PresetModel]:  # noqa: ARG001 - checks the token
     """List the presets, with their poses where known."""
-    return [PresetModel.of(each) for each in await presets_of(site, station).all()]
+    return [PresetModel.of(preset) for preset in await presets_of(site, station).all()]
 
 
 @router.put("/presets/{name}", responses=_ERRORS)
@@ -147,7 +147,7 @@ async def preset_thumbnail(site: SiteDep, station: StationDep, client: Viewer, n
 
 
 async def _preset_model(site: Site, station: Station, name: str) -> PresetModel:
-    return PresetModel.of(next(each for each in await presets_of(site, station).all() if each.preset.name == name))
+    return PresetModel.of(next(known for known in await presets_of(site, station).all() if known.preset.name == name))
 
 
 @router.get("/control", responses=_ERRORS)

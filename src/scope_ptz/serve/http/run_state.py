@@ -49,7 +49,7 @@ async def stored_state(site: Site, run_id: str) -> RunState:
         UnknownNameError: There is no such run.
     """
     trace = await trace_of_run(site, run_id)
-    request = await site.journal.in_thread(partial(read_request, trace.folder))
+    request = await site.library.in_thread(partial(read_request, trace.folder))
     started, ended = trace.started, trace.ended
     return RunState(
         id=run_id,

@@ -16,8 +16,8 @@ _ERRORS = responses(404, 409, 503)
 @router.get("/time", responses=_ERRORS)
 async def camera_time(station: StationDep, client: Viewer) -> SceneTimeModel:  # noqa: ARG001 - checks the token
     """Return a simulated camera's scene time. For other cameras, the request fails with the code `not_simulated`."""
-    now = await read_scene_time(station)
-    return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)
+    scene_time = await read_scene_time(station)
+    return SceneTimeModel(time_s=scene_time.time_s, playing=scene_time.playing, speed=scene_time.speed)
 
 
 @router.patch("/time", responses=_ERRORS)
@@ -27,8 +27,8 @@ async def change_camera_time(station: StationDep, client: Operator, body: SceneT
     Like other commands, the request needs control and is refused during a run. If the camera is not simulated, the request fails
     with the code `not_simulated`.
     """
-    now = await change_scene_time(station, client, SceneTimeChange(body.time_s, body.playing, body.speed))
-    return SceneTimeModel(time_s=now.time_s, playing=now.playing, speed=now.speed)
+    scene_time = await change_scene_time(station, client, SceneTimeChange(body.time_s, body.playing, body.speed))
+    return SceneTimeModel(time_s=scene_time.time_s, playing=scene_time.playing, speed=scene_time.speed)
 
 
 @router.get("/virtual", responses=_ERRORS)

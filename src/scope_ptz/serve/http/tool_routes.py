@@ -87,9 +87,9 @@ async def _arguments(request: Request, tool: Tool) -> dict[str, Any]:
             raise RequestValidationError(
                 [{"loc": ("body",), "msg": "The body is not valid JSON", "type": "json_invalid"}]
             ) from error
-        problems = [each for each in error.errors(include_url=False, include_input=False) if each["loc"]]
+        problems = [problem for problem in error.errors(include_url=False, include_input=False) if problem["loc"]]
         if problems:
-            raise RequestValidationError([{**each, "loc": ("body", *each["loc"])} for each in problems]) from error
+            raise RequestValidationError([{**problem, "loc": ("body", *problem["loc"])} for problem in problems]) from error
     return parsed
 
 

@@ -31,7 +31,7 @@ UNTRUSTED_META = {"scope-ptz/untrusted": True}
 """Metadata for every picture, because text in a picture is not an instruction."""
 
 
-def fitting_jpeg(image: NDArray[Any], max_bytes: int, width: int) -> bytes:
+def encode_limited_jpeg(image: NDArray[Any], max_bytes: int, width: int) -> bytes:
     """Encode an RGB picture as a size-limited JPEG.
 
     Args:
@@ -59,7 +59,7 @@ def decode_picture(data: bytes) -> NDArray[Any]:
     return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB))
 
 
-async def stored_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> bytes:
+async def convert_to_limited_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> bytes:
     """Convert a stored JPEG or PNG to a size-limited JPEG. A JPEG that is small enough is returned unchanged.
 
     Raises:
@@ -70,7 +70,7 @@ async def stored_jpeg(data: bytes, max_bytes: int, width: int = 100_000) -> byte
         image = decode_picture(data)
         if data.startswith(b"\xff\xd8") and len(data) <= max_bytes and image.shape[1] <= width:
             return data
-        return fitting_jpeg(image, max_bytes, width)
+        return encode_limited_jpeg(image, max_bytes, width)
 
     return await to_thread.run_sync(convert)
 

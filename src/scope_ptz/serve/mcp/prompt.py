@@ -57,8 +57,8 @@ def prompt(name: str, arguments: dict[str, str], cameras: Sequence[str]) -> GetP
         raise UnknownNameError("camera", camera[:120], cameras)
     if len(task) > 4_000:
         raise InputError("The task of the prompt must have at most 4000 characters.")
-    names = f"The camera is {camera}." if camera else f"The cameras are {', '.join(cameras)}."
-    text = "\n\n".join(part for part in (CONVENTIONS, names, task) if part)
+    camera_sentence = f"The camera is {camera}." if camera else f"The cameras are {', '.join(cameras)}."
+    text = "\n\n".join(part for part in (CONVENTIONS, camera_sentence, task) if part)
     return GetPromptResult(
         description="How to operate the cameras of this server.",
         messages=[PromptMessage(role="user", content=TextContent(type="text", text=text))],

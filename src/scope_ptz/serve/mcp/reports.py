@@ -12,7 +12,7 @@ from scope_ptz.agent.records import Called
 from scope_ptz.serve.http.models import RunState
 from scope_ptz.serve.http.run_state import state_of, stored_state
 from scope_ptz.serve.mcp.addresses import picture_uri
-from scope_ptz.serve.mcp.untrusted import MAX_ITEMS, PictureText, mark_texts
+from scope_ptz.serve.mcp.untrusted import MAX_ITEMS, PictureText, mark_picture_text
 from scope_ptz.serve.site.run_handle import Record
 from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import records_of, trace_of_run
@@ -67,10 +67,10 @@ async def run_report(site: Site, run: str) -> RunReport:
 
 def _report(state: RunState, records: Sequence[Record]) -> RunReport:
     calls = [record for record in records if isinstance(record, Called)]
-    last = calls[-1] if calls else None
+    last_call = calls[-1] if calls else None
     result = None
-    if state.kind == "tool" and last is not None and last.outcome.result is not None:
-        result = mark_texts(last.outcome.result, perceived=perceives(last.outcome.call.name))
+    if state.kind == "tool" and last_call is not None and last_call.outcome.result is not None:
+        result = mark_picture_text(last_call.outcome.result, perceives=perceives(last_call.outcome.call.name))
     return RunReport(
         run=state.id,
         camera=state.camera,
@@ -80,7 +80,7 @@ def _report(state: RunState, records: Sequence[Record]) -> RunReport:
         running=state.running,
         outcome=state.outcome,
         answer=PictureText.of(state.answer),
-        steps=[_step(each) for each in calls[-MAX_STEPS:]],
+        steps=[_step(call) for call in calls[-MAX_STEPS:]],
         result=result,
         pictures=[picture_uri(state.id, name) for name in _picture_names(calls)][-MAX_ITEMS:],
         preview=state.preview[:MAX_ITEMS],

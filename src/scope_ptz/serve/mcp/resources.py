@@ -20,7 +20,7 @@ from scope_ptz.serve.http.dependencies import presets_of
 from scope_ptz.serve.http.library_routes import filmstrip
 from scope_ptz.serve.http.models import PresetModel
 from scope_ptz.serve.mcp.addresses import SCHEME, camera_uri, run_uri, scene_uri
-from scope_ptz.serve.mcp.pictures import MAX_RESOURCE_BYTES, UNTRUSTED_META, fitting_jpeg, stored_jpeg
+from scope_ptz.serve.mcp.pictures import MAX_RESOURCE_BYTES, UNTRUSTED_META, convert_to_limited_jpeg, encode_limited_jpeg
 from scope_ptz.serve.mcp.reports import run_report
 from scope_ptz.serve.mcp.untrusted import PictureText
 from scope_ptz.serve.site.camera_kinds import scene_of
@@ -29,7 +29,7 @@ from scope_ptz.serve.site.site import Site
 from scope_ptz.serve.site.stored_runs import stored_picture
 from scope_ptz.store.rows import RunFilter
 
-LISTED_RUNS = 20
+MAX_LISTED_RUNS = 20
 """Maximum number of runs in the resource list. The newest ones are listed."""
 
 MAX_PICTURE_WIDTH = 8192  # in pixels, for panoramas
@@ -76,20 +76,20 @@ def templates() -> list[ResourceTemplate]:
 
 async def resources(site: Site) -> list[Resource]:
     """Return the cameras, their presets, the scenes, and the newest runs."""
-    found = [Resource(uri=f"{SCHEME}://cameras", name="cameras", description="The cameras of this server", mime_type=_JSON)]
+    listed = [Resource(uri=f"{SCHEME}://cameras", name="cameras", description="The cameras of this server", mime_type=_JSON)]
     for name in site.stations:
-        found.append(Resource(uri=camera_uri(name), name=name, description=f"State of the camera {name}", mime_type=_JSON))
-        text = f"Presets of the camera {name}"
-        found.append(Resource(uri=camera_uri(name, "presets"), name=f"{name}/presets", description=text, mime_type=_JSON))
-        text = f"What the camera {name} shows now"
-        found.append(Resource(uri=camera_uri(name, "picture"), name=f"{name}/picture", description=text, mime_type=_JPEG))
+        listed.append(Resource(uri=camera_uri(name), name=name, description=f"State of the camera {name}", mime_type=_JSON))
+        description = f"Presets of the camera {name}"
+        listed.append(Resource(uri=camera_uri(name, "presets"), name=f"{name}/presets", description=description, mime_type=_JSON))
+        description = f"What the camera {name} shows now"
+        listed.append(Resource(uri=camera_uri(name, "picture"), name=f"{name}/picture", description=description, mime_type=_JPEG))
     for scene in scenes_of(site):
-        found.append(Resource(uri=scene_uri(scene), name=scene, description=f"The scene {scene}", mime_type=_JSON))
-    found.append(Resource(uri=f"{SCHEME}://runs", name="runs", description="The newest runs", mime_type=_JSON))
-    for row in await _newest_runs(site):
-        text = f"{row['instruction'][:80]} ({row['outcome']})"
-        found.append(Resource(uri=run_uri(row["run"]), name=row["run"], description=text, mime_type=_JSON))
-    return found
+        listed.append(Resource(uri=scene_uri(scene), name=scene, description=f"The scene {scene}", mime_type=_JSON))
+    listed.append(Resource(uri=f"{SCHEME}://runs", name="runs", description="The newest runs", mime_type=_JSON))
+    for run in await _newest_runs(site):
+        description = f"{run['instruction'][:80]} ({run['outcome']})"
+        listed.append(Resource(uri=run_uri(run["run"]), name=run["run"], description=description, mime_type=_JSON))
+    return listed
 
 
 def scenes_of(site: Site) -> dict[str, list[str]]:
@@ -123,16 +123,16 @@ async def read_resource(site: Site, client: Client, uri: str) -> ReadResourceRes
         raise _unknown(uri)
     match parts:
         case ["cameras"]:
-            return _text(uri, [each.model_dump(mode="json") for each in await list_cameras(site, client)])
+            return _text(uri, [camera.model_dump(mode="json") for camera in await list_cameras(site, client)])
         case ["cameras", name]:
             return _text(uri, await camera_state(site, site.station(name), client))
         case ["cameras", name, "presets"]:
             known = await presets_of(site, site.station(name)).all()
-            return _text(uri, [PresetModel.of(each).model_dump(mode="json") for each in known])
+            return _text(uri, [PresetModel.of(preset).model_dump(mode="json") for preset in known])
         case ["cameras", name, "picture"]:
             frame = await (await site.station(name).camera()).frame()
             image = frame.image
-            return _blob(uri, await to_thread.run_sync(lambda: fitting_jpeg(image, MAX_RESOURCE_BYTES, frame.width)))
+            return _blob(uri, await to_thread.run_sync(lambda: encode_limited_jpeg(image, MAX_RESOURCE_BYTES, frame.width)))
         case ["scenes", name]:
             return _text(uri, await _scene(site, name))
         case ["runs"]:
@@ -141,18 +141,18 @@ async def read_resource(site: Site, client: Client, uri: str) -> ReadResourceRes
             return _text(uri, await run_report(site, run), untrusted=True)
         case ["runs", run, "filmstrip"]:
             drawn = bytes((await filmstrip(site, client, run)).body)
-            return _blob(uri, await stored_jpeg(drawn, MAX_RESOURCE_BYTES, MAX_PICTURE_WIDTH))
+            return _blob(uri, await convert_to_limited_jpeg(drawn, MAX_RESOURCE_BYTES, MAX_PICTURE_WIDTH))
         case ["runs", run, ("frames" | "pictures") as folder, name]:
             stored = await stored_picture(site, run, f"{folder}/{name}")
-            return _blob(uri, await stored_jpeg(stored, MAX_RESOURCE_BYTES, MAX_PICTURE_WIDTH))
+            return _blob(uri, await convert_to_limited_jpeg(stored, MAX_RESOURCE_BYTES, MAX_PICTURE_WIDTH))
         case _:
             raise _unknown(uri)
 
 
 def completions(site: Site, argument: str, value: str) -> list[str]:
     """Return the names that complete an argument in a prompt or a URI template."""
-    known: Sequence[str] = {"camera": list(site.stations), "scene": list(scenes_of(site))}.get(argument, [])
-    return [name for name in known if name.startswith(value)][:100]
+    names: Sequence[str] = {"camera": list(site.stations), "scene": list(scenes_of(site))}.get(argument, [])
+    return [name for name in names if name.startswith(value)][:100]
 
 
 async def _scene(site: Site, name: str) -> SceneModel:
@@ -163,16 +163,19 @@ async def _scene(site: Site, name: str) -> SceneModel:
     return SceneModel(
         name=file.name,
         title=file.title,
-        viewpoints=[each.name for each in file.viewpoints],
+        viewpoints=[viewpoint.name for viewpoint in file.viewpoints],
         home_preset=file.home_preset,
-        presets=[ScenePresetModel(name=each.name, description=each.description, viewpoint=each.viewpoint) for each in file.presets],
+        presets=[
+            ScenePresetModel(name=preset.name, description=preset.description, viewpoint=preset.viewpoint)
+            for preset in file.presets
+        ],
         cameras=scenes[name],
     )
 
 
 async def _newest_runs(site: Site) -> list[dict[str, Any]]:
-    await site.journal.settle()
-    page = await site.journal.in_thread(partial(site.journal.store.runs, RunFilter(), limit=LISTED_RUNS))
+    await site.library.wait_for_indexing()
+    page = await site.library.in_thread(partial(site.library.store.runs, RunFilter(), limit=MAX_LISTED_RUNS))
     return [
         {
             "run": row.id,
@@ -188,7 +191,7 @@ async def _newest_runs(site: Site) -> list[dict[str, Any]]:
 
 
 def _unknown(uri: str) -> InputError:
-    listing = ", ".join(each.uri_template for each in templates())
+    listing = ", ".join(template.uri_template for template in templates())
     return InputError(f"There is no resource '{uri[:120]}'. The resources are scope://cameras, scope://runs, {listing}.")
 
 

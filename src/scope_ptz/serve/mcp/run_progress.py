@@ -12,7 +12,7 @@ import anyio
 from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.errors import ScopeError
 from scope_ptz.planner.base import CallTools
-from scope_ptz.serve.mcp.tool import Call
+from scope_ptz.serve.mcp.tool import CallContext
 from scope_ptz.serve.site.run_handle import Record, RunHandle
 from scope_ptz.serve.site.station import Station
 
@@ -20,7 +20,7 @@ HEARTBEAT_S = 2.0
 """Seconds between progress notifications while nothing else is reported. Many clients abort calls that report no progress."""
 
 
-async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> RunHandle:
+async def follow(call: CallContext, station: Station, start: Awaitable[RunHandle]) -> RunHandle:
     """Start a run, wait until it has ended, and return its handle.
 
     If the call is cancelled or the server shuts down, the run is cancelled, which stops the camera.
@@ -30,7 +30,7 @@ async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> R
         station: The camera.
         start: Starts the run. A camera's first run opens the camera, which can take a while.
     """
-    sender, handle = _Sender(call), None
+    sender, handle = _ProgressSender(call), None
     heartbeat = asyncio.ensure_future(_report_time(sender, station))
     try:
         handle = await start
@@ -48,10 +48,10 @@ async def follow(call: Call, station: Station, start: Awaitable[RunHandle]) -> R
     return handle
 
 
-class _Sender:
+class _ProgressSender:
     """Numbers a call's notifications, because their progress must increase."""
 
-    def __init__(self, call: Call) -> None:
+    def __init__(self, call: CallContext) -> None:
         self._call, self._number, self._started_s = call, 0, monotonic()
 
     @property
@@ -63,22 +63,22 @@ class _Sender:
         await self._call.progress(float(self._number), message)
 
 
-async def _report_records(sender: _Sender, handle: RunHandle) -> None:
+async def _report_records(sender: _ProgressSender, handle: RunHandle) -> None:
     """Report a run's records until the run has ended."""
     async with aclosing(handle.events()) as events:
         async for event in events:
             await sender.send(record_text(event.record))
 
 
-async def _report_time(sender: _Sender, station: Station) -> None:
+async def _report_time(sender: _ProgressSender, station: Station) -> None:
     while True:
         await anyio.sleep(HEARTBEAT_S)
-        where = "; the camera is being opened"
+        camera_note = "; the camera is being opened"
         if (opened := station.open_camera) is not None:
             with suppress(ScopeError):
                 pose = (await opened.camera.pose()).as_dict()
-                where = f"; the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
-        await sender.send(f"In progress for {sender.elapsed_s:.0f} s{where}.")
+                camera_note = f"; the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
+        await sender.send(f"In progress for {sender.elapsed_s:.0f} s{camera_note}.")
 
 
 async def _cancel_when_closing(closing: asyncio.Event, handle: RunHandle) -> None:
@@ -92,7 +92,7 @@ def record_text(record: Record) -> str:
         case Started():
             return "The run has started."
         case Decided(step=step, decision=CallTools(calls=calls)):
-            return f"Step {step}: {', '.join(each.name[:60] for each in calls)}."
+            return f"Step {step}: {', '.join(call.name[:60] for call in calls)}."
         case Decided():
             return "The planner has finished."
         case Called(outcome=outcome):

@@ -29,7 +29,7 @@ from mcp_types import (
 
 from scope_ptz.errors import ScopeError
 from scope_ptz.serve.mcp import prompt, resources
-from scope_ptz.serve.mcp.tool import Call, McpTool, failure
+from scope_ptz.serve.mcp.tool import CallContext, McpTool, failure
 from scope_ptz.serve.mcp.tools.camera_tools import camera_tools
 from scope_ptz.serve.mcp.tools.run_tools import run_tools
 from scope_ptz.serve.mcp.tools.site_tools import site_tools
@@ -87,7 +87,7 @@ class _Handlers:
 
     async def list_tools(self, context: Context, _: PaginatedRequestParams | None) -> ListToolsResult:
         """List the tools that the client may call."""
-        client = self._reader(context)
+        client = self._count_read(context)
         return ListToolsResult(
             tools=[tool.listing() for tool in self._tools.values() if client.is_operator or not tool.needs_operator]
         )
@@ -96,8 +96,8 @@ class _Handlers:
         """Call a tool. An error is returned as a result, so that the agent can read it and correct the call."""
         tool = self._tools.get(params.name)
         if tool is None:
-            name, known = _replace_unencodable(params.name[:60]), ", ".join(self._tools)
-            raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{name}'. The tools are {known}.")
+            name, tool_names = _replace_unencodable(params.name[:60]), ", ".join(self._tools)
+            raise MCPError(code=INVALID_PARAMS, message=f"There is no tool '{name}'. The tools are {tool_names}.")
         client = self._client_of(context)
         if tool.needs_operator and not client.is_operator:
             return failure(f"{tool.name} needs the operator role, but your token has the viewer role.", "not_allowed")
@@ -108,7 +108,7 @@ class _Handlers:
         try:
             if tool.kind is not None:
                 self._limits.count(client.key, tool.kind, client.name)
-            return await tool.run(Call(self._site, client, progress), params.arguments or {})
+            return await tool.run(CallContext(self._site, client, progress), params.arguments or {})
         except ScopeError as error:
             return failure(str(error), status_of(error)[1])
         except Exception:  # a bug must not reveal internals to the client
@@ -117,17 +117,17 @@ class _Handlers:
 
     async def list_resources(self, context: Context, _: PaginatedRequestParams | None) -> ListResourcesResult:
         """List the cameras, presets, scenes and newest runs."""
-        self._reader(context)
+        self._count_read(context)
         return ListResourcesResult(resources=await resources.resources(self._site))
 
     async def list_templates(self, context: Context, _: PaginatedRequestParams | None) -> ListResourceTemplatesResult:
         """List the resource templates."""
-        self._reader(context)
+        self._count_read(context)
         return ListResourceTemplatesResult(resource_templates=resources.templates())
 
     async def read_resource(self, context: Context, params: ReadResourceRequestParams) -> ReadResourceResult:
         """Read a resource."""
-        client = self._reader(context)
+        client = self._count_read(context)
         try:
             return await resources.read_resource(self._site, client, str(params.uri))
         except ScopeError as error:
@@ -135,12 +135,12 @@ class _Handlers:
 
     async def list_prompts(self, context: Context, _: PaginatedRequestParams | None) -> ListPromptsResult:
         """List the prompts."""
-        self._reader(context)
+        self._count_read(context)
         return ListPromptsResult(prompts=prompt.prompts())
 
     async def get_prompt(self, context: Context, params: GetPromptRequestParams) -> GetPromptResult:
         """Return a prompt."""
-        self._reader(context)
+        self._count_read(context)
         try:
             return prompt.prompt(params.name, params.arguments or {}, list(self._site.stations))
         except ScopeError as error:
@@ -148,11 +148,11 @@ class _Handlers:
 
     async def complete(self, context: Context, params: CompleteRequestParams) -> CompleteResult:
         """Complete the name of a camera or scene."""
-        self._reader(context)
+        self._count_read(context)
         values = resources.completions(self._site, params.argument.name, params.argument.value)
         return CompleteResult(completion=Completion(values=values))
 
-    def _reader(self, context: Context) -> Client:
+    def _count_read(self, context: Context) -> Client:
         """Count a request that only reads, and return the client that sent it."""
         client = self._client_of(context)
         try:

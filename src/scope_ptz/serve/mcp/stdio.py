@@ -63,11 +63,11 @@ class _Lines:
                 yield line
 
     def _read(self) -> None:
-        rest = b""
+        incomplete_line = b""
         try:
             # The descriptor is read directly: a thread that holds the lock of a buffered reader at exit would crash the program.
-            while (chunk := os.read(self._descriptor, _CHUNK_BYTES)) and len(rest) <= MAX_LINE_BYTES:
-                *lines, rest = (rest + chunk).split(b"\n")
+            while (chunk := os.read(self._descriptor, _CHUNK_BYTES)) and len(incomplete_line) <= MAX_LINE_BYTES:
+                *lines, incomplete_line = (incomplete_line + chunk).split(b"\n")
                 for line in lines:
                     self._portal.call(self._send.send, line.decode("utf-8", "replace"))
             self._portal.call(self._send.aclose)

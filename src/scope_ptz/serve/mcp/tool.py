@@ -13,18 +13,18 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.errors import ToolCallError
 from scope_ptz.serve.mcp.pictures import MAX_RESULT_BYTES
-from scope_ptz.serve.security.rate_limits import Kind
+from scope_ptz.serve.security.rate_limits import RequestKind
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.site import Site
 
-MAX_LISTED = 50
+MAX_ENUMERATED_NAMES = 50
 """Maximum number of names that a schema enumerates. If there are more, the error for an unknown name lists the names."""
 
-Progress = Callable[[float, str], Awaitable[None]]
+ReportProgress = Callable[[float, str], Awaitable[None]]
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class CallContext:
     """The context for a call.
 
     Attributes:
@@ -35,7 +35,7 @@ class Call:
 
     site: Site
     client: Client
-    progress: Progress
+    progress: ReportProgress
 
 
 class ToolArguments(BaseModel):
@@ -67,8 +67,8 @@ class McpTool:
     output_schema: dict[str, Any]
     annotations: ToolAnnotations
     needs_operator: bool
-    kind: Kind | None
-    run: Callable[[Call, dict[str, Any]], Awaitable[CallToolResult]]
+    kind: RequestKind | None
+    run: Callable[[CallContext, dict[str, Any]], Awaitable[CallToolResult]]
 
     def listing(self) -> ListedTool:
         """Return the tool's entry for ``tools/list``."""
@@ -95,8 +95,8 @@ def parse_arguments(model: type[_Model], tool: str, arguments: dict[str, Any]) -
         return model.model_validate(arguments)
     except ValidationError as error:
         problems = "; ".join(
-            f"{'.'.join(str(part)[:60] for part in each['loc']) or 'arguments'}: {each['msg']}"
-            for each in error.errors(include_url=False, include_input=False)
+            f"{'.'.join(str(part)[:60] for part in problem['loc']) or 'arguments'}: {problem['msg']}"
+            for problem in error.errors(include_url=False, include_input=False)
         )
         fields = ", ".join(model.model_fields) or "no arguments"
         raise ToolCallError(f"Wrong arguments for {tool}: {problems}. It takes {fields}.") from error
@@ -119,18 +119,18 @@ def output_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 def camera_property(cameras: Sequence[str]) -> dict[str, Any]:
     """Return the JSON schema for the argument ``camera``."""
-    known: dict[str, Any] = {"enum": list(cameras)} if len(cameras) <= MAX_LISTED else {}
-    return {"type": "string", "description": "Name of the camera, as list_cameras reports it.", **known}
+    enumeration: dict[str, Any] = {"enum": list(cameras)} if len(cameras) <= MAX_ENUMERATED_NAMES else {}
+    return {"type": "string", "description": "Name of the camera, as list_cameras reports it.", **enumeration}
 
 
 def remove_titles(schema: Any) -> Any:
     """Remove the titles that pydantic derives from names from a JSON schema. A property named "title" is kept."""
     if isinstance(schema, list):
-        return [remove_titles(each) for each in schema]
+        return [remove_titles(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     return {
-        key: {name: remove_titles(each) for name, each in value.items()} if key in ("properties", "$defs") else remove_titles(value)
+        key: {name: remove_titles(item) for name, item in value.items()} if key in ("properties", "$defs") else remove_titles(value)
         for key, value in schema.items()
         if not (key == "title" and isinstance(value, str))
     }
@@ -155,8 +155,8 @@ def reply(text: str, data: BaseModel | dict[str, Any], *more: ContentBlock, fail
 
 def wire_bytes(result: BaseModel) -> int:
     """Return the size of a result as a JSON message, in bytes, in the largest encoding: one that escapes non-ASCII characters."""
-    envelope = 512  # the message's id and version, and metadata that the SDK adds
-    return envelope + len(json.dumps(result.model_dump(mode="json", by_alias=True, exclude_none=True)))
+    envelope_bytes = 512  # the message's id and version, and metadata that the SDK adds
+    return envelope_bytes + len(json.dumps(result.model_dump(mode="json", by_alias=True, exclude_none=True)))
 
 
 def failure(message: str, code: str) -> CallToolResult:

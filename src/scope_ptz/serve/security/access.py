@@ -47,7 +47,7 @@ AUTHORISATION_CHECK_INTERVAL_S = 2.0
 API_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 """The API's content security policy. It allows nothing, because the API's replies are not pages."""
 
-_CLIENT = re.compile(r"[A-Za-z0-9_-]{1,64}")  # valid values of the header ``Scope-Client``, which distinguishes browser tabs
+_CLIENT_KEY = re.compile(r"[A-Za-z0-9_-]{1,64}")  # valid values of the header ``Scope-Client``, which distinguishes browser tabs
 
 
 @dataclass(slots=True)
@@ -98,17 +98,17 @@ class Access:
         Args:
             headers: The request's headers, by lower-case name.
         """
-        tab = headers.get("scope-client", "")
-        tab = f":{tab}" if _CLIENT.fullmatch(tab) else ""
+        client_key = headers.get("scope-client", "")
+        tab_suffix = f":{client_key}" if _CLIENT_KEY.fullmatch(client_key) else ""
         if self.tokens is None:
-            return Client(LOCAL, f"{LOCAL}{tab}", "operator")
-        if (secret := _secret(headers.get("authorization", ""))) is not None:
+            return Client(LOCAL, f"{LOCAL}{tab_suffix}", "operator")
+        if (secret := _token_secret(headers.get("authorization", ""))) is not None:
             token = self.tokens.find(secret)
-            return None if token is None else Client(token.name, f"{token.name}{tab}", token.role)
+            return None if token is None else Client(token.name, f"{token.name}{tab_suffix}", token.role)
         session = self.sessions.find(cookie_of(headers))
         if session is None or not self.tokens.is_valid(session.token):
             return None
-        return Client(session.token.name, f"{session.token.name}:{session.key}{tab}", session.token.role)
+        return Client(session.token.name, f"{session.token.name}:{session.key}{tab_suffix}", session.token.role)
 
 
 class AccessMiddleware:
@@ -131,16 +131,16 @@ class AccessMiddleware:
             await self._app(scope, receive, send)
             return
         headers = _headers(scope)
-        websocket = scope["type"] == "websocket"
+        is_websocket = scope["type"] == "websocket"
         reply = _Reply(scope, send, API_POLICY if scope["path"].startswith(PROGRAM_PATHS) else self._page_policy)
-        if problem := self._origins.problem(headers, method=scope.get("method", "GET"), websocket=websocket):
+        if problem := self._origins.problem(headers, method=scope.get("method", "GET"), websocket=is_websocket):
             await reply.refuse(403, "refused", problem)
             return
-        if websocket and (tab := parse_qs(scope.get("query_string", b"").decode("latin-1")).get("client")):
+        if is_websocket and (tab := parse_qs(scope.get("query_string", b"").decode("latin-1")).get("client")):
             headers.setdefault("scope-client", tab[0])  # a page cannot set WebSocket headers
         client = self._access.client(headers)
         if client is None and scope["path"] not in OPEN_PATHS:
-            if not websocket and _wants_page(scope, headers):
+            if not is_websocket and _wants_page(scope, headers):
                 await reply.redirect(SIGN_IN_PATH)
             else:
                 await reply.refuse(
@@ -164,19 +164,19 @@ class AccessMiddleware:
 
         Without this check, a client could continue to watch a stream indefinitely.
         """
-        work = asyncio.ensure_future(self._app(scope, receive, reply.send))
+        serving = asyncio.ensure_future(self._app(scope, receive, reply.send))
         try:
-            while not (await asyncio.wait({work}, timeout=AUTHORISATION_CHECK_INTERVAL_S))[0]:
+            while not (await asyncio.wait({serving}, timeout=AUTHORISATION_CHECK_INTERVAL_S))[0]:
                 if self._access.client(headers) != client:
-                    work.cancel()
-                    await asyncio.gather(work, return_exceptions=True)
+                    serving.cancel()
+                    await asyncio.gather(serving, return_exceptions=True)
                     await reply.end()
                     return
-            work.result()
+            serving.result()
         finally:
-            if not work.done():
-                work.cancel()
-                await asyncio.gather(work, return_exceptions=True)
+            if not serving.done():
+                serving.cancel()
+                await asyncio.gather(serving, return_exceptions=True)
 
 
 class _Reply:
@@ -256,7 +256,7 @@ def _headers(scope: Scope) -> dict[str, str]:
     return result
 
 
-def _secret(authorization: str) -> str | None:
+def _token_secret(authorization: str) -> str | None:
     """Return the token in an ``Authorization`` header; None if there is none.
 
     Most clients send a bearer token. Video players and home automation systems support only Basic authentication, in which the

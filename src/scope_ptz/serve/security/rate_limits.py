@@ -10,7 +10,7 @@ from typing import Literal
 
 from scope_ptz.serve.site.errors import TooManyRequestsError
 
-Kind = Literal["read", "command", "run", "sign_in"]
+RequestKind = Literal["read", "command", "run", "sign_in"]
 
 MAX_CLIENTS = 10_000
 """Maximum number of counters. Beyond it, the counter of the least recently active client is dropped."""
@@ -27,7 +27,7 @@ class Rate:
     burst: int
 
 
-DEFAULT_RATES: Mapping[Kind, Rate] = {
+DEFAULT_RATES: Mapping[RequestKind, Rate] = {
     "read": Rate(50.0, 200),
     "command": Rate(25.0, 60),
     "run": Rate(1.0, 20),
@@ -45,11 +45,11 @@ class RateLimits:
         rates: The limit for each kind of request; None for no limits.
     """
 
-    def __init__(self, rates: Mapping[Kind, Rate] | None = DEFAULT_RATES) -> None:
+    def __init__(self, rates: Mapping[RequestKind, Rate] | None = DEFAULT_RATES) -> None:
         self._rates = rates or {}
-        self._remaining: OrderedDict[tuple[str, Kind], tuple[float, float]] = OrderedDict()
+        self._remaining: OrderedDict[tuple[str, RequestKind], tuple[float, float]] = OrderedDict()
 
-    def count(self, client: str, kind: Kind, name: str | None = None) -> None:
+    def count(self, client: str, kind: RequestKind, name: str | None = None) -> None:
         """Count a request from a client, and refuse it if the client exceeds a limit.
 
         Args:
@@ -67,10 +67,10 @@ class RateLimits:
             self._count(f"all of {name}", kind, Rate(NAME_FACTOR * rate.per_s, NAME_FACTOR * rate.burst))
         self._count(client, kind, rate)
 
-    def _count(self, client: str, kind: Kind, rate: Rate) -> None:
+    def _count(self, client: str, kind: RequestKind, rate: Rate) -> None:
         now_s = monotonic()
-        remaining, since_s = self._remaining.pop((client, kind), (float(rate.burst), now_s))
-        remaining = min(float(rate.burst), remaining + (now_s - since_s) * rate.per_s)
+        remaining, counted_s = self._remaining.pop((client, kind), (float(rate.burst), now_s))
+        remaining = min(float(rate.burst), remaining + (now_s - counted_s) * rate.per_s)
         allowed = remaining >= 1.0
         self._remaining[client, kind] = (remaining - 1.0 if allowed else remaining, now_s)
         if len(self._remaining) > MAX_CLIENTS:

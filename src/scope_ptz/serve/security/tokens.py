@@ -128,19 +128,20 @@ class TokenFile:
             raise ConfigError(f"The token file {self.path} cannot be read: {error.strerror}.") from error
         except ValidationError as error:
             # The message must not contain the file's contents.
-            where = ".".join(str(part) for part in error.errors(include_input=False)[0]["loc"]) or "the top level"
+            location = ".".join(str(part) for part in error.errors(include_input=False)[0]["loc"]) or "the top level"
             raise ConfigError(
-                f"The token file {self.path} is invalid at {where}. Delete it and create the tokens again with `scope token add`."
+                f"The token file {self.path} is invalid at {location}. "
+                "Delete it and create the tokens again with `scope token add`."
             ) from None
         self.tokens, self._file_state = tuple(content.tokens), (state.st_mtime_ns, state.st_size)
 
     def _write(self, tokens: tuple[Token, ...]) -> None:
-        unfinished = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
+        partial_file = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            with os.fdopen(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8") as file:
+            with os.fdopen(os.open(partial_file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8") as file:
                 file.write(_Content(tokens=list(tokens)).model_dump_json(indent=2) + "\n")
-            unfinished.replace(self.path)
+            partial_file.replace(self.path)
         except OSError as error:
             raise OutputError(f"The token file {self.path} cannot be written: {error.strerror}.") from error
         self._read()

@@ -119,8 +119,8 @@ class CameraCards:
 
     async def _check(self, station: Station) -> ScopeError | None:
         """Check a camera, and return its error; None if the camera works. Concurrent requests share one check."""
-        task, since_s = self._checks.get(station.name, (None, 0.0))
-        if task is None or (task.done() and monotonic() - since_s > CHECK_REUSE_S):
+        task, started_s = self._checks.get(station.name, (None, 0.0))
+        if task is None or (task.done() and monotonic() - started_s > CHECK_REUSE_S):
             task = asyncio.create_task(_find_problem(station))
             self._checks[station.name] = task, monotonic()
         return await asyncio.shield(task)
@@ -139,22 +139,22 @@ async def _find_problem(station: Station) -> ScopeError | None:
 
 def _scene_facts(name: str) -> SceneFacts:
     file: SceneFile = open_scene(name).file
-    viewpoints = tuple(each.name for each in file.viewpoints)
+    viewpoints = tuple(viewpoint.name for viewpoint in file.viewpoints)
     return SceneFacts(name, file.title, viewpoints, len(file.presets), len(file.actors), file.captured is None)
 
 
 def _scene_abilities(scene: SceneFacts, *, has_camera_rules: bool) -> tuple[Ability, ...]:
-    known: list[tuple[Ability, bool]] = [
+    abilities: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", True), ("presets", True), ("scene_time", True),
         ("ground_truth", scene.has_truth), ("virtual_camera", not has_camera_rules),
     ]  # fmt: skip
-    return tuple(name for name, available in known if available)
+    return tuple(name for name, available in abilities if available)
 
 
 def _device_abilities(camera: Camera) -> tuple[Ability, ...]:
     capabilities = camera.info.capabilities
-    known: list[tuple[Ability, bool]] = [
+    abilities: list[tuple[Ability, bool]] = [
         ("move", True), ("drive", capabilities.drives), ("presets", capabilities.edits_presets),
         ("focus", bool(capabilities.focus)), ("iris", bool(capabilities.iris)), ("scene_time", scene_time(camera) is not None),
     ]  # fmt: skip
-    return tuple(name for name, available in known if available)
+    return tuple(name for name, available in abilities if available)

@@ -25,7 +25,7 @@ MAX_REQUESTS = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class ControlRequest:
     """A client's request for control: the client's key and name, and the time of the request."""
 
     key: str
@@ -47,15 +47,15 @@ class CameraControl:
         absent_s: Seconds without a live connection after which control expires. It applies only to a holder that had one.
     """
 
-    def __init__(self, camera: str, busy: Callable[[], bool], *, lease_s: float = LEASE_S, absent_s: float = ABSENT_S) -> None:
-        self._camera, self._busy, self._lease_s, self._absent_s = camera, busy, lease_s, absent_s
+    def __init__(self, camera: str, is_busy: Callable[[], bool], *, lease_s: float = LEASE_S, absent_s: float = ABSENT_S) -> None:
+        self._camera, self._is_busy, self._lease_s, self._absent_s = camera, is_busy, lease_s, absent_s
         self._holder: Client | None = None
         self._since = datetime.now(UTC)
         self._last_used_s = 0.0
         self._released = False
         self._connections: Counter[str] = Counter()
         self._absent_since_s: float | None = None
-        self._requests: dict[str, Request] = {}
+        self._requests: dict[str, ControlRequest] = {}
         self._lock = AsyncExitStack()
         self.changes = 0
         """Number of changes so far, which watchers compare to notice changes."""
@@ -65,7 +65,7 @@ class CameraControl:
         """The client that has control; None if nobody has it."""
         now_s = monotonic()
         absent = self._absent_since_s is not None and now_s - self._absent_since_s > self._absent_s
-        expired = not self._busy() and (self._released or absent or now_s - self._last_used_s > self._lease_s)
+        expired = not self._is_busy() and (self._released or absent or now_s - self._last_used_s > self._lease_s)
         return None if expired else self._holder
 
     @property
@@ -74,7 +74,7 @@ class CameraControl:
         return self._since
 
     @property
-    def requests(self) -> tuple[Request, ...]:
+    def requests(self) -> tuple[ControlRequest, ...]:
         """The requests for control, oldest first."""
         return tuple(self._requests.values())
 
@@ -118,11 +118,11 @@ class CameraControl:
             await self.require(client, camera)
             return True
         if client.key not in self._requests and len(self._requests) < MAX_REQUESTS:
-            self._requests[client.key] = Request(client.key, client.name, datetime.now(UTC))
+            self._requests[client.key] = ControlRequest(client.key, client.name, datetime.now(UTC))
             self.changes += 1
         return False
 
-    async def answer(self, holder: Client, key: str, camera: Camera, *, grant: bool, to: Client | None = None) -> None:
+    async def answer(self, holder: Client, key: str, camera: Camera, *, grant: bool, new_holder: Client | None = None) -> None:
         """Answer a request for control: hand control over to the client, or refuse.
 
         Args:
@@ -130,7 +130,7 @@ class CameraControl:
             key: The key of the client that is asking.
             camera: The camera.
             grant: Whether to hand control over.
-            to: The client that is asking; by default, an operator with the name and the key in the request.
+            new_holder: The client that is asking; by default, an operator with the name and the key in the request.
 
         Raises:
             NotInControlError: ``holder`` does not have control.
@@ -143,7 +143,7 @@ class CameraControl:
         request = self._requests.pop(key)
         self.changes += 1
         if grant:
-            await self._hand_to(to or Client(request.name, key, "operator"), camera)
+            await self._hand_to(new_holder or Client(request.name, key, "operator"), camera)
 
     async def release(self, client: Client) -> None:
         """Give up control, or withdraw a request for it. If the client has neither, the call has no effect.
@@ -158,7 +158,7 @@ class CameraControl:
 
     async def clear_if_released(self) -> None:
         """Clear control if the holder gave it up and no run is in progress."""
-        if self._released and not self._busy():
+        if self._released and not self._is_busy():
             await self.clear()
 
     async def clear(self) -> None:

@@ -11,7 +11,7 @@ from scope_ptz.factory.cameras.named_cameras import named_cameras
 
 CameraKind = Literal["simulated", "blender", "axis", "onvif", "plug_in"]
 
-_KINDS = {"sim": "simulated", BLENDER_WINDOW: "blender"}
+_KIND_BY_SCHEME = {"sim": "simulated", BLENDER_WINDOW: "blender"}
 
 
 def kind_of(spec: str) -> CameraKind:
@@ -21,7 +21,7 @@ def kind_of(spec: str) -> CameraKind:
         InputError: The spec is invalid, or the camera is no longer in ``scope.yaml``.
     """
     scheme = parse_camera(spec).scheme
-    name = _KINDS.get(scheme, scheme)
+    name = _KIND_BY_SCHEME.get(scheme, scheme)
     return next((kind for kind in get_args(CameraKind) if kind == name), "plug_in")
 
 
@@ -46,5 +46,5 @@ def has_rules(spec: str) -> bool:
     name = parse_camera(spec).name
     if not name:
         return False
-    named = named_cameras()[name]
-    return named.mounting != Mounting() or named.rules != CameraRules()
+    configured = named_cameras()[name]
+    return configured.mounting != Mounting() or configured.rules != CameraRules()

@@ -1,4 +1,4 @@
-"""A camera's live picture. Frames are taken while at least one client is watching, and each client gets the newest frame."""
+"""A camera's live video. Frames are taken while at least one client is watching, and each client gets the newest frame."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RATE_HZ = 25.0
 JPEG_QUALITY = 80
 MAX_AGE_S = 5.0  # maximum age of a frame, which limits the error if a clock is set forward between exposure and arrival
 RETRY_S = 1.0  # seconds between a camera failure and the next attempt
-CHECK_S = 0.25  # seconds between checks for interrupted frames
+CHECK_INTERVAL_S = 0.25  # seconds between checks for interrupted frames
 
 logger = logging.getLogger(__name__)
 
@@ -57,8 +57,8 @@ def encode_jpeg(image: NDArray[Any], width: int, quality: int = JPEG_QUALITY) ->
     height = max(1, round(image.shape[0] * width / image.shape[1]))
     if width != image.shape[1]:
         # Above half the width, linear interpolation is as smooth as area averaging and takes a tenth of the time.
-        averaged = 2 * width <= image.shape[1]
-        image = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA if averaged else cv2.INTER_LINEAR)
+        use_area_averaging = 2 * width <= image.shape[1]
+        image = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA if use_area_averaging else cv2.INTER_LINEAR)
     encoded, data = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not encoded:
         raise CameraError("The picture cannot be encoded.")
@@ -104,9 +104,9 @@ class LivePicture:
                         if not self.watchers:  # the frame is discarded, because the next watcher must not get an old one
                             break
                         self._publish(LiveFrame(number, frame, camera.clock.now_s() - frame.time_s))
-            except Exception as error:  # the live picture must continue after any driver failure
+            except Exception as error:  # the live video must continue after any driver failure
                 self.problem = str(error)
-                logger.warning("The live picture of %s failed; retrying: %s", self._name, error)
+                logger.warning("The live video of %s failed; retrying: %s", self._name, error)
                 self._wake()
                 await anyio.sleep(RETRY_S)
 
@@ -116,11 +116,11 @@ class LivePicture:
 
         async def report() -> None:
             while True:
-                await anyio.sleep(CHECK_S)
+                await anyio.sleep(CHECK_INTERVAL_S)
                 problem = camera.frames_problem
                 if problem and not self.problem:
                     self.problem = problem
-                    logger.warning("The live picture of %s is interrupted: %s", self._name, problem)
+                    logger.warning("The live video of %s is interrupted: %s", self._name, problem)
                     self._wake()
 
         task = asyncio.create_task(report())

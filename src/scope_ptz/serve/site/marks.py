@@ -15,7 +15,7 @@ from scope_ptz.perception.base import Box
 
 ACCENT = (76, 195, 247)
 INK = (14, 19, 26)
-MAX_NUMBERS = 40
+MAX_NUMBERED_MARKS = 40
 """Maximum number of marks to number. If there are more, none is numbered, because the numbers would cover the picture."""
 
 
@@ -39,8 +39,8 @@ def marks_of(call: Called | None, name: str) -> list[dict[str, Any]]:
         return []
     boxes = result.get("boxes") or ([result["box"]] if result.get("box") else [])
     marks: list[dict[str, Any]] = []
-    for each in boxes:
-        box = Box.model_validate(each)
+    for box_data in boxes:
+        box = Box.model_validate(box_data)
         marks.append({"number": len(marks) + 1, "box": box.model_dump(mode="json")})
     return marks
 
@@ -55,21 +55,23 @@ def draw_marks(picture: bytes, marks: list[dict[str, Any]]) -> bytes:
     if image is None:
         raise TraceError("The picture of the run is damaged.")
     height, width = int(image.shape[0]), int(image.shape[1])
-    accent, line = ACCENT[::-1], max(2, round(width / 640))
+    accent, line_width = ACCENT[::-1], max(2, round(width / 640))
     for mark in marks:
         box = mark["box"]
         left, top = round(box["x_min"] * width), round(box["y_min"] * height)
-        cv2.rectangle(image, (left, top), (round(box["x_max"] * width), round(box["y_max"] * height)), accent, line, cv2.LINE_AA)
-        if len(marks) <= MAX_NUMBERS:
-            _draw_number(image, str(mark["number"]), left, top, line)
+        cv2.rectangle(
+            image, (left, top), (round(box["x_max"] * width), round(box["y_max"] * height)), accent, line_width, cv2.LINE_AA
+        )
+        if len(marks) <= MAX_NUMBERED_MARKS:
+            _draw_number(image, str(mark["number"]), left, top, line_width)
     encoded, data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])
     if not encoded:
         raise TraceError("The picture of the run cannot be encoded.")
     return bytes(data)
 
 
-def _draw_number(image: NDArray[Any], text: str, left: int, top: int, line: int) -> None:
-    scale = 0.25 + line * 0.12
+def _draw_number(image: NDArray[Any], text: str, left: int, top: int, line_width: int) -> None:
+    scale = 0.25 + line_width * 0.12
     (text_width, text_height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
     top = max(top, text_height + 6)
     cv2.rectangle(image, (left, top - text_height - 6), (left + text_width + 6, top), ACCENT[::-1], cv2.FILLED)

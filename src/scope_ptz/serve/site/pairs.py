@@ -86,7 +86,7 @@ class Pairs:
         else:
             note = perception_note(pair.perception)
             perception = await to_thread.run_sync(make_perception, pair.perception, opened.scenes, seed)
-        # This runs in a thread, because the first call imports the planner, which would delay live pictures and stop commands.
+        # This runs in a thread, because the first call imports the planner, which would delay live video and stop commands.
         return Models(await to_thread.run_sync(make_planner, pair.planner), perception, note)
 
     async def health(self, name: str) -> tuple[Health, Health]:

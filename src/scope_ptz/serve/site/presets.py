@@ -22,7 +22,7 @@ from scope_ptz.serve.site.camera_kinds import has_rules, scene_of
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import RefusedByCameraError
 from scope_ptz.serve.site.live_picture import encode_jpeg
-from scope_ptz.serve.site.station import Place, Station
+from scope_ptz.serve.site.station import CameraPosition, Station
 from scope_ptz.simulator.pack import Scene
 
 THUMBNAIL_WIDTH = 320  # in pixels
@@ -33,7 +33,7 @@ class KnownPreset:
     """A preset, its position (if the camera reports it or has visited it), and whether it has a thumbnail."""
 
     preset: PresetInfo
-    place: Place | None
+    position: CameraPosition | None
     has_picture: bool
 
 
@@ -59,7 +59,7 @@ class Presets:
         return [
             KnownPreset(
                 preset,
-                _place_in_scene(camera, preset.name) or self._station.visited.get(preset.name),
+                _position_in_scene(camera, preset.name) or self._station.visited.get(preset.name),
                 preset.name in rendered or self._path(preset.name).is_file(),
             )
             for preset in await camera.presets()
@@ -101,12 +101,12 @@ class Presets:
             RefusedByCameraError: The camera cannot save or remove this preset.
         """
         async with self._station.command(client) as camera:
-            presets = {each.name: each for each in await camera.presets()}
+            presets = {preset.name: preset for preset in await camera.presets()}
             if name not in presets:
                 raise UnknownNameError("preset", name[:60], presets)
             if new_name in presets:
                 raise InputError(f"A preset named '{new_name[:60]}' already exists. Choose another name.")
-            before = await self._station.place()
+            position_before = await self._station.position()
             await camera.go_to_preset(name)
             frame = await camera.frame()
             await self._visit(new_name)
@@ -119,7 +119,7 @@ class Presets:
                         await camera.remove_preset(new_name)
                         raise
             finally:
-                await self._station.return_to(camera, before)
+                await self._station.return_to(camera, position_before)
             await self._store(new_name, frame)
             self._forget(name)
         self._station.preset_changes += 1
@@ -176,7 +176,7 @@ class Presets:
         return await self._store(name, await renderer.frame())
 
     async def _visit(self, name: str) -> None:
-        self._station.visited[name] = await self._station.place()
+        self._station.visited[name] = await self._station.position()
 
     async def _check(self, camera: Camera, name: str) -> None:
         names = [preset.name for preset in await camera.presets()]
@@ -204,17 +204,17 @@ class Presets:
         self._path(name).unlink(missing_ok=True)
 
 
-def _place_in_scene(camera: Camera, name: str) -> Place | None:
+def _position_in_scene(camera: Camera, name: str) -> CameraPosition | None:
     """Return a preset's position in the coordinates of ``camera`` if the camera is simulated; None for other cameras."""
     presets = getattr(innermost(camera), "scene_presets", None)
     if presets is None:
         return None
     preset = presets.find(name)
     pose = preset_pose(preset)
-    for each in layers(camera):
-        if isinstance(each, MountedCamera):
-            pose = each.world_pose(pose)
-    return Place(pose, preset.viewpoint)
+    for layer in layers(camera):
+        if isinstance(layer, MountedCamera):
+            pose = layer.world_pose(pose)
+    return CameraPosition(pose, preset.viewpoint)
 
 
 @contextmanager

@@ -30,7 +30,7 @@ class RunHandle:
         request: The client that started the run, the camera, and the conversation.
         preview: The commands that a dry run would send, one sentence each.
         records: The records so far.
-        scope: The cancel scope in which the run is executed.
+        cancel_scope: The cancel scope in which the run is executed.
         failure: The error that kept the run from starting or finishing; None if there is none.
         call_error: The error from the last tool call that failed; None if none failed.
         done: Set when the run has ended and there will be no more records.
@@ -40,7 +40,7 @@ class RunHandle:
         self.id, self.instruction, self.request = run_id, instruction, request
         self.preview: list[str] = []
         self.records: list[Record] = []
-        self.scope = anyio.CancelScope()
+        self.cancel_scope = anyio.CancelScope()
         self.failure: Exception | None = None
         self.call_error: Exception | None = None
         self._changed = anyio.Event()
@@ -59,7 +59,7 @@ class RunHandle:
 
     def cancel(self) -> None:
         """Cancel the run, which then ends with the outcome "cancelled"."""
-        self.scope.cancel()
+        self.cancel_scope.cancel()
 
     @property
     def ended(self) -> Ended | None:

@@ -20,8 +20,8 @@ from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
 from scope_ptz.serve.site.clients import Client
 from scope_ptz.serve.site.errors import StoppedError
-from scope_ptz.serve.site.journal import Journal
 from scope_ptz.serve.site.run_handle import Record, RunHandle
+from scope_ptz.serve.site.run_library import RunLibrary
 from scope_ptz.serve.site.station import Station
 from scope_ptz.serve.site.tool_call_planner import SingleCallPlanner, call_text
 from scope_ptz.store.request_file import RunRequest
@@ -67,12 +67,12 @@ class Runner:
     """Executes runs and keeps their state, so that a run continues if its client disconnects, and the client can reconnect.
 
     Args:
-        journal: Stores the runs.
+        library: Stores the runs.
         budgets: The limits for a run.
     """
 
-    def __init__(self, journal: Journal, budgets: Budgets) -> None:
-        self._journal, self._budgets = journal, budgets
+    def __init__(self, library: RunLibrary, budgets: Budgets) -> None:
+        self._library, self._budgets = library, budgets
         self._handles: dict[str, RunHandle] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -90,14 +90,14 @@ class Runner:
         """
         camera = await station.require_control(client)
         request = RunRequest(kind=spec.kind, camera=station.name, conversation=spec.conversation, actor=client.name)
-        folder = RunFolder.create(self._journal.root, spec.instruction)
+        folder = RunFolder.create(self._library.root, spec.instruction)
         handle = RunHandle(folder.path.name, spec.instruction, request)
         # The station is busy from here to the end of `_execute`. There must be no `await` between the check above and this line.
-        station.running = handle
+        station.current_run = handle
         self._remember(handle)
-        work = asyncio.create_task(self._execute(station, camera, spec, folder, handle))
-        self._tasks.add(work)
-        work.add_done_callback(self._tasks.discard)
+        task = asyncio.create_task(self._execute(station, camera, spec, folder, handle))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
         try:
             await handle.wait_until_started()
         except asyncio.CancelledError:
@@ -114,14 +114,14 @@ class Runner:
 
     def _remember(self, handle: RunHandle) -> None:
         self._handles[handle.id] = handle
-        ended = [key for key, each in self._handles.items() if each.done.is_set()]
+        ended = [key for key, known_handle in self._handles.items() if known_handle.done.is_set()]
         for key in ended[: max(0, len(ended) - MAX_FINISHED)]:
             del self._handles[key]
 
     async def _execute(self, station: Station, camera: Camera, spec: RunSpec, folder: RunFolder, handle: RunHandle) -> None:
         failure: Exception | None = None
         try:
-            with handle.scope:
+            with handle.cancel_scope:
                 await self._run(station, camera, spec, folder, handle)
         except ScopeError as error:
             failure = error
@@ -131,10 +131,10 @@ class Runner:
         finally:
             folder.discard_if_not_started()
             if handle.records:
-                self._journal.index_soon(handle.id)
+                self._library.index_soon(handle.id)
             elif failure is None:
                 failure = StoppedError(station.name)
-            station.running = None
+            station.current_run = None
             station.touch()
             await station.control.clear_if_released()
             handle.finish(failure)
@@ -148,7 +148,7 @@ class Runner:
             (await station.get_open_camera()).record_instruction(f"{handle.request.actor}: {spec.instruction}")
         conversation: tuple[PastTurn, ...] = ()
         if spec.conversation is not None:
-            conversation = await self._journal.turns(spec.conversation)
+            conversation = await self._library.turns(spec.conversation)
         handle.request.write(folder.path)
         note = dry_run_note(models.note) if spec.kind == "dry_run" else models.note
         labels = RunLabels(perception_note=note, seed=0)
@@ -168,11 +168,11 @@ class Runner:
                 trace(record)  # first, so that every record that a client sees is stored
                 handle.add(record)
                 if len(handle.records) == 1:
-                    self._journal.index_soon(handle.id)
+                    self._library.index_soon(handle.id)
 
             result = await agent.run(spec.instruction, conversation=conversation, listener=listen)
         if spec.conversation is not None and spec.kind == "instruction":
-            await self._journal.add_turn(spec.conversation, result.past_turn())
+            await self._library.add_turn(spec.conversation, result.past_turn())
 
 
 def _record_errors(handle: RunHandle) -> RunTool:

@@ -21,8 +21,8 @@ from scope_ptz.serve.site.benchmark.evaluations import Evaluations
 from scope_ptz.serve.site.benchmark.trajectories import Trajectories
 from scope_ptz.serve.site.camera_cards import CameraCards
 from scope_ptz.serve.site.camera_control import LEASE_S
-from scope_ptz.serve.site.journal import Journal
 from scope_ptz.serve.site.pairs import Pairs
+from scope_ptz.serve.site.run_library import RunLibrary
 from scope_ptz.serve.site.runner import Runner
 from scope_ptz.serve.site.station import IdleReturn, Station
 from scope_ptz.serve.site.virtual_cameras import VirtualCameras
@@ -66,8 +66,8 @@ class Site:
 
     def __init__(self, cameras: dict[str, str], options: SiteOptions) -> None:
         self.pairs = Pairs(options.pairs)
-        self.journal = Journal(options.runs_dir)
-        self.runner = Runner(self.journal, options.budgets)
+        self.library = RunLibrary(options.runs_dir)
+        self.runner = Runner(self.library, options.budgets)
         self.evaluations = Evaluations(options.runs_dir)
         self.trajectories = Trajectories()
         actor = f"scope serve: {user_name()}"
@@ -85,8 +85,12 @@ class Site:
 
     async def __aenter__(self) -> Self:
         stations = self.stations.values()
-        work = [self.journal.run(), *(each.live.run() for each in stations), *(each.watch_idle() for each in stations)]
-        self._tasks = [asyncio.create_task(each) for each in work]
+        coroutines = [
+            self.library.run(),
+            *(station.live.run() for station in stations),
+            *(station.watch_idle() for station in stations),
+        ]
+        self._tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
         return self
 
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
@@ -99,12 +103,12 @@ class Site:
                 station.cancel_prefetch()
             for station in self.stations.values():
                 await station.close()
-            await self.journal.in_thread(self.evaluations.close)
-            await self.journal.settle(10.0)
+            await self.library.in_thread(self.evaluations.close)
+            await self.library.wait_for_indexing(10.0)
             for task in self._tasks:
                 task.cancel()
             await asyncio.gather(*self._tasks, return_exceptions=True)
-            self.journal.close()
+            self.library.close()
 
     def station(self, name: str) -> Station:
         """Return a camera by name.

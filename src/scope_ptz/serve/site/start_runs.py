@@ -45,15 +45,15 @@ async def start_instruction(
     """
     station, selected_pair = site.station(camera), pair
     if conversation is not None:
-        stored = await site.journal.in_thread(
-            partial(load_conversation, site.journal.store.database, conversation, owner=client.name)
+        stored = await site.library.in_thread(
+            partial(load_conversation, site.library.store.database, conversation, owner=client.name)
         )
         if stored.camera != station.name:
             raise InputError(f"This conversation is about {stored.camera}, not about {station.name}. Start another conversation.")
         selected_pair = selected_pair or stored.pair
     # If a conversation's pair is no longer configured, the default pair is used instead.
-    name = site.pairs.check(selected_pair if selected_pair in site.pairs.names or pair is not None else None)
-    spec = RunSpec(instruction, name, conversation, "dry_run" if dry_run else "instruction")
+    pair_name = site.pairs.check(selected_pair if selected_pair in site.pairs.names or pair is not None else None)
+    spec = RunSpec(instruction, pair_name, conversation, "dry_run" if dry_run else "instruction")
     return await site.runner.start(station, spec, client)
 
 

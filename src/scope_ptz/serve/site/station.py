@@ -49,7 +49,7 @@ class IdleReturn:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class CameraPosition:
     """A camera's position: its pose, and its viewpoint if it is simulated."""
 
     pose: Pose
@@ -77,18 +77,18 @@ class Station:
         self._prefetches = Prefetches()
         self._opening = asyncio.Lock()
         self._models: dict[str, Models] = {}
-        self._places: deque[Place] = deque(maxlen=MAX_UNDO)
+        self._undo_positions: deque[CameraPosition] = deque(maxlen=MAX_UNDO)
         self.problem: ScopeError | None = None
         """The error from the last attempt to open the camera; None if that attempt succeeded."""
-        self.visited: dict[str, Place] = {}
+        self.visited: dict[str, CameraPosition] = {}
         """The position of each visited preset, by preset name. Not all cameras report their presets' poses."""
         self._last_drive_s = -DRIVE_GROUP_S
         self._last_command_s = monotonic()
         self._returned = True
-        self.running: RunHandle | None = None
+        self.current_run: RunHandle | None = None
         self.add_on = AddOnSlot()
         """The connection to the Blender add-on. Only a camera of the kind ``blender-window`` uses it."""
-        self.control = CameraControl(name, lambda: self.running is not None, lease_s=lease_s)
+        self.control = CameraControl(name, lambda: self.current_run is not None, lease_s=lease_s)
         self.live = LivePicture(name, self.camera)
         self.preset_changes = 0
         """Number of preset changes so far, which watchers compare to notice changes."""
@@ -140,8 +140,8 @@ class Station:
         """
         camera = await self.camera()
         await self.control.require(client, camera)
-        if self.running is not None:
-            raise BusyError(self.name, self.running.id)
+        if self.current_run is not None:
+            raise BusyError(self.name, self.current_run.id)
         self.touch()
         return camera
 
@@ -166,9 +166,9 @@ class Station:
 
     async def remember(self) -> None:
         """Record the current position, so that ``undo`` can return to it."""
-        place = await self.place()
-        if not self._places or self._places[-1] != place:
-            self._places.append(place)
+        position = await self.position()
+        if not self._undo_positions or self._undo_positions[-1] != position:
+            self._undo_positions.append(position)
 
     async def drive(self, client: Client, pan_dps: float, tilt_dps: float, zoom_rate: float, timeout_s: float) -> None:
         """Drive the camera at constant velocities until the timeout.
@@ -188,8 +188,8 @@ class Station:
 
     async def stop(self) -> None:
         """Cancel the run in progress, if any, and stop the camera. The caller does not need control."""
-        if self.running is not None:
-            self.running.cancel()
+        if self.current_run is not None:
+            self.current_run.cancel()
         if self._opened is not None:
             await self._opened.camera.stop()
 
@@ -200,23 +200,23 @@ class Station:
             InputError: There is nothing to undo.
         """
         camera = await self.require_control(client)
-        here = await self.place()
-        while self._places and self._places[-1] == here:
-            self._places.pop()
-        if not self._places:
+        current = await self.position()
+        while self._undo_positions and self._undo_positions[-1] == current:
+            self._undo_positions.pop()
+        if not self._undo_positions:
             raise InputError("There is no earlier view to return to.")
-        return await self.return_to(camera, self._places.pop())
+        return await self.return_to(camera, self._undo_positions.pop())
 
-    async def return_to(self, camera: Camera, place: Place) -> Arrival:
+    async def return_to(self, camera: Camera, position: CameraPosition) -> Arrival:
         """Move the camera to an earlier position."""
-        if place.viewpoint is not None and place.viewpoint != await self.viewpoint():
-            await camera.go_to_preset(self._preset_at(place.viewpoint))
-        return await camera.move(place.pose)
+        if position.viewpoint is not None and position.viewpoint != await self.viewpoint():
+            await camera.go_to_preset(self._preset_at(position.viewpoint))
+        return await camera.move(position.pose)
 
     @property
     def can_undo(self) -> bool:
         """Whether there is an earlier view to return to."""
-        return bool(self._places)
+        return bool(self._undo_positions)
 
     async def watch_idle(self) -> None:
         """Return the camera to its idle preset whenever it has been unused for long enough, until cancelled."""
@@ -224,7 +224,7 @@ class Station:
         while idle is not None:
             await anyio.sleep(min(1.0, idle.after_s / 2))
             unused_s = monotonic() - self._last_command_s
-            if self._returned or self.running is not None or not self.is_open or unused_s < idle.after_s:
+            if self._returned or self.current_run is not None or not self.is_open or unused_s < idle.after_s:
                 continue
             self._returned = True
             try:
@@ -257,9 +257,9 @@ class Station:
         """Return a simulated camera's viewpoint; None for other cameras."""
         return getattr(innermost(await self.camera()), "viewpoint", None)
 
-    async def place(self) -> Place:
+    async def position(self) -> CameraPosition:
         """Return the camera's current position."""
-        return Place(await (await self.camera()).pose(), await self.viewpoint())
+        return CameraPosition(await (await self.camera()).pose(), await self.viewpoint())
 
     def _preset_at(self, viewpoint: str) -> str:
         scene = self._opened.scene if self._opened is not None else None

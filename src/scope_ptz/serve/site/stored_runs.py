@@ -18,10 +18,10 @@ async def trace_of_run(site: Site, run_id: str) -> Trace:
         UnknownNameError: There is no such run.
         TraceError: The run's trace is damaged.
     """
-    folder = site.journal.store.folder(run_id)
-    if not await site.journal.in_thread((folder / "trace.jsonl").is_file):
+    folder = site.library.store.folder(run_id)
+    if not await site.library.in_thread((folder / "trace.jsonl").is_file):
         raise UnknownNameError("run", run_id[:120], ())
-    return await site.journal.in_thread(partial(read_trace, folder))
+    return await site.library.in_thread(partial(read_trace, folder))
 
 
 def records_of(trace: Trace) -> list[Record]:
@@ -57,4 +57,4 @@ async def stored_picture(site: Site, run_id: str, name: str, *, marks: bool = Fa
             raise TraceError(f"The picture file {name} is missing from this run.") from error
         return draw_marks(data, marks_of(call_for_picture(trace, name), name)) if marks else data
 
-    return await site.journal.in_thread(read)
+    return await site.library.in_thread(read)

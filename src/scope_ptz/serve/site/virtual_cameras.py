@@ -44,7 +44,7 @@ class VirtualCamera:
     account: str
 
 
-class _Running:
+class _RunningCamera:
     """A virtual camera with the task that serves it."""
 
     def __init__(self, device: VirtualDevice) -> None:
@@ -63,7 +63,7 @@ class VirtualCameras:
     """A server's virtual cameras, at most one for each of the site's cameras."""
 
     def __init__(self) -> None:
-        self._running: dict[str, _Running] = {}
+        self._running: dict[str, _RunningCamera] = {}
         self._changing = asyncio.Lock()
 
     def find(self, name: str) -> VirtualCamera | None:
@@ -107,7 +107,7 @@ class VirtualCameras:
                 scenes=(scene,), viewpoints=(viewpoint,) if viewpoint else (), host=HOST, discovery=False, prefetch=False
             )
             (device,) = await to_thread.run_sync(make_devices, options, [Account(ACCOUNT, password)])
-            running = self._running[station.name] = _Running(device)
+            running = self._running[station.name] = _RunningCamera(device)
             running.task = asyncio.create_task(self._serve(station.name, running, options))
             try:
                 with anyio.fail_after(START_TIMEOUT_S):
@@ -134,7 +134,7 @@ class VirtualCameras:
         for name in list(self._running):
             await self.turn_off(name)
 
-    async def _serve(self, name: str, running: _Running, options: VirtualCameraOptions) -> None:
+    async def _serve(self, name: str, running: _RunningCamera, options: VirtualCameraOptions) -> None:
         try:
             async with serve_virtual_cameras([running.device], options) as (served,):
                 url = served.url

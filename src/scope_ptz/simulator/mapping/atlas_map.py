@@ -42,10 +42,10 @@ def atlas_map(tiles: Tiles, band: Band, atlas: Atlas, projection: Projection, pa
     if part is None:
         part = slice(0, projection.height), slice(0, projection.width)
     visible: list[VisibleTile] = []
-    rest: Place | None = part
+    uncovered: Place | None = part
     if projection.pixels_per_radian > TILE_GAIN * panorama_density(atlas) and len(atlas.slots) > 1:
-        visible, rest = visible_tiles(tiles.in_view(projection), part)
-    if rest is None:
+        visible, uncovered = visible_tiles(tiles.in_view(projection), part)
+    if uncovered is None:
         positions = np.empty((part[0].stop - part[0].start, part[1].stop - part[1].start, 2), np.float32)
     else:
         # The whole part is computed, even if tiles cover some of it, because copying the rest would take more time and memory.
@@ -71,8 +71,8 @@ def panorama_density(atlas: Atlas) -> float:
     return atlas.slots[0][0].width / (2 * math.pi)
 
 
-def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
-    """Return the index of the scale at which to sample a picture for a view with the density ``needed``.
+def suitable_scale(atlas: Atlas, density: float, view_density: float) -> int:
+    """Return the index of the scale at which to sample a picture for a view with the density ``view_density``.
 
     ``density`` is the picture's density at full size. Both are in pixels per radian.
 
@@ -80,8 +80,8 @@ def suitable_scale(atlas: Atlas, density: float, needed: float) -> int:
     """
     if len(atlas.scales) == 1:
         return 0
-    enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
-    return enough[-1] if enough else 0
+    dense_enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * view_density]
+    return dense_enough[-1] if dense_enough else 0
 
 
 def _mask(tile: VisibleTile, slot: Slot, where: Map) -> NDArray[np.uint8]:

@@ -40,11 +40,11 @@ def visible_tiles(tiles_in_view: Sequence[TileInView], part: Place) -> tuple[lis
         The visible tiles in the same order, and the smallest rectangle around all cells that no tile covers; None if there are no
         such cells.
     """
-    near = [tile_in_view for tile_in_view in tiles_in_view if overlap(tile_in_view.place, part) is not None]
-    if not near:
+    overlapping = [tile_in_view for tile_in_view in tiles_in_view if overlap(tile_in_view.place, part) is not None]
+    if not overlapping:
         return [], part
-    touched, full = _cell_masks(near, part)
-    covered = np.asarray(np.logical_or.accumulate(full, axis=0))
+    touched, filled = _cell_masks(overlapping, part)
+    covered = np.asarray(np.logical_or.accumulate(filled, axis=0))
     needed: Bools = np.concatenate([touched, ~covered[-1:]])  # the last element is the panorama
     needed[1:-1] &= ~covered[:-1]
     in_rows, in_columns = (np.asarray(needed.any(axis=axis)) for axis in (2, 1))
@@ -55,10 +55,10 @@ def visible_tiles(tiles_in_view: Sequence[TileInView], part: Place) -> tuple[lis
     rest: Place | None = None
     for k in np.flatnonzero(in_rows.any(axis=1)).tolist():
         place = _pixels(part, (top[k], bottom[k]), (left[k], right[k]))
-        if k == len(near):
+        if k == len(overlapping):
             rest = place
-        elif (visible := overlap(place, near[k].place)) is not None:
-            tiles.append(VisibleTile(near[k], visible, bool(full[k, top[k] : bottom[k], left[k] : right[k]].all())))
+        elif (visible := overlap(place, overlapping[k].place)) is not None:
+            tiles.append(VisibleTile(overlapping[k], visible, bool(filled[k, top[k] : bottom[k], left[k] : right[k]].all())))
     return tiles, rest
 
 
@@ -83,11 +83,11 @@ def _cell_masks(tiles_in_view: Sequence[TileInView], part: Place) -> tuple[Bools
     (low_y, high_y), (low_x, high_x) = extremes
     offset = edges[:, :, 2]
     touched = ((high_y + offset)[..., None] + high_x[:, :, None]).min(axis=1) >= -MARGIN_PX
-    full = ((low_y + offset)[..., None] + low_x[:, :, None]).min(axis=1) >= MARGIN_PX
+    filled = ((low_y + offset)[..., None] + low_x[:, :, None]).min(axis=1) >= MARGIN_PX
     for k, tile_in_view in enumerate(tiles_in_view):
         if tile_in_view.polygon is None:
-            full[k] = False
-    return touched, full
+            filled[k] = False
+    return touched, filled
 
 
 def _pixels(part: Place, cell_rows: tuple[int, int], cell_columns: tuple[int, int]) -> Place:

@@ -107,5 +107,5 @@ def _step_px(projection: Projection) -> int:
         return 1
     _, tilt = pan_tilt_deg(projection.directions(corners))
     from_pole = math.radians(90.0 - float(np.abs(tilt).max()))
-    widest = math.sqrt(8 * MAX_MAP_ERROR_PX * projection.pixels_per_radian * math.sin(from_pole))
-    return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))
+    max_step = math.sqrt(8 * MAX_MAP_ERROR_PX * projection.pixels_per_radian * math.sin(from_pole))
+    return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, max_step)))))

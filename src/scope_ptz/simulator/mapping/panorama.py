@@ -23,8 +23,8 @@ def panorama_map(band: Band, slot: Slot, grid: Grid, part: Place | None = None) 
         grid: The grid over the view.
         part: The rows and columns that are needed; the default is all that the grid covers.
     """
-    middle, turn, tilt = _turn_and_tilt_deg(grid)
-    x = slot.x - 0.5 + (wrap_pan_deg(middle) + 180.0 + turn) / 360.0 * slot.width
+    centre_pan_deg, turn, tilt = _turn_and_tilt_deg(grid)
+    x = slot.x - 0.5 + (wrap_pan_deg(centre_pan_deg) + 180.0 + turn) / 360.0 * slot.width
     y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
     where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1), part)
     skipped = (part or grid.place)[1].start - grid.place[1].start

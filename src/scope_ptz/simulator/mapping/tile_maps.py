@@ -34,14 +34,14 @@ def tile_maps(
     if any(tile.in_view.turn is None for tile in visible):
         yield from (_panoramic_map(tiles, projection, step, *pair) for pair in zip(visible, slots, strict=True))
         return
-    grids = [_Nodes(tile, step) for tile in visible]
+    grids = [_TileGrid(tile, step) for tile in visible]
     for grid, nodes in zip(grids, _positions(tiles, projection, step, visible, slots, grids), strict=True):
         fine = cv2.resize(nodes, (grid.columns * step, grid.rows * step), interpolation=cv2.INTER_LINEAR)
         yield fine[grid.skipped_rows : grid.skipped_rows + grid.height, grid.skipped_columns : grid.skipped_columns + grid.width]
 
 
-class _Nodes:
-    """A visible tile's grid nodes, and the offsets and size of the part of the interpolated map that is used."""
+class _TileGrid:
+    """The grid of nodes over a visible tile, and the offsets and size of the part of the interpolated map that is used."""
 
     __slots__ = ("columns", "height", "left", "rows", "skipped_columns", "skipped_rows", "top", "width")
 
@@ -63,7 +63,7 @@ def _positions(
     step: int,
     visible: Sequence[VisibleTile],
     slots: Sequence[Slot],
-    grids: Sequence[_Nodes],
+    grids: Sequence[_TileGrid],
 ) -> list[Map]:
     """Return a (rows, columns, 2) array for each tile: its nodes' positions on the sheet."""
     if not visible:

@@ -80,20 +80,20 @@ class Tiles:
         if not self.views:
             return []
         separation_deg = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
-        near = self._order[(separation_deg <= self._reach_deg + projection.max_off_axis_deg)[self._order]]
+        candidates = self._order[(separation_deg <= self._reach_deg + projection.max_off_axis_deg)[self._order]]
         size = np.array([projection.width, projection.height])
-        outlines = projection.points(self._outlines[near])
+        outlines = projection.points(self._outlines[candidates])
         places = bounds(projection, outlines)
         turns: list[Floats | None]
         polygons: list[NDArray[np.int32] | None]
         if isinstance(projection, Perspective):
-            turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
+            turns = list(self._axes[candidates] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
             polygons = _shrink_polygons(outlines[:, ::_SIDE_POINTS] * size)
         else:
-            turns, polygons = [None] * len(near), [None] * len(near)
+            turns, polygons = [None] * len(candidates), [None] * len(candidates)
         edges = _edges(polygons, places)
-        shown = [TileInView(*fields) for fields in zip(near.tolist(), places, turns, polygons, edges, strict=True)]
-        return [tile_in_view for tile_in_view in shown if tile_in_view.place[0].start < tile_in_view.place[0].stop]
+        tiles_in_view = [TileInView(*fields) for fields in zip(candidates.tolist(), places, turns, polygons, edges, strict=True)]
+        return [tile_in_view for tile_in_view in tiles_in_view if tile_in_view.place[0].start < tile_in_view.place[0].stop]
 
     def points(self, tile_in_view: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
         """Return the tile's normalised points, as (rows, columns, 2), at columns ``x`` and rows ``y`` (pixels) of an image.
@@ -119,11 +119,11 @@ class Tiles:
 
 def _shrink_polygons(corners: Floats) -> list[NDArray[np.int32] | None]:
     """Shrink quadrilaterals (n, 4, 2) about their centres, so that they stay inside the tiles after rounding."""
-    middle = corners.mean(axis=1, keepdims=True)
-    sides, to_middle = np.roll(corners, -1, axis=1) - corners, middle - corners
-    areas = np.abs(sides[..., 0] * to_middle[..., 1] - sides[..., 1] * to_middle[..., 0])
+    centre = corners.mean(axis=1, keepdims=True)
+    sides, to_centre = np.roll(corners, -1, axis=1) - corners, centre - corners
+    areas = np.abs(sides[..., 0] * to_centre[..., 1] - sides[..., 1] * to_centre[..., 0])
     distances = (areas / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
-    inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(distances, 1e-9))[:, None, None]
+    inset = centre + (corners - centre) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(distances, 1e-9))[:, None, None]
     in_range = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
     rounded = np.rint((np.where(in_range[:, None, None], inset, 0.0) - 0.5) * (1 << POLYGON_SHIFT)).astype(np.int32)
     return [polygon if is_in_range else None for polygon, is_in_range in zip(rounded, in_range.tolist(), strict=True)]

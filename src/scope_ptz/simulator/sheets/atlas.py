@@ -193,12 +193,12 @@ class Atlas:
         memory = self._memory
         if self._tile_bytes is None or memory is None:
             return
-        free_before = min(self._readers, default=self._clock)
+        releasable_before = min(self._readers, default=self._clock)
         row_bytes = self.sheet[0].nbytes
         shelf_bytes = {shelf: (self._shelves[shelf].bottom - self._shelves[shelf].top) * row_bytes for shelf in self._last_used}
         total = sum(shelf_bytes.values())
         for shelf in sorted(self._last_used, key=self._last_used.__getitem__):
-            if total <= self._tile_bytes or self._last_used[shelf] >= free_before:
+            if total <= self._tile_bytes or self._last_used[shelf] >= releasable_before:
                 return
             self._ready.difference_update(self._shelves[shelf].pictures)
             memory.release_rows(self._shelves[shelf].top, self._shelves[shelf].bottom)

@@ -68,30 +68,30 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
     Raises:
         PackError: The pictures do not fit.
     """
-    scaled = [[(max(1, round(w * s)), max(1, round(h * s))) for s in scales] for w, h in sizes]
-    flat = [(i, k) for i, sized in enumerate(scaled) for k in range(len(sized))]
+    scaled_sizes = [[(max(1, round(w * s)), max(1, round(h * s))) for s in scales] for w, h in sizes]
+    picture_scales = [(i, k) for i, sized in enumerate(scaled_sizes) for k in range(len(sized))]
 
     def sort_key(at: tuple[int, int]) -> tuple[float, ...]:
         i, k = at
-        height = scaled[i][k][1]
+        height = scaled_sizes[i][k][1]
         if pans_deg is None:
             return (-height,)
         return (0.0, -height) if i == 0 else (1.0, -(-height // HEIGHT_CLASS_PX), k, pans_deg[i - 1])
 
-    flat.sort(key=sort_key)
-    sheet_width = max(w for sized in scaled for w, _ in sized) + 2 * BORDER_PX
+    picture_scales.sort(key=sort_key)
+    sheet_width = max(w for sized in scaled_sizes for w, _ in sized) + 2 * BORDER_PX
     while sheet_width <= MAX_SIDE_PX:
-        rows = _rows(flat, scaled, sheet_width, apart=pans_deg is not None)
+        rows = _fill_rows(picture_scales, scaled_sizes, sheet_width, separate_panorama=pans_deg is not None)
         slots: dict[tuple[int, int], Slot] = {}
         shelves: list[Shelf] = []
         top = 0
         for row in rows:
             x = 0
             for i, k in row:
-                width, height = scaled[i][k]
+                width, height = scaled_sizes[i][k]
                 slots[i, k] = Slot(x + BORDER_PX, top + BORDER_PX, width, height, len(shelves))
                 x += width + 2 * BORDER_PX
-            bottom = top + max(scaled[i][k][1] for i, k in row) + 2 * BORDER_PX
+            bottom = top + max(scaled_sizes[i][k][1] for i, k in row) + 2 * BORDER_PX
             shelves.append(Shelf(top, bottom, tuple(row)))
             top = bottom
         if top <= MAX_SIDE_PX:
@@ -104,15 +104,15 @@ def lay_out(sizes: Sequence[Size], scales: Sequence[float], pans_deg: Sequence[f
     )
 
 
-def _rows(
-    flat: Sequence[tuple[int, int]], scaled: Sequence[Sequence[Size]], sheet_width: int, *, apart: bool
+def _fill_rows(
+    picture_scales: Sequence[tuple[int, int]], scaled_sizes: Sequence[Sequence[Size]], sheet_width: int, *, separate_panorama: bool
 ) -> list[list[tuple[int, int]]]:
-    """Fill rows from left to right. If ``apart``, the panorama and the tiles never share a row."""
+    """Fill rows from left to right. If ``separate_panorama``, the panorama and the tiles never share a row."""
     rows: list[list[tuple[int, int]]] = []
     x = sheet_width + 1
-    for i, k in flat:
-        width = scaled[i][k][0] + 2 * BORDER_PX
-        if x + width > sheet_width or (apart and (rows[-1][0][0] == 0) != (i == 0)):
+    for i, k in picture_scales:
+        width = scaled_sizes[i][k][0] + 2 * BORDER_PX
+        if x + width > sheet_width or (separate_panorama and (rows[-1][0][0] == 0) != (i == 0)):
             rows.append([])
             x = 0
         rows[-1].append((i, k))

@@ -1,4 +1,4 @@
-"""Sheets that store instance numbers in one byte per pixel instead of two."""
+"""Sheets that store instance IDs in one byte per pixel instead of two."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ from scope_ptz.simulator.sheets.atlas import STRIP_PX, Atlas, SheetCache
 from scope_ptz.simulator.sheets.layout import BORDER_PX, Size, Slot
 
 RARE = 255
-"""The code shared by all numbers without a separate code."""
+"""The code shared by all IDs without a code of their own."""
 
 BLOCK_HEIGHT_PX, BLOCK_WIDTH_PX = 32, 64
-"""Size of a block of ``SparseNumbers``: 4096 bytes, at two bytes per pixel."""
+"""Size of a block of ``SparseIds``: 4096 bytes, at two bytes per pixel."""
 
 _HAS_16_BIT_LUT = int(cv2.__version__.split(".")[0]) >= 5
 """Whether OpenCV's ``LUT`` accepts 16-bit numbers. It takes a third of the time of ``np.take``."""
 
-Numbers = NDArray[np.uint16]
+Ids = NDArray[np.uint16]
 Indices = NDArray[np.integer]
 
 
-class NumberCodes:
-    """One-byte codes for a viewpoint's most common numbers.
+class IdCodes:
+    """One-byte codes for a viewpoint's most common instance IDs.
 
     Args:
-        common: Distinct numbers, the most common first. The first 254 from 1 to 65535 get codes from 1 to 254; 0 has the code 0.
+        common: Distinct IDs, the most common first. The first 254 from 1 to 65535 get codes from 1 to 254; 0 has the code 0.
     """
 
     def __init__(self, common: Iterable[int]) -> None:
-        self._numbers = np.zeros(256, np.uint16)
+        self._ids = np.zeros(256, np.uint16)
         self._codes = np.full(65536, RARE, np.uint8)
         self._codes[0] = 0
         valid = (number for number in common if 0 < number < len(self._codes))
         for code, number in enumerate(islice(valid, RARE - 1), start=1):
-            self._numbers[code], self._codes[number] = number, code
+            self._ids[code], self._codes[number] = number, code
 
-    def encode(self, numbers: Numbers) -> NDArray[np.uint8]:
-        """Return the codes for numbers, ``RARE`` where a number has no code."""
-        if _HAS_16_BIT_LUT and numbers.size:
-            return np.asarray(cv2.LUT(numbers, self._codes), np.uint8).reshape(numbers.shape)
-        return np.asarray(np.take(self._codes, numbers))
+    def encode(self, ids: Ids) -> NDArray[np.uint8]:
+        """Return the codes for IDs, ``RARE`` where an ID has no code."""
+        if _HAS_16_BIT_LUT and ids.size:
+            return np.asarray(cv2.LUT(ids, self._codes), np.uint8).reshape(ids.shape)
+        return np.asarray(np.take(self._codes, ids))
 
-    def decode(self, codes: NDArray[np.uint8]) -> Numbers:
-        """Return the numbers for codes, in an array of the same shape. Where the code is ``RARE``, the number is undefined."""
+    def decode(self, codes: NDArray[np.uint8]) -> Ids:
+        """Return the IDs for codes, in an array of the same shape. Where the code is ``RARE``, the ID is undefined."""
         if not codes.size:
             return np.zeros(codes.shape, np.uint16)
-        return np.asarray(cv2.LUT(codes, self._numbers), np.uint16).reshape(codes.shape)
+        return np.asarray(cv2.LUT(codes, self._ids), np.uint16).reshape(codes.shape)
 
 
-class SparseNumbers:
-    """Numbers for a few pixels of a sheet. Memory is used only around these pixels.
+class SparseIds:
+    """Instance IDs for a few pixels of a sheet. Memory is used only around these pixels.
 
     The pixels are stored in blocks that each fill one memory page. In row order, almost every page would contain one of them.
 
@@ -67,20 +67,20 @@ class SparseNumbers:
     def __init__(self, memory: NDArray[np.uint8], shape: tuple[int, int]) -> None:
         size = self.bytes_for(shape)
         self._blocks_per_row = -(-shape[1] // BLOCK_WIDTH_PX)
-        self._numbers: Numbers = memory.reshape(-1)[:size].view(np.uint16)
+        self._ids: Ids = memory.reshape(-1)[:size].view(np.uint16)
 
     @staticmethod
     def bytes_for(shape: tuple[int, int]) -> int:
-        """Return the number of bytes needed to store a number for every pixel of a sheet."""
+        """Return the number of bytes needed to store an ID for every pixel of a sheet."""
         return 2 * -(-shape[0] // BLOCK_HEIGHT_PX) * -(-shape[1] // BLOCK_WIDTH_PX) * BLOCK_HEIGHT_PX * BLOCK_WIDTH_PX
 
-    def write(self, rows: Indices, columns: Indices, numbers: Numbers) -> None:
-        """Store numbers for pixels."""
-        self._numbers[self._places(rows, columns)] = numbers
+    def write(self, rows: Indices, columns: Indices, ids: Ids) -> None:
+        """Store the IDs of pixels."""
+        self._ids[self._places(rows, columns)] = ids
 
-    def read(self, rows: Indices, columns: Indices) -> Numbers:
-        """Return the numbers that were written for pixels."""
-        return self._numbers[self._places(rows, columns)]
+    def read(self, rows: Indices, columns: Indices) -> Ids:
+        """Return the stored IDs of pixels."""
+        return self._ids[self._places(rows, columns)]
 
     def _places(self, rows: Indices, columns: Indices) -> Indices:
         row, y = np.divmod(rows, BLOCK_HEIGHT_PX)
@@ -88,14 +88,14 @@ class SparseNumbers:
         return ((row * self._blocks_per_row + column) * BLOCK_HEIGHT_PX + y) * BLOCK_WIDTH_PX + x
 
 
-class NumberAtlas(Atlas):
-    """An atlas of numbers. Its sheet contains codes; numbers without a code are stored separately.
+class IdAtlas(Atlas):
+    """An atlas of instance IDs. Its sheet contains codes; IDs without a code are stored separately.
 
     Args:
         sizes: As in ``Atlas``.
         load: As in ``Atlas``.
-        codes: The codes for the viewpoint's numbers.
-        decode: Converts rows of a loaded picture to numbers; by default, they are used unchanged.
+        codes: The codes for the viewpoint's instance IDs.
+        decode: Converts rows of a loaded picture to IDs; by default, they are used unchanged.
         disk_cache: As in ``Atlas``.
     """
 
@@ -103,63 +103,63 @@ class NumberAtlas(Atlas):
         self,
         sizes: Sequence[Size],
         load: Callable[[Atlas, int], NDArray[Any]],
-        codes: NumberCodes,
+        codes: IdCodes,
         *,
-        decode: Callable[[NDArray[Any]], Numbers] | None = None,
+        decode: Callable[[NDArray[Any]], Ids] | None = None,
         disk_cache: SheetCache | None = None,
     ) -> None:
         super().__init__(sizes, load, np.uint8, 1, decode=decode, disk_cache=disk_cache)
         self._codes = codes
         memory, height = self.sheet, self._size[1]
         self.sheet = memory[:height]
-        self._rare = SparseNumbers(memory[height:], (height, memory.shape[1]))
+        self._rare = SparseIds(memory[height:], (height, memory.shape[1]))
 
     def _rows(self, width: int, height: int) -> int:
-        # Numbers without a code are stored in separate rows below the sheet.
-        return height - (-SparseNumbers.bytes_for((height, width)) // width)
+        # IDs without a code are stored in separate rows below the sheet.
+        return height - (-SparseIds.bytes_for((height, width)) // width)
 
-    def sample(self, positions: NDArray[Any]) -> Numbers:
-        """Return the (h, w) numbers in the pixels nearest to (h, w, 2) positions on the sheet."""
+    def sample(self, positions: NDArray[Any]) -> Ids:
+        """Return the (h, w) instance IDs in the pixels nearest to (h, w, 2) positions on the sheet."""
         codes = self.sample_codes(positions)
-        numbers = self._codes.decode(codes)
+        ids = self._codes.decode(codes)
         rare = codes == RARE
         if rare.any():
             x, y = np.rint(positions[rare]).astype(np.int64).T  # rounded as in ``cv2.remap``
-            numbers[rare] = self._rare.read(y, x)
-        return numbers
+            ids[rare] = self._rare.read(y, x)
+        return ids
 
     def sample_codes(self, positions: NDArray[Any]) -> NDArray[np.uint8]:
-        """Return the (h, w) codes for the numbers that ``sample`` returns. Pixels with different codes have different numbers."""
+        """Return the (h, w) codes for the IDs that ``sample`` returns. Pixels with different codes have different IDs."""
         return np.asarray(cv2.remap(self.sheet, positions, None, cv2.INTER_NEAREST), np.uint8)
 
-    def at(self, rows: Indices, columns: Indices) -> Numbers:
-        """Return the numbers at rows and columns of the sheet, which are broadcast together."""
+    def at(self, rows: Indices, columns: Indices) -> Ids:
+        """Return the IDs at rows and columns of the sheet, which are broadcast together."""
         codes = self.sheet[rows, columns]
-        numbers = self._codes.decode(codes)
+        ids = self._codes.decode(codes)
         rare = codes == RARE
         if rare.any():
             y, x = (np.broadcast_to(indices, codes.shape)[rare] for indices in (rows, columns))
-            numbers[rare] = self._rare.read(y, x)
-        return numbers
+            ids[rare] = self._rare.read(y, x)
+        return ids
 
-    def _fill(self, slot: Slot, picture: NDArray[Any], sharpening: float, index: int) -> None:  # noqa: ARG002 - numbers stay exact
+    def _fill(self, slot: Slot, picture: NDArray[Any], sharpening: float, index: int) -> None:  # noqa: ARG002 - IDs stay exact
         border = BORDER_PX
         for top in range(0, slot.height, STRIP_PX):
             strip = picture[top : top + STRIP_PX]
-            numbers = strip if self._decode is None else self._decode(strip)
+            ids = strip if self._decode is None else self._decode(strip)
             side_border = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
-            numbers = cv2.copyMakeBorder(numbers, 0, 0, border, border, side_border)
+            ids = cv2.copyMakeBorder(ids, 0, 0, border, border, side_border)
             y = slot.y + top
-            self._write(y, slot.x - border, numbers)
+            self._write(y, slot.x - border, ids)
             if top == 0:
-                self._write(y - border, slot.x - border, np.repeat(numbers[:1], border, axis=0))
-            if top + len(numbers) == slot.height:
-                self._write(y + len(numbers), slot.x - border, np.repeat(numbers[-1:], border, axis=0))
+                self._write(y - border, slot.x - border, np.repeat(ids[:1], border, axis=0))
+            if top + len(ids) == slot.height:
+                self._write(y + len(ids), slot.x - border, np.repeat(ids[-1:], border, axis=0))
 
-    def _write(self, y: int, x: int, numbers: Numbers) -> None:
-        """Write numbers to the part of the sheet that starts at row ``y`` and column ``x``."""
-        codes = self._codes.encode(numbers)
+    def _write(self, y: int, x: int, ids: Ids) -> None:
+        """Write IDs to the part of the sheet that starts at row ``y`` and column ``x``."""
+        codes = self._codes.encode(ids)
         self.sheet[y : y + codes.shape[0], x : x + codes.shape[1]] = codes
         if codes.max() == RARE:
             rows, columns = np.nonzero(codes == RARE)
-            self._rare.write(rows + y, columns + x, numbers[rows, columns])
+            self._rare.write(rows + y, columns + x, ids[rows, columns])

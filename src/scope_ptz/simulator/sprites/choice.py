@@ -28,7 +28,7 @@ FADE_DEG = 12.0
 MAX_STRETCH = 1.25
 """Maximum factor by which a sprite is stretched or compressed to match the actor's current aspect."""
 
-STIFFNESS = 0.02
+REGULARIZATION_WEIGHT = 0.02
 """Weight of the unwarped sprite in the least-squares fit in ``warp_matrix``, relative to the actor's squared size in the sprite."""
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ class WeightedSprite(NamedTuple):
     weight: float
 
 
-class SpriteChoice:
+class SpriteSelector:
     """Selects one actor's sprites for a view.
 
     Args:
@@ -148,7 +148,7 @@ def warp_matrix(actor: SceneActor, stored: Aspect, now: Aspect) -> Floats:
     """
     width, length, height = actor.size_m
     sprite_box, current_box = (_project_box(aspect, length, width, height) for aspect in (stored, now))
-    regularization = STIFFNESS * float((sprite_box**2).sum()) * np.eye(2)
+    regularization = REGULARIZATION_WEIGHT * float((sprite_box**2).sum()) * np.eye(2)
     fitted = (current_box @ sprite_box.T + regularization) @ np.linalg.inv(sprite_box @ sprite_box.T + regularization)
     left, stretch, right = np.linalg.svd(fitted)
     return np.asarray(left @ np.diag(np.clip(stretch, 1 / MAX_STRETCH, MAX_STRETCH)) @ right)

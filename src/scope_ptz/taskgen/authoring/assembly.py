@@ -60,17 +60,17 @@ class Builder:
     def build(self) -> BuiltTasks:
         """Select and word the tasks of every category, then the paraphrases and reactions."""
         built = BuiltTasks()
-        chosen: dict[Category, list[ChosenDraft]] = {}
+        chosen_by_category: dict[Category, list[ChosenDraft]] = {}
         pools = self._drafts_by_category()
         for category, quota in self.quotas.items():
-            chosen[category] = Selection(category, quota, self.shared, self.seed).fill(pools[category])
-            if (missing := quota - len(chosen[category])) > 0:
+            chosen_by_category[category] = Selection(category, quota, self.shared, self.seed).fill(pools[category])
+            if (missing := quota - len(chosen_by_category[category])) > 0:
                 built.missing[category] = missing
-            self.progress(f"{category}: {len(chosen[category])} of {quota}")
-        for category, rows in chosen.items():
-            self._assign_ids(category, rows)
-            built.tasks += [_create_task(row, row.text) for row in rows]
-        built.tasks += self._create_paraphrases(chosen)
+            self.progress(f"{category}: {len(chosen_by_category[category])} of {quota}")
+        for category, chosen_drafts in chosen_by_category.items():
+            self._assign_ids(category, chosen_drafts)
+            built.tasks += [_create_task(chosen, chosen.text) for chosen in chosen_drafts]
+        built.tasks += self._create_paraphrases(chosen_by_category)
         if self.quotas is QUOTAS:
             extra, missing = create_reactions(self.scenes, self.seed, REACTION_TASKS)
             built.tasks += extra
@@ -89,59 +89,64 @@ class Builder:
             self.progress(f"{drafts.scene.name}: {number} drafts")
         return pools
 
-    def _assign_ids(self, category: Category, rows: list[ChosenDraft]) -> None:
+    def _assign_ids(self, category: Category, chosen_drafts: list[ChosenDraft]) -> None:
         """Assign an id to every selected draft, and link the two tasks of each pair."""
         counts: Counter[str] = Counter()
-        for row in rows:
-            counts[row.scene] += 1
-            row.id = f"{DATASET}-{row.scene}-{category.replace('_', '-')}-{counts[row.scene]:03d}"
-        by_draft = {id(row.draft): row for row in rows}
-        for row in rows:
-            if row.draft.twin is not None:
-                twin = by_draft[id(row.draft.twin)]
-                row.pair, twin.pair = twin.id, row.id
+        for chosen in chosen_drafts:
+            counts[chosen.scene] += 1
+            chosen.id = f"{DATASET}-{chosen.scene}-{category.replace('_', '-')}-{counts[chosen.scene]:03d}"
+        by_draft = {id(chosen.draft): chosen for chosen in chosen_drafts}
+        for chosen in chosen_drafts:
+            if chosen.draft.twin is not None:
+                twin = by_draft[id(chosen.draft.twin)]
+                chosen.pair, twin.pair = twin.id, chosen.id
 
-    def _create_paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
+    def _create_paraphrases(self, chosen_by_category: dict[Category, list[ChosenDraft]]) -> list[Task]:
         """Return additional tasks that paraphrase some core tasks, which are taken from each category in turn."""
         number = max(1, PARAPHRASED_TASKS * sum(self.quotas.values()) // sum(QUOTAS.values()))
         paraphrases = list[Task]()
-        candidates = {c: [row for row in rows if len(row.variants) >= EXTRA_WORDINGS] for c, rows in chosen.items()}
-        for rows in candidates.values():
-            rows.sort(key=lambda row: row.draft.digest(f"{self.seed}:paraphrases"))
+        candidates = {
+            c: [chosen for chosen in chosen_drafts if len(chosen.variants) >= EXTRA_WORDINGS]
+            for c, chosen_drafts in chosen_by_category.items()
+        }
+        for chosen_drafts in candidates.values():
+            chosen_drafts.sort(key=lambda chosen: chosen.draft.digest(f"{self.seed}:paraphrases"))
         paraphrased = 0
         while paraphrased < number and any(candidates.values()):
-            for rows in candidates.values():
-                if rows and paraphrased < number:
-                    row, paraphrased = rows.pop(), paraphrased + 1
-                    texts = [text for text in dict.fromkeys(row.variants) if text not in self.shared.texts][:EXTRA_WORDINGS]
+            for chosen_drafts in candidates.values():
+                if chosen_drafts and paraphrased < number:
+                    chosen, paraphrased = chosen_drafts.pop(), paraphrased + 1
+                    texts = [text for text in dict.fromkeys(chosen.variants) if text not in self.shared.texts][:EXTRA_WORDINGS]
                     self.shared.texts.update(texts)
-                    paraphrases += [_create_task(row, text, n) for n, text in enumerate(texts, 1)]
+                    paraphrases += [_create_task(chosen, text, n) for n, text in enumerate(texts, 1)]
         return paraphrases
 
 
-def _create_task(row: ChosenDraft, text: str, wording: int = 0) -> Task:
-    draft, place = row.draft, row.draft.place
+def _create_task(chosen: ChosenDraft, text: str, wording_number: int = 0) -> Task:
+    draft, place = chosen.draft, chosen.draft.place
     ends_at_place = draft.program is None and not draft.ends_zoomed
     behaviour = draft.behaviour or (Behaviour(final=place.final) if ends_at_place else Behaviour())
     return Task(
-        id=f"{row.id.replace(f'-{row.scene}-', f'-{row.scene}-wording-')}{wording}" if wording else row.id,
+        id=f"{chosen.id.replace(f'-{chosen.scene}-', f'-{chosen.scene}-wording-')}{wording_number}"
+        if wording_number
+        else chosen.id,
         dataset=DATASET,
-        stratum="paraphrase" if wording else "core",
-        scene=row.scene,
+        stratum="paraphrase" if wording_number else "core",
+        scene=chosen.scene,
         preset=place.start,
         time_s=place.scene.file.start_s,
         instruction=text,
         category=draft.category,
         scope="full" if place.swept else "current",
-        difficulty=difficulty(draft.calls, draft.weight, swept=place.swept),
+        difficulty=difficulty(draft.calls, draft.object_count, swept=place.swept),
         expected=draft.expected,
         behaviour=behaviour,
         evidence=draft.evidence,
         reference=draft.calls,
         needs=draft.needs if draft.needs is not None else place.needs,
         tags=(*draft.tags, f"sort:{draft.question_type}"),
-        pair=None if wording else row.pair,
-        paraphrase_of=row.id if wording else None,
+        pair=None if wording_number else chosen.pair,
+        paraphrase_of=chosen.id if wording_number else None,
     )
 
 

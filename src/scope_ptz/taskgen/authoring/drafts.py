@@ -1,4 +1,4 @@
-"""Task drafts: questions and commands about a place that have no final wording and no id yet."""
+"""Task drafts: questions and commands that have no final wording and no id yet."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.tools.arguments import View
 
-# Placeholders of the sentence frames: {d} is the question in its direct form and {i} the question as a clause. {m} is the moves as
-# a complete phrase, and {l} is the moves as a phrase to which "and ..." can be added. {D}, {M} and {L} begin with a capital letter.
+# Placeholders of the sentence frames: {d} is the question in direct form, and {i} is the question as a clause. {m} is a complete
+# phrase for the moves, and {l} is a phrase for them to which "and ..." can be added. {D}, {M} and {L} begin with a capital letter.
 # {p} is a preset.
 _MOVE_PATTERNS = (
     "{M}. {D}", "{L} and tell me {i}.", "{L}, then tell me {i}.", "Please {l} and let me know {i}.", "{M}: {d}",
@@ -73,9 +73,9 @@ class TaskDraft:
         behaviour: What a run must do besides answering.
         needs: The actions that an agent must take before it can answer. By default, those of the place.
         tags: The task's tags.
-        weight: Number of objects to tell apart, which contributes to the difficulty.
+        object_count: Number of objects that an agent must distinguish, which contributes to the difficulty.
         twin: For a draft about an absent object, the draft with the same wording about a present one.
-        answer_key: The answer as a short text, which the selection balances.
+        answer_key: The answer in short form. The selection balances the answers.
     """
 
     category: Category
@@ -91,7 +91,7 @@ class TaskDraft:
     behaviour: Behaviour | None = None
     needs: tuple[Need, ...] | None = None
     tags: tuple[str, ...] = ()
-    weight: int = 1
+    object_count: int = 1
     twin: TaskDraft | None = None
     answer_key: str = ""
 
@@ -151,18 +151,18 @@ class SentenceFrames:
         self.used: Counter[str] = Counter()
         self.texts = texts
 
-    def word(self, draft: TaskDraft, rng: random.Random, like: str | None = None) -> tuple[str, str] | None:
+    def word(self, draft: TaskDraft, rng: random.Random, frame_name: str | None = None) -> tuple[str, str] | None:
         """Phrase a draft with one of the least used frames.
 
         Args:
             draft: The draft.
             rng: Source of the random choices.
-            like: Name of the only frame to use, for the twin of a draft; None for any frame.
+            frame_name: Name of the only frame to use, if the draft's twin already uses it; None for any frame.
 
         Returns:
             The instruction and the name of its frame; None if all wordings are used.
         """
-        options = [o for o in self._options(draft, rng) if o[0] not in self.texts and (like is None or o[1] == like)]
+        options = [o for o in self._options(draft, rng) if o[0] not in self.texts and (frame_name is None or o[1] == frame_name)]
         if not options:
             return None
         lowest = min(self.used[frame] for _, frame in options)
@@ -182,15 +182,17 @@ class SentenceFrames:
             words = {"d": direct, "D": capitalise(direct), "i": clause}
             name = f"{draft.question_type}/{n}"
             if place.is_start_view:
-                options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_START_VIEW_PATTERNS)]
+                options += [(pattern.format(**words), f"{name}/stay{k}") for k, pattern in enumerate(_START_VIEW_PATTERNS)]
                 continue
             if place.preset is not None and not place.swept:
-                options += [(w.format(p=place.preset, **words), f"{name}/preset{k}") for k, w in enumerate(_PRESET_PATTERNS)]
+                options += [
+                    (pattern.format(p=place.preset, **words), f"{name}/preset{k}") for k, pattern in enumerate(_PRESET_PATTERNS)
+                ]
             if place.swept and not place.calls:
-                options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_SWEEP_PATTERNS)]
-            for k, wrapper in enumerate(_MOVE_PATTERNS):
+                options += [(pattern.format(**words), f"{name}/around{k}") for k, pattern in enumerate(_SWEEP_PATTERNS)]
+            for k, pattern in enumerate(_MOVE_PATTERNS):
                 moves, before_and = place.move_phrases(rng)
-                text = wrapper.format(m=moves, M=capitalise(moves), l=before_and, L=capitalise(before_and), **words)
+                text = pattern.format(m=moves, M=capitalise(moves), l=before_and, L=capitalise(before_and), **words)
                 options.append((text, f"{name}/{k}"))
         return options
 
@@ -203,7 +205,7 @@ def evidence_view(
     Args:
         place: The view, or the sweep.
         shows: The answer that the view supports.
-        about: Words that a perception call about this evidence mentions.
+        about: Words for the subject of the evidence. A perception call must mention at least one of them.
         items: The objects from which the answer follows.
         whole: Whether the whole view is evidence, not only its items. A run must then observe all of it, with at least 60% of the
             pixels per degree that the place's view has.
@@ -246,13 +248,13 @@ def query_call(question: str, place: TaskPlace) -> ProgramCall:
 Difficulty = Literal["easy", "medium", "hard"]
 
 
-def difficulty(calls: Sequence[ProgramCall], size: float, *, swept: bool) -> Difficulty:
+def difficulty(calls: Sequence[ProgramCall], object_count: float, *, swept: bool) -> Difficulty:
     """Return the difficulty of a task.
 
     Args:
         calls: The calls of the reference program.
-        size: Number of objects to tell apart.
+        object_count: Number of objects that an agent must distinguish.
         swept: Whether the task needs a sweep.
     """
-    points = (len(calls) > 2) + (len(calls) > 4) + (size > 4) + (size > 9) + swept
+    points = (len(calls) > 2) + (len(calls) > 4) + (object_count > 4) + (object_count > 9) + swept
     return "easy" if points == 0 else "medium" if points == 1 else "hard"

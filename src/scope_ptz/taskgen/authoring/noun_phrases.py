@@ -71,9 +71,9 @@ def with_the(name: str) -> str:
     return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
 
 
-def join_names(names: Sequence[str], word: str = "and") -> str:
-    """Join names with commas, and the last two with the conjunction ``word``."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
+def join_names(names: Sequence[str], conjunction: str = "and") -> str:
+    """Join names with commas, and the last two with a conjunction."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {conjunction} {names[-1]}"
 
 
 def everyday_name(category: str) -> str:
@@ -122,11 +122,13 @@ def answer_words(kind: Kind) -> Wordings:
 
 def object_words(*kinds: Kind) -> Wordings:
     """Return words for objects of these kinds. A perception call about such objects mentions at least one of the words."""
-    words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_OTHER_WORDS.get(kind.category, ())))
+    words = (
+        word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_CATEGORY_SYNONYMS.get(kind.category, ()))
+    )
     return tuple(dict.fromkeys(words))
 
 
-_OTHER_WORDS = {"person": ("anyone", "people"), "lorry": ("truck",)}
+_CATEGORY_SYNONYMS = {"person": ("anyone", "people"), "lorry": ("truck",)}
 
 
 def plain_colour(colour: object) -> str | None:

@@ -21,7 +21,7 @@ from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Sce
 from scope_ptz.taskgen.facts.robust import RobustTruth, ids_with_parts
 
 RECOGNISABLE_TEXT_PX = 8.0
-"""Minimum height of capital letters, in pixels, for a person to recognise an expected text."""
+"""Minimum height of capital letters, in pixels, for a person to recognise expected text."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class NamedThing:
     positional: bool = False
 
     @property
-    def the(self) -> str:
+    def with_the(self) -> str:
         """The name with its article."""
         return with_the(self.name)
 
@@ -120,7 +120,7 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, min_text_px: float =
 def is_recognisable(truth: RobustTruth, sighting: Sighting, name: str, min_text_px: float) -> bool:
     """Return whether a person can recognise an object by its name in this view.
 
-    If people know such an object by its lettering, as with signs and numbered bays, a text on it must contain a distinctive word
+    If people know such an object by its lettering, as with signs and numbered bays, the lettering must contain a distinctive word
     (or the number) of the name and be large enough to read.
     """
     thing = sighting.instance
@@ -191,7 +191,7 @@ def name_could_refer_to(other: SceneThing, name: str, thing: SceneThing) -> bool
 
 
 def _words_in(text: str) -> set[str]:
-    """Return the words and numbers in a text, in lower case."""
+    """Return the words and numbers in text, in lower case."""
     return set(re.findall(r"[^\W_]+", text.lower()))
 
 
@@ -237,10 +237,10 @@ def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedT
         things = truth.all_of(kind)
         if things is None or not 2 <= len(things) <= 9 or not is_complete_group(truth, kind):
             continue
-        for adjective, which in (("leftmost", 0), ("rightmost", -1)):
-            end = find_outermost(truth, things, which)
-            if end is not None and end.pixels >= min_pixels:
-                yield NamedThing(end, f"{adjective} {everyday_name(category)}", kind, positional=True)
+        for adjective, index in (("leftmost", 0), ("rightmost", -1)):
+            outermost = find_outermost(truth, things, index)
+            if outermost is not None and outermost.pixels >= min_pixels:
+                yield NamedThing(outermost, f"{adjective} {everyday_name(category)}", kind, positional=True)
         by_distance = sorted(things, key=lambda s: s.distance_m)
         if by_distance[1].distance_m > by_distance[0].distance_m * 1.2 and by_distance[0].pixels >= min_pixels:
             yield NamedThing(by_distance[0], f"nearest {everyday_name(category)}", kind, positional=True)
@@ -286,8 +286,8 @@ def is_complete_group(truth: RobustTruth, kind: Kind) -> bool:
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 
 
-def find_outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
-    """Return the leftmost object (``which`` is 0) or the rightmost one (-1); None if its neighbour is too close to it."""
+def find_outermost(truth: RobustTruth, things: Sequence[Sighting], index: int) -> Sighting | None:
+    """Return the leftmost object (``index`` is 0) or the rightmost one (-1); None if its neighbour is too close to it."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
-    pair = order[:2] if which == 0 else order[-2:]
-    return order[which] if truth.sort_by_position(pair, 0, 0.05) is not None else None
+    pair = order[:2] if index == 0 else order[-2:]
+    return order[index] if truth.sort_by_position(pair, 0, 0.05) is not None else None

@@ -24,7 +24,7 @@ from scope_ptz.taskgen.authoring.categories import (
     reasoning_tasks,
     single_call_tasks,
 )
-from scope_ptz.taskgen.authoring.categories.descriptor_tasks import Values
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import AttributeValues
 from scope_ptz.taskgen.authoring.drafts import TaskDraft
 from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
@@ -34,7 +34,7 @@ _CANDIDATE_VIEWS = 2  # number of random candidates for each such view; the one 
 _START_VIEWS = 3  # number of presets with questions about the start view, which need no move
 _MAX_GROUPS = 40  # maximum number of pairs of presets to compare, and of groups of three presets
 _MAX_PER_TYPE = 10  # maximum number of drafts per question type and view
-_READING_VIEWS = 36  # maximum number of views that are zoomed in to read a text, per scene
+_READING_VIEWS = 36  # maximum number of views that are zoomed in to read text, per scene
 
 
 class SceneDrafts:
@@ -47,7 +47,7 @@ class SceneDrafts:
         values: The attribute values in all scenes, which questions offer as options.
     """
 
-    def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:
+    def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: AttributeValues) -> None:
         self.scene, self.nouns, self.values = scene, nouns, values
         self._seed = f"{seed}:{scene.name}"
         self.places = ScenePlaces(scene, self._rng("places"))
@@ -86,7 +86,7 @@ class SceneDrafts:
 
     @cached_property
     def reading_views(self) -> list[TaskPlace]:
-        """Views that are zoomed in far enough to read a text, at most one for each object with lettering."""
+        """Views that are zoomed in far enough to read text, at most one for each object with lettering."""
         by_object: dict[str, TaskPlace] = {}
         texts = list(self.scene.file.texts)
         self._rng("reading").shuffle(texts)

@@ -50,7 +50,7 @@ MAX_FRAME_SHARE = 0.06  # maximum fraction of a category's tasks with the same s
 MAX_FROM_START = 3  # maximum number of tasks per category that can be answered from the start view
 
 # The cost of selecting another draft with the same trait, by trait.
-_WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "question type": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
+_TRAIT_COSTS = {"scene": 3.0, "viewpoint": 1.5, "question type": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
 
 CanAnswer = Callable[[TaskDraft], bool]
 """A function that returns whether ground-truth perception can answer the calls in a draft's reference program."""
@@ -103,7 +103,7 @@ class Selection:
         self.category, self.quota, self.shared = category, quota, shared
         self.seed = seed
         self.frames = SentenceFrames(shared.texts)
-        self.rows: list[ChosenDraft] = []
+        self.selected: list[ChosenDraft] = []
         self.used: defaultdict[str, Counter[Hashable]] = defaultdict(Counter)
         self.slack = 1.0
         self.max_per_frame = max(2, int(quota * MAX_FRAME_SHARE))
@@ -121,9 +121,9 @@ class Selection:
         for slack in (1.0, 1.2, 1.4, 1.6, 2.0, 3.0, _NO_LIMIT):
             # If there are too few drafts within the limits, the limits are raised step by step.
             self.slack, singles = slack, [draft for draft in pool if draft.twin is None]
-            while len(self.rows) < self.quota and self._add_best(singles, self._add_single):
+            while len(self.selected) < self.quota and self._add_best(singles, self._add_single):
                 pass
-        return self.rows
+        return self.selected
 
     def _add_best(self, pool: list[TaskDraft], add_draft: _AddDraft) -> bool:
         """Select the draft that improves the balance most, and return whether one was selected.
@@ -139,17 +139,17 @@ class Selection:
     def _cost(self, draft: TaskDraft) -> float:
         """Return the weighted number of times that a draft's traits have already been used."""
         twin = () if draft.twin is None else (("answer", draft.twin.answer_key),)
-        return sum(_WEIGHTS[name] * self.used[name][value] for name, value in (*draft.traits, *twin))
+        return sum(_TRAIT_COSTS[name] * self.used[name][value] for name, value in (*draft.traits, *twin))
 
     def _add_single(self, draft: TaskDraft) -> bool:
         return not self._exceeds_limits(draft) and self._add(draft) is not None
 
     def _exceeds_limits(self, draft: TaskDraft) -> bool:
         if draft.expected.kind == "yes_no":
-            return self.used["polar"][draft.question_type, draft.answer_key] >= self.shared.scale_limit(MAX_SAME_YES_NO)
+            return self.used["yes or no"][draft.question_type, draft.answer_key] >= self.shared.scale_limit(MAX_SAME_YES_NO)
         if draft.expected.kind == "action_only":
             return False
-        if self.used["same"][draft.place.scene.name, draft.key, draft.answer_key] >= int(self.slack * MAX_SAME_QUESTION):
+        if self.used["question"][draft.place.scene.name, draft.key, draft.answer_key] >= int(self.slack * MAX_SAME_QUESTION):
             return True
         limit = self.shared.scale_limit(MAX_SAME_ANSWER.get(self.category, self.quota))
         return self.used["unpaired"][draft.answer_key] >= int(self.slack * limit)
@@ -160,11 +160,11 @@ class Selection:
             return False
         if twin.full_key in self.shared.used_questions or draft.full_key in self.shared.used_questions:
             return False
-        row = self._add(draft)
-        if row is None:
+        chosen = self._add(draft)
+        if chosen is None:
             return False
-        if self._add(twin, frame=row.frame.split("/", 1)[1]) is None:
-            self._remove(row)
+        if self._add(twin, frame=chosen.frame.split("/", 1)[1]) is None:
+            self._remove(chosen)
             return False
         self.used["pairs"][draft.question_type] += 1
         return True
@@ -172,8 +172,8 @@ class Selection:
     def _add(self, draft: TaskDraft, frame: str | None = None) -> ChosenDraft | None:
         """Add a draft to the selection and return it.
 
-        Return None if its question is already used, it can be answered from the start view, a limit is reached, or no wording is
-        left. ``frame`` is the frame of the draft's twin, which it must share.
+        Return None if the question is already used or can be answered from the start view, if a limit is reached, or if no wording
+        is left. ``frame`` is the frame of its twin, which the draft must share.
         """
         if draft.full_key in self.shared.used_questions or is_answerable_from_start(draft):
             return None
@@ -183,7 +183,7 @@ class Selection:
         if (
             from_start_view
             and self.category != "single_call"
-            and self.used["stays"][True] >= self.shared.scale_limit(MAX_FROM_START)
+            and self.used["start view"][True] >= self.shared.scale_limit(MAX_FROM_START)
         ):
             return None
         rng = random.Random(draft.digest(self.seed))
@@ -201,29 +201,29 @@ class Selection:
         self.frames.record_use(*wording)
         self.shared.used_questions.add(draft.full_key)
         others = [self.frames.word(draft, rng) for _ in range(5)]
-        row = ChosenDraft(draft, *wording, variants=[o[0] for o in others if o is not None])
-        self.rows.append(row)
-        self._count_use(row, 1, paired=not is_unpaired)
-        self.used["stays"][True] += from_start_view
-        return row
+        chosen = ChosenDraft(draft, *wording, variants=[o[0] for o in others if o is not None])
+        self.selected.append(chosen)
+        self._count_use(chosen, 1, paired=not is_unpaired)
+        self.used["start view"][True] += from_start_view
+        return chosen
 
-    def _count_use(self, row: ChosenDraft, step: int, *, paired: bool) -> None:
-        for name, value in row.draft.traits:
-            self.used[name][value] += step
-        self.used["same"][row.scene, row.draft.key, row.draft.answer_key] += step
+    def _count_use(self, chosen: ChosenDraft, change: int, *, paired: bool) -> None:
+        for name, value in chosen.draft.traits:
+            self.used[name][value] += change
+        self.used["question"][chosen.scene, chosen.draft.key, chosen.draft.answer_key] += change
         if paired:
             return
-        self.used["unpaired"][row.draft.answer_key] += step
-        self.used["polar"][row.draft.question_type, row.draft.answer_key] += step
-        for index in answer_positions(row.draft, row.text):
-            self.used["position"][index] += step
+        self.used["unpaired"][chosen.draft.answer_key] += change
+        self.used["yes or no"][chosen.draft.question_type, chosen.draft.answer_key] += change
+        for index in answer_positions(chosen.draft, chosen.text):
+            self.used["position"][index] += change
 
-    def _remove(self, row: ChosenDraft) -> None:
-        self.rows.remove(row)
-        self._count_use(row, -1, paired=True)
-        self.shared.used_questions.discard(row.draft.full_key)
-        self.shared.texts.discard(row.text)
-        self.frames.used[row.frame] -= 1
+    def _remove(self, chosen: ChosenDraft) -> None:
+        self.selected.remove(chosen)
+        self._count_use(chosen, -1, paired=True)
+        self.shared.used_questions.discard(chosen.draft.full_key)
+        self.shared.texts.discard(chosen.text)
+        self.frames.used[chosen.frame] -= 1
 
 
 def answer_positions(draft: TaskDraft, text: str) -> list[str]:

@@ -215,7 +215,7 @@ class ScenePlaces:
         names = list(self.presets)
         for attempt in range(3000):
             name = names[attempt % len(names)]
-            call = self._adjustment()
+            call = self._random_adjustment()
             at = preset_position(self.presets[name])
             destination = apply_adjustment(at, call)
             if destination is None:
@@ -226,7 +226,7 @@ class ScenePlaces:
             else:
                 yield TaskPlace(self.scene, name, (call,), destination)
 
-    def _adjustment(self) -> ProgramCall:
+    def _random_adjustment(self) -> ProgramCall:
         rng = self._rng
         pan = rng.choice((-1, 1)) * rng.choice((10, 12, 15, 18, 20, 25, 30, 35, 40, 45, 50, 60, 75, 90, 120))
         tilt = rng.choice((-15, -12, -10, -8, -5, 4, 5, 8, 10))
@@ -255,10 +255,10 @@ class ScenePlaces:
             The place; None if the viewpoint has no preset, if a factor of up to 4 does not reach the zoom, or if a limit of the
             camera prevents the move.
         """
-        nearby_presets = [p for p in self.presets.values() if p.viewpoint == viewpoint]
-        if not nearby_presets:
+        viewpoint_presets = [p for p in self.presets.values() if p.viewpoint == viewpoint]
+        if not viewpoint_presets:
             return None
-        preset = min(nearby_presets, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
+        preset = min(viewpoint_presets, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
         at = preset_position(preset)
         pan, tilt = (pan_deg - at.pose.pan_deg + 180) % 360 - 180, tilt_deg - at.pose.tilt_deg
         factor = next((f for f in (1.5, 2.0, 2.5, 3.0, 4.0) if at.pose.zoom * f >= zoom), None)

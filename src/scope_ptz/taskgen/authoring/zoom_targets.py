@@ -31,16 +31,16 @@ def close_up_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float,
         The pose and the fraction; None if no pose shows the whole outline.
     """
     outline = direction(*np.array(hull_deg, dtype=np.float64).T)
-    middle = outline.mean(axis=0)
+    centre = outline.mean(axis=0)
     pose, fill = Pose(), 0.0
     for _ in range(10):
-        pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+        pan, tilt = (float(v) for v in pan_tilt_deg(centre))
         widest_view = Perspective(pan, tilt, TASK_CAMERA.optics.hfov_deg(1.0), TASK_CAMERA.width, TASK_CAMERA.height)
         points = widest_view.points(outline)
         if np.isnan(points).any():
             return None
         low, high = points.min(axis=0), points.max(axis=0)
-        middle = widest_view.directions((low + high) / 2)
+        centre = widest_view.directions((low + high) / 2)
         size = float((high - low).max())
         zoom = TASK_CAMERA.optics.zoom_for_focal(TASK_CAMERA.optics.focal(1.0) * FILL / max(size, 1e-6))
         pose = Pose(pan, tilt, min(max(zoom, zoom_limits[0]), zoom_limits[1]))
@@ -69,12 +69,12 @@ def close_up_place(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> T
 
 def target_framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
     """Return the framing that a task requires; None if the object is partly hidden or the zoom range is too small to frame it."""
-    close = close_up_place(place, sighting, thing)
+    close_up = close_up_place(place, sighting, thing)
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
-    if close is None or extent is None or sighting.visible_fraction < 0.97:
+    if close_up is None or extent is None or sighting.visible_fraction < 0.97:
         return None
     fill = (close_up_pose(extent.hull, (TASK_CAMERA.limits.min_zoom, TASK_CAMERA.limits.max_zoom)) or (Pose(), 0.0))[1]
-    close_truth = RobustTruth(place.scene, str(place.at.viewpoint), close.at.pose, place.truth.time_s)
+    close_truth = RobustTruth(place.scene, str(place.at.viewpoint), close_up.at.pose, place.truth.time_s)
     if not 0.7 <= fill <= 0.8 or not close_truth.visibility(thing.number):
         return None
     outline = tuple((round(pan, 3), round(tilt, 3)) for pan, tilt in extent.hull)

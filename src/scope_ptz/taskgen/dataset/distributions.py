@@ -46,7 +46,7 @@ def viewpoint(task: Task) -> str:
 
 
 def short_answer(task: Task) -> str:
-    """Return the correct answer as a short text. All actions share one text, and all absences share another."""
+    """Return the correct answer in short form. All actions have the same one, and so do all absences."""
     match task.expected:
         case ActionOnly():
             return "(an action)"

@@ -219,7 +219,7 @@ def _wrong_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
 
 
 def _misread_character(text: str, rng: random.Random) -> str:
-    """Return a text with one letter or digit replaced by a different one. "0" and "O" do not replace each other."""
+    """Return text with one letter or digit replaced by a different one. "0" and "O" do not replace each other."""
     positions = [index for index, letter in enumerate(text) if letter.isalnum()]
     index = rng.choice(positions)
     others = [

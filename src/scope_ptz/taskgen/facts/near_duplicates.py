@@ -19,7 +19,7 @@ MIN_SIMILARITY = 0.75
 
 
 def shingles(text: str) -> frozenset[str]:
-    """Return all five-character substrings of a text, after converting it to lower case and single spaces."""
+    """Return all five-character substrings of text, after converting it to lower case and single spaces."""
     normalised = f" {' '.join(re.findall(r'[a-z0-9]+', text.lower()))} "
     return frozenset(normalised[index : index + SHINGLE_CHARS] for index in range(max(1, len(normalised) - SHINGLE_CHARS + 1)))
 
@@ -72,7 +72,7 @@ class KnownTasks:
         if (key := question_key(task)) is not None:
             self._questions.setdefault(key, task.id)
 
-    def nearest(self, task: Task) -> NearDuplicate | None:
+    def most_similar(self, task: Task) -> NearDuplicate | None:
         """Return the most similar task; None if no task is a near-duplicate."""
         key = question_key(task)
         if key is not None and key in self._questions:

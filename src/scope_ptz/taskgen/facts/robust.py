@@ -52,10 +52,10 @@ If an object has more pixels but does not meet the definition of visible, no que
 """
 
 _MIN_FACING_COSINE = 0.2
-"""Minimum cosine of the angle between the line of sight and the normal of a text. Below it, the text is seen edge-on."""
+"""Minimum cosine of the angle between the line of sight and the normal of text. Below it, the text is seen edge-on."""
 
 SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
-"""Seconds after the start at which texts must also be legible if actors pass through the view."""
+"""Seconds after the start at which text must also be legible if actors pass through the view."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 """Seconds after the start at which the nearby poses are read, one for each pose. A sweep is read at three of these times."""
@@ -247,16 +247,16 @@ class RobustTruth:
         Args:
             sighting: The object.
             axis: 0 for left and right, 1 for upper and lower.
-            margin: Minimum distance from the middle line to the object's centre, as a fraction of the frame.
+            margin: Minimum distance from the centre line to the object's centre, as a fraction of the frame.
 
         Returns:
-            0 for left or upper, 1 for right or lower; None if the object is too close to the middle line.
+            0 for left or upper, 1 for right or lower; None if the object is too close to the centre line.
         """
         low, high = sighting.box[axis], sighting.box[axis + 2]
-        middles = [centre[axis] for centre in self.centres(sighting)]
-        if max(middles) < 0.5 - margin and high < 0.5 + margin / 2:
+        coordinates = [centre[axis] for centre in self.centres(sighting)]
+        if max(coordinates) < 0.5 - margin and high < 0.5 + margin / 2:
             return 0
-        return 1 if min(middles) > 0.5 + margin and low > 0.5 - margin / 2 else None
+        return 1 if min(coordinates) > 0.5 + margin and low > 0.5 - margin / 2 else None
 
     def sort_by_position(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
         """Sort objects from left to right (axis 0) or top to bottom (axis 1). Return None if two of them are too close together."""
@@ -270,7 +270,7 @@ class RobustTruth:
 
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
-        """Texts that are certainly legible, sorted from top to bottom and left to right."""
+        """Text that is certainly legible, sorted from top to bottom and left to right."""
         legible_ids = [
             {t.text.id for t in truth.texts if all(is_legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples
         ]
@@ -281,7 +281,7 @@ class RobustTruth:
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
     def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
-        """Return all texts on an object and its parts; None if one of them is only partly legible."""
+        """Return all text on an object and its parts; None if any of it is only partly legible."""
         part_ids = ids_with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
         shown = [t for t in self.samples[0].texts if t.text.parent in part_ids and t.unhidden_fraction > 0.3]
@@ -294,7 +294,7 @@ class RobustTruth:
         return self._item(sighting.instance.id, sighting.box, value, None)
 
     def text_item(self, text: TextSighting) -> Item:
-        """Return a text as evidence: its position, and the minimum height of its capitals in a run."""
+        """Return text as evidence: its position, and the minimum height of its capitals in a run."""
         cap_deg = text.cap_height_px / (self.projection.pixels_per_radian * np.pi / 180)
         return self._item(text.text.id, text.box, text.text.text, float(cap_deg))
 
@@ -304,14 +304,14 @@ class RobustTruth:
         """Return an evidence item for a box. The box is shrunk until its outline in pan and tilt lies inside the frame."""
         x0, y0, x1, y1 = box
         for _ in range(12):
-            middle_x, middle_y = (x0 + x1) / 2, (y0 + y1) / 2
-            ends = np.array([(x0, middle_y), (x1, middle_y), (middle_x, y1), (middle_x, y0)])
+            centre_x, centre_y = (x0 + x1) / 2, (y0 + y1) / 2
+            ends = np.array([(x0, centre_y), (x1, centre_y), (centre_x, y1), (centre_x, y0)])
             pans, tilts = pan_tilt_deg(self.projection.directions(ends))
             deg = (round(float(pans[0]), 3), round(float(min(tilts)), 3), round(float(pans[1]), 3), round(float(max(tilts)), 3))
             points = self.projection.points(box_directions(deg))
             if np.all((points > 0.012) & (points < 0.988)):
                 break
-            x0, x1, y0, y1 = (v + (m - v) * 0.15 for v, m in ((x0, middle_x), (x1, middle_x), (y0, middle_y), (y1, middle_y)))
+            x0, x1, y0, y1 = (v + (m - v) * 0.15 for v, m in ((x0, centre_x), (x1, centre_x), (y0, centre_y), (y1, centre_y)))
             x0, x1, y0, y1 = (min(max(v, 0.015), 0.985) for v in (x0, x1, y0, y1))
         size = (points.max(axis=0) - points.min(axis=0)) * (self.projection.width, self.projection.height)
         cap_height_deg = None if cap_deg is None else round(cap_deg * 0.97, 4)
@@ -332,23 +332,23 @@ def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance
 
 
 @lru_cache(maxsize=4096)
-def ids_with_parts(scene: Scene, whole: str) -> frozenset[str]:
-    """Return the ids of an object, of its parts, and of their parts."""
-    ids = {whole}
+def ids_with_parts(scene: Scene, object_id: str) -> frozenset[str]:
+    """Return the ids of an object and of all its parts, including parts of parts."""
+    ids = {object_id}
     while new := {part.id for part in scene.file.instances if part.parent in ids} - ids:
         ids |= new
     return frozenset(ids)
 
 
 @lru_cache(maxsize=4096)
-def texts_of_object(scene: Scene, whole: str) -> tuple[SceneText, ...]:
-    """Return the texts on an object and its parts."""
-    part_ids = ids_with_parts(scene, whole)
+def texts_of_object(scene: Scene, object_id: str) -> tuple[SceneText, ...]:
+    """Return the text on an object and its parts."""
+    part_ids = ids_with_parts(scene, object_id)
     return tuple(text for text in scene.file.texts if text.parent in part_ids)
 
 
 def _is_facing(text: SceneText, point: NDArray[np.float64]) -> bool:
-    """Return whether the front of a text faces a point and is not seen edge-on."""
+    """Return whether the front of text faces a point and is not seen edge-on."""
     normal = np.cross(text.right, text.up)
     direction = point - np.array(text.centre_m)
     return float(normal @ direction) > _MIN_FACING_COSINE * float(np.linalg.norm(direction))
@@ -360,7 +360,7 @@ def is_visible(sighting: Sighting, scale: float = 1.0) -> bool:
 
 
 def is_legible(text: TextSighting, scale: float = 1.0) -> bool:
-    """Return whether a text meets the definition of legible. A ``scale`` above 1 makes all thresholds stricter."""
+    """Return whether text meets the definition of legible. A ``scale`` above 1 makes all thresholds stricter."""
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
         and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)

@@ -39,14 +39,14 @@ class _Solution:
         expected: The correct answer.
         evidence: The views from which the answer follows.
         program: The reference program.
-        size: Number of objects to tell apart.
+        object_count: Number of objects that an agent must distinguish.
         tags: The task's tags.
     """
 
     expected: AnyExpected
     evidence: tuple[EvidenceView, ...] = ()
     program: tuple[ProgramCall, ...] = ()
-    size: int = 1
+    object_count: int = 1
     tags: tuple[str, ...] = ()
 
 
@@ -86,7 +86,7 @@ def create_task(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
         instruction=draft.instruction,
         category=draft.category,
         scope="full" if last.swept else "current",
-        difficulty=difficulty(solution.program, solution.size, swept=last.swept),
+        difficulty=difficulty(solution.program, solution.object_count, swept=last.swept),
         expected=solution.expected,
         # An agent may visit the views of a comparison or sum in any order.
         behaviour=Behaviour(final=last.final if len(places) == 1 or draft.program == "action" else None),
@@ -103,8 +103,8 @@ def _check_expected_answer(draft: Draft, expected: AnyExpected) -> None:
         return
     reading = parse_answer(expected, draft.expected)
     if isinstance(reading, Unreadable | Declined) or not agrees(expected, reading):
-        right = expected.model_dump(include={"value", "accepted", "subject"})
-        raise DraftRejectedError(f"the draft expects '{draft.expected}', the ground truth says {right or expected.kind}")
+        correct = expected.model_dump(include={"value", "accepted", "subject"})
+        raise DraftRejectedError(f"the draft expects '{draft.expected}', the ground truth says {correct or expected.kind}")
     if isinstance(expected, Text) and any(text.lower() in draft.instruction.lower() for text in expected.accepted):
         raise DraftRejectedError("the instruction contains its answer")
 
@@ -126,7 +126,11 @@ def _only_place(places: Sequence[TaskPlace]) -> TaskPlace:
 
 
 def _count_objects(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, EvidenceView, int]:
-    """Return the number of objects of a kind in a view, if certain, as an expected answer, as evidence and as an integer."""
+    """Count the objects of a kind in a view. Return the count as an expected answer, as evidence and as an integer.
+
+    Raises:
+        DraftRejectedError: The count is uncertain or too large.
+    """
     things = place.truth.all_of(kind)
     if things is None:
         raise DraftRejectedError(f"the number of {plural_noun(kind)} in that view is uncertain")
@@ -214,22 +218,22 @@ def _solve_most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     """Find the most numerous of several kinds in a view, or the view that shows the most objects of one kind."""
     kinds = _kinds(draft)
     if len(places) == 1 and len(kinds) > 1:
-        pairs = [(places[0], kind, plural_noun(kind)) for kind in kinds]
+        compared = [(places[0], kind, plural_noun(kind)) for kind in kinds]
     elif len(kinds) == 1 and len(places) > 1:
-        pairs = [(place, kinds[0], _preset_of(place)) for place in places]
+        compared = [(place, kinds[0], _preset_of(place)) for place in places]
     else:
         raise DraftRejectedError("'most' must compare several kinds in one view, or one kind in several views")
-    if len({name for _, _, name in pairs}) < len(pairs):
+    if len({name for _, _, name in compared}) < len(compared):
         raise DraftRejectedError("something is compared with itself")
-    counts = [_count_objects(place, kind) for place, kind, _ in pairs]
+    counts = [_count_objects(place, kind) for place, kind, _ in compared]
     numbers = [number for _, _, number in counts]
-    names = [name for _, _, name in pairs]
+    names = [name for _, _, name in compared]
     best = max(numbers)
     if numbers.count(best) > 1:
         raise DraftRejectedError(f"the largest count is not unique: {', '.join(map(str, numbers))}")
     options: dict[str, tuple[str, ...]] = dict.fromkeys(names, ())
     choice = Choice(value=names[numbers.index(best)], options=options, picks=("more", "most"))
-    return _Solution(choice, tuple(evidence for _, evidence, _ in counts), _visit_calls(pairs), sum(numbers), ("sort:more",))
+    return _Solution(choice, tuple(evidence for _, evidence, _ in counts), _visit_calls(compared), sum(numbers), ("sort:more",))
 
 
 def _solve_sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -244,8 +248,8 @@ def _solve_sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     if not 0 < total <= _MAX_COUNT:
         raise DraftRejectedError(f"the sum must be from 1 to {_MAX_COUNT}, got {total}")
     number = Number(value=float(total), unit=answer_words(kind))
-    visits = _visit_calls([(place, kind, "") for place in places])
-    return _Solution(number, tuple(evidence for _, evidence, _ in counts), visits, total, ("sort:sum",))
+    program = _visit_calls([(place, kind, "") for place in places])
+    return _Solution(number, tuple(evidence for _, evidence, _ in counts), program, total, ("sort:sum",))
 
 
 def _solve_action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
@@ -257,10 +261,10 @@ def _solve_action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
     return _Solution(ActionOnly(), program=calls, tags=("sort:action",))
 
 
-def _visit_calls(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
+def _visit_calls(visits: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
     """Return the moves from view to view, with a count call at each view."""
     program, call_count = list[ProgramCall](), 0
-    for place, kind, _ in pairs:
+    for place, kind, _ in visits:
         program += [*place.calls[call_count:], count_call(plural_noun(kind), place)]
         call_count = len(place.calls)
     return tuple(program)

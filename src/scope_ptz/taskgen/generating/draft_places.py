@@ -59,7 +59,7 @@ def resolve_places(draft: Draft, scene: Scene) -> list[TaskPlace]:
 
 
 def find_unstated_moves(draft: Draft) -> Iterator[str]:
-    """Yield a reason for every move that the instruction does not state."""
+    """Yield a message for every move that the instruction does not state."""
     text = f" {' '.join(re.findall(r'[a-z0-9.-]+', draft.instruction.lower()))} "
     for view in draft.views:
         for step in view.moves:
@@ -77,7 +77,7 @@ def _amounts(step: Move) -> list[float]:
 
 
 def _contains_number(text: str, amount: float) -> bool:
-    """Return whether a text contains a number, in digits or in words."""
+    """Return whether text contains a number, in digits or in words."""
     if any(f" {word} " in text for word in _FACTOR_WORDS.get(amount, ())):
         return True
     if any(float(number) == amount for number in re.findall(r"\d+(?:\.\d+)?", text)):

@@ -86,7 +86,7 @@ def inventory(scene: Scene) -> dict[str, Any]:
 
 
 def view_facts(scene: Scene, preset: ScenePreset) -> dict[str, Any]:
-    """Return facts about a preset's view: certain counts, legible texts, and how adjustments change the counts."""
+    """Return facts about a preset's view: certain counts, legible text, and how adjustments change the counts."""
     position = preset_position(preset)
     preset_view = TaskPlace(scene, preset.name, (), position)
     base = certain_counts(preset_view)
@@ -119,7 +119,7 @@ def _kind_label(kind: Kind) -> str:
     return f"{kind.category} ({kind.colour})" if kind.colour else kind.category
 
 
-def _changed_counts(one: Mapping[str, int], two: Mapping[str, int]) -> Iterator[tuple[str, int]]:
-    for name in sorted({*one, *two}):
-        if one.get(name, 0) != two.get(name, 0):
-            yield name, two.get(name, 0)
+def _changed_counts(before: Mapping[str, int], after: Mapping[str, int]) -> Iterator[tuple[str, int]]:
+    for name in sorted({*before, *after}):
+        if before.get(name, 0) != after.get(name, 0):
+            yield name, after.get(name, 0)

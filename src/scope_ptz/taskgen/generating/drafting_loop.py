@@ -133,7 +133,7 @@ async def validate_draft(
         task = create_task(draft, scene, name, DATASET)
     except DraftRejectedError as rejected:
         return LedgerEntry(batch=batch, fate="dropped", reason=str(rejected), draft=_shorten(row))
-    if (similar_task := known_tasks.nearest(task)) is not None:
+    if (similar_task := known_tasks.most_similar(task)) is not None:
         reason = f"{similar_task.similarity:.0%} similar to {similar_task.task}"
         return LedgerEntry(batch=batch, fate="near-duplicate", reason=reason, draft=_shorten(row))
     if (fault := await validate(task)) is not None:

@@ -91,15 +91,16 @@ async def validate_run_drafts(
         entry = LedgerEntry(batch=1, fate="dropped", reason=row.reason or "the line has no draft", draft=original)
         if row.draft is not None:
             if row.scene not in scenes:
-                scene = open_scene(row.scene)
-                scenes[row.scene] = None if scene is None else (scene, validator_of(scene))
-            opened, draft = scenes[row.scene], parse_draft(row.draft)
+                opened = open_scene(row.scene)
+                scenes[row.scene] = None if opened is None else (opened, validator_of(opened))
+            scene_and_validator, draft = scenes[row.scene], parse_draft(row.draft)
             if isinstance(draft, str):
                 entry = entry.model_copy(update={"reason": draft})
-            elif opened is None:
+            elif scene_and_validator is None:
                 entry = entry.model_copy(update={"reason": f"there is no scene '{row.scene[:60]}' with ground truth"})
             else:
-                entry = await validate_draft(draft, row.draft, opened[0], known_tasks, ledger, opened[1], 1)
+                scene, validate = scene_and_validator
+                entry = await validate_draft(draft, row.draft, scene, known_tasks, ledger, validate, 1)
         ledger.add(entry)
         recorded.append(original)
         if entry.fate == "kept" and entry.task is not None:

@@ -55,7 +55,7 @@ class _View:
 
 
 def convert_run(run: str, trace: Trace, note: str, open_scene: Callable[[str], Scene]) -> RunDraft:
-    """Convert a run to a line of the drafts file: a draft, or why the run cannot be converted.
+    """Convert a run to a line of the drafts file, with a draft or the reason why the run cannot be converted.
 
     Args:
         run: Name of the run folder.
@@ -167,7 +167,7 @@ def _parse_move(tool: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def find_kind(text: str, scene: Scene) -> Kind:
-    """Return the kind of object that a text names, with the category and colour from the scene's inventory.
+    """Return the kind of object that text names, with the category and colour from the scene's inventory.
 
     Raises:
         DraftRejectedError: The text does not name any kind in the inventory.

@@ -28,20 +28,20 @@ TURN_ARGUMENTS = ("pan_deg", "tilt_deg")
 
 
 @dataclass(frozen=True, slots=True)
-class FaultSetting:
+class FaultContext:
     """The presets and the camera that fault functions need to recompute a run."""
 
     presets: Mapping[str, CameraPosition]
     camera: FrameGeometry
 
 
-def replay(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
+def replay(episode: Episode, calls: Iterable[EpisodeCall], context: FaultContext) -> Episode:
     """Return a run with different calls, and with recomputed poses and observations."""
     position, replayed_calls = episode.start, list[EpisodeCall]()
     for call in calls:
-        after = _position_after(call, position, episode, setting)
+        after = _position_after(call, position, episode, context)
         moved = replace(call, before=position, after=after, observations=())
-        replayed_calls.append(replace(moved, observations=observations_of(moved, setting.camera) if moved.succeeded else ()))
+        replayed_calls.append(replace(moved, observations=observations_of(moved, context.camera) if moved.succeeded else ()))
         position = after
     files = {str((call.result or {}).get("file")) for call in replayed_calls if call.name == "take_image"}
     return replace(
@@ -49,18 +49,18 @@ def replay(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting
     )
 
 
-def _position_after(call: EpisodeCall, position: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
+def _position_after(call: EpisodeCall, position: CameraPosition, episode: Episode, context: FaultContext) -> CameraPosition:
     """Return the camera position after a call that starts from a different position than in the original run."""
     if not call.succeeded or call.name not in MOVING_TOOLS:
         return position
     if call.name == "go_to_preset":
-        return setting.presets[call.arguments["name"]]
+        return context.presets[call.arguments["name"]]
     if call.name == "go_home":
         return call.after
     if call.name == "adjust_ptz":
-        one, two = call.before.pose, call.after.pose
-        pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
-        limits = setting.camera.limits
+        before, after = call.before.pose, call.after.pose
+        pan, tilt, zoom = after.pan_deg - before.pan_deg, after.tilt_deg - before.tilt_deg, after.zoom / before.zoom
+        limits = context.camera.limits
         return CameraPosition(position.viewpoint, limits.clamp(position.pose.turned(pan, tilt).zoomed(zoom))[0])
     return CameraPosition(position.viewpoint, call.after.pose)
 
@@ -70,31 +70,31 @@ def change_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
     return replace(call, result={**(call.result or {}), **changes})
 
 
-def change_calls(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
+def change_calls(episode: Episode, context: FaultContext, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
     """Return a copy of a run in which ``change`` has replaced every call. Calls for which it returns None are omitted."""
-    return replay(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
+    return replay(episode, [new for call in episode.calls if (new := change(call)) is not None], context)
 
 
 # Missing tool calls
 
 
-def drop_all(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def drop_all(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Omit all calls."""
-    return replay(episode, (), setting)
+    return replay(episode, (), context)
 
 
-def drop_looks(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def drop_looks(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Omit all perception calls."""
     if not any(call.name in PERCEPTION_TOOLS for call in episode.calls):
         return None
-    return change_calls(episode, setting, lambda call: None if call.name in PERCEPTION_TOOLS else call)
+    return change_calls(episode, context, lambda call: None if call.name in PERCEPTION_TOOLS else call)
 
 
-def drop_pictures(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def drop_pictures(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Omit all calls that take pictures."""
     if not episode.pictures:
         return None
-    return change_calls(episode, setting, lambda call: None if call.name == "take_image" else call)
+    return change_calls(episode, context, lambda call: None if call.name == "take_image" else call)
 
 
 # Wrong tool
@@ -107,7 +107,7 @@ _REPLACEMENTS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
 """The tool, arguments and result that replace a call to a tool. Calls to other tools are replaced by ``take_image``."""
 
 
-def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def swap_tools(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Replace every call to one tool with a call to an unsuitable tool."""
     name = rng.choice([call.name for call in episode.calls])
     other, arguments, result = _REPLACEMENTS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
@@ -120,10 +120,10 @@ def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
         return replace(call, name=other, arguments=arguments, after=CameraPosition(call.before.viewpoint, pose), result=result)
 
-    return change_calls(episode, setting, swap)
+    return change_calls(episode, context, swap)
 
 
-def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def swap_order(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Swap two consecutive calls whose order matters."""
     if len(task.behaviour.calls) < 2 or task.behaviour.order != "ordered":
         return None
@@ -133,14 +133,14 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         calls = list(episode.calls)
         calls[index], calls[index + 1] = calls[index + 1], calls[index]
         if missing_in_order(task.behaviour.calls, calls) is not None:
-            return replay(episode, calls, setting)
+            return replay(episode, calls, context)
     return None
 
 
 # Wrong scope
 
 
-def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def flip_scope(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Use the full scope instead of the current view, or vice versa, and give a wrong answer."""
     if not any(call.name in PERCEPTION_TOOLS for call in episode.calls) or isinstance(task.expected, ActionOnly):
         return None
@@ -157,7 +157,7 @@ def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         )
         return change_result(replace(call, arguments={**call.arguments, "view": view}), view=view, message=answer, **result)
 
-    return replace(change_calls(episode, setting, flip), answer=answer)
+    return replace(change_calls(episode, context, flip), answer=answer)
 
 
 def wrong_count(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
@@ -171,23 +171,23 @@ def wrong_count(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
 # Wrong arguments
 
 
-def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def other_preset(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Go to a wrong preset instead of one of the presets that the run visits."""
     visited = [call.arguments["name"] for call in episode.calls if call.name == "go_to_preset"]
     if not visited:
         return None
-    right = rng.choice(visited)
-    wrong = rng.choice([name for name in setting.presets if name != right])
+    correct = rng.choice(visited)
+    wrong = rng.choice([name for name in context.presets if name != correct])
 
     def go(call: EpisodeCall) -> EpisodeCall:
-        if call.name != "go_to_preset" or call.arguments["name"] != right:
+        if call.name != "go_to_preset" or call.arguments["name"] != correct:
             return call
         return change_result(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
 
-    return change_calls(episode, setting, go)
+    return change_calls(episode, context, go)
 
 
-def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def turned_round(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Turn in the opposite direction. The paper's example is "panning left when asked to pan right"."""
     if not any(call.name == "adjust_ptz" and changes_direction(call) for call in episode.calls):
         return None
@@ -195,12 +195,12 @@ def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     def turn(call: EpisodeCall) -> EpisodeCall:
         if call.name != "adjust_ptz":
             return call
-        one, two = call.before.pose, call.after.pose
+        before, after = call.before.pose, call.after.pose
         arguments = {k: -v if k in TURN_ARGUMENTS else v for k, v in call.arguments.items()}
-        pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
+        pose = Pose(2 * before.pan_deg - after.pan_deg, 2 * before.tilt_deg - after.tilt_deg, after.zoom)
         return replace(call, arguments=arguments, after=CameraPosition(call.after.viewpoint, pose))
 
-    return change_calls(episode, setting, turn)
+    return change_calls(episode, context, turn)
 
 
 def changes_direction(call: EpisodeCall) -> bool:
@@ -208,7 +208,7 @@ def changes_direction(call: EpisodeCall) -> bool:
     return any(call.arguments.get(name) for name in TURN_ARGUMENTS)
 
 
-def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def other_target(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Count or ask about something that the instruction does not mention."""
     answer = wrong_answer(task.expected, rng)
     if (
@@ -227,4 +227,4 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
             return change_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
         return call
 
-    return replace(change_calls(episode, setting, change_topic), answer=answer)
+    return replace(change_calls(episode, context, change_topic), answer=answer)

@@ -24,7 +24,7 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
-from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
+from scope_ptz.taskgen.gold.mutations import FaultContext, GoldRun, mutate
 
 RUNS_PER_MODE = 30  # number of gold runs per error mode: 240 runs for the eight modes
 
@@ -82,7 +82,7 @@ class ConfusionMatrix:
 
 
 def create_gold_runs(
-    runs: Sequence[tuple[Task, Episode]], settings: Mapping[str, FaultSetting], seed: int, per_mode: int = RUNS_PER_MODE
+    runs: Sequence[tuple[Task, Episode]], fault_contexts: Mapping[str, FaultContext], seed: int, per_mode: int = RUNS_PER_MODE
 ) -> list[GoldRun]:
     """Insert faults of every error mode into passing runs.
 
@@ -90,7 +90,7 @@ def create_gold_runs(
 
     Args:
         runs: Tasks with passing runs.
-        settings: Fault settings by the name of the scene or variation.
+        fault_contexts: Fault contexts by the name of the scene or variation.
         seed: Seed for every random choice.
         per_mode: Number of runs per error mode, taken from the categories in turn.
     """
@@ -108,7 +108,7 @@ def create_gold_runs(
             for rows in by_category.values():
                 while rows and len(mode_runs) < per_mode:
                     task, episode = rows.pop()
-                    faulty = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
+                    faulty = mutate(task, episode, mode, fault_contexts[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
                     if faulty is not None:
                         mode_runs.append(faulty)
                         break

@@ -103,16 +103,16 @@ def create_cases(
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
     runs = alternating_modes(runs)[:limit]
     worlds = open_worlds(run.task for run in runs)
-    places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
+    preset_viewpoints = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
     make_context = ground_truth_tools(worlds)
-    cases = [gold_case(run, places[run.task.world]) for run in runs]
+    cases = [gold_case(run, preset_viewpoints[run.task.world]) for run in runs]
 
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
             answer, outcome = correct_answers(task.expected)[0], task.behaviour.outcomes[0]
             episode = await ProgramRunner(worlds[task.world], make_context, TASK_CAMERA).run(task, task.reference, answer, outcome)
             if score_episode(task, episode).headline == "correct":
-                cases.append(passing_case(task, episode, places[task.world]))
+                cases.append(passing_case(task, episode, preset_viewpoints[task.world]))
 
     anyio.run(add_passing)
     return cases

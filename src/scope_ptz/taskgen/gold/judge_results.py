@@ -64,19 +64,21 @@ class GoldVerdict(BaseModel):
     judgement: Judgement
 
 
-def gold_case(gold: GoldRun, places: PresetViewpoints) -> GoldCase:
-    """Return a gold run as a case for a judge. ``places`` are the presets of its scene."""
-    return _create_case(gold.task, gold.episode, places, gold.mode, gold.fault)
+def gold_case(gold: GoldRun, preset_viewpoints: PresetViewpoints) -> GoldCase:
+    """Return a gold run as a case for a judge. ``preset_viewpoints`` are those of its scene."""
+    return _create_case(gold.task, gold.episode, preset_viewpoints, gold.mode, gold.fault)
 
 
-def passing_case(task: Task, episode: Episode, places: PresetViewpoints) -> GoldCase:
+def passing_case(task: Task, episode: Episode, preset_viewpoints: PresetViewpoints) -> GoldCase:
     """Return a run that passes all checks as a case for a judge."""
-    return _create_case(task, episode, places, None, "reference")
+    return _create_case(task, episode, preset_viewpoints, None, "reference")
 
 
-def _create_case(task: Task, episode: Episode, places: PresetViewpoints, fault: ErrorMode | None, source: str) -> GoldCase:
+def _create_case(
+    task: Task, episode: Episode, preset_viewpoints: PresetViewpoints, fault: ErrorMode | None, source: str
+) -> GoldCase:
     facts = facts_of(task, episode.start.viewpoint or "")
-    case = case_of_episode(episode, places)
+    case = case_of_episode(episode, preset_viewpoints)
     return GoldCase(facts=facts, case=case, fault=fault, source=source)
 
 

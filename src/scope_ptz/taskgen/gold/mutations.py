@@ -11,11 +11,11 @@ from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.gold import agent_faults, reply_faults
-from scope_ptz.taskgen.gold.agent_faults import FaultSetting
+from scope_ptz.taskgen.gold.agent_faults import FaultContext
 
-__all__ = ["FaultSetting", "GoldRun", "count_assigned_modes", "mutate"]
+__all__ = ["FaultContext", "GoldRun", "count_assigned_modes", "mutate"]
 
-FaultFunction = Callable[[Task, Episode, FaultSetting, random.Random], Episode | None]
+FaultFunction = Callable[[Task, Episode, FaultContext, random.Random], Episode | None]
 # The fault functions for each error mode.
 FAULTS: dict[ErrorMode, tuple[FaultFunction, ...]] = {
     ErrorMode.LACK_OF_TOOL_CALL: (agent_faults.drop_all, agent_faults.drop_looks, agent_faults.drop_pictures),
@@ -39,7 +39,7 @@ class GoldRun:
     fault: str
 
 
-def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting, rng: random.Random) -> GoldRun | None:
+def mutate(task: Task, episode: Episode, mode: ErrorMode, context: FaultContext, rng: random.Random) -> GoldRun | None:
     """Insert one fault of an error mode into a passing run.
 
     Returns:
@@ -49,7 +49,7 @@ def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting,
     functions = list(FAULTS[mode])
     rng.shuffle(functions)
     for function in functions:
-        if (faulty := function(task, episode, setting, rng)) is not None:
+        if (faulty := function(task, episode, context, rng)) is not None:
             return GoldRun(mode, task, faulty, function.__name__)
     return None
 

@@ -13,7 +13,7 @@ from scope_ptz.taskgen.authoring.task_places import preset_position
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.taskgen.gold.gold_runs import WITHOUT_MODE, confusion_matrix, create_gold_runs
-from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun
+from scope_ptz.taskgen.gold.mutations import FaultContext, GoldRun
 
 
 async def make_gold_runs(
@@ -28,8 +28,8 @@ async def make_gold_runs(
         seed: Seed for the selection of runs and faults.
     """
     runners = {name: ProgramRunner(world, make_context, TASK_CAMERA) for name, world in worlds.items()}
-    settings = {
-        name: FaultSetting({p.name: preset_position(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
+    fault_contexts = {
+        name: FaultContext({p.name: preset_position(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
     }
     runs = []
     for task in tasks:
@@ -37,7 +37,7 @@ async def make_gold_runs(
             episode = await runners[task.world].run(task, task.reference, correct_answers(task.expected)[0])
             if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
-    return create_gold_runs(runs, settings, seed)
+    return create_gold_runs(runs, fault_contexts, seed)
 
 
 COLUMN_NAMES = {

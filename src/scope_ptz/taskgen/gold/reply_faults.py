@@ -15,7 +15,7 @@ from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import correct_answers, wrong_answer
-from scope_ptz.taskgen.gold.agent_faults import FaultSetting, change_calls, change_result, replay, wrong_count
+from scope_ptz.taskgen.gold.agent_faults import FaultContext, change_calls, change_result, replay, wrong_count
 
 _MAX_TRIES = 24  # maximum number of wrong answers to try when looking for one that the run does not support
 _DECLINING_ANSWERS = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
@@ -24,7 +24,7 @@ _DECLINING_ANSWERS = ("I cannot tell.", "I'm not sure.", "It is not possible to 
 # Wrong perception results
 
 
-def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def miscount(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Make perception return wrong counts that lead to a wrong answer."""
     counts = [n for n, call in enumerate(episode.calls) if call.name == "count_objects"]
     answer = wrong_answer(task.expected, rng)
@@ -34,7 +34,7 @@ def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = change_count(calls[n], number)
-        faulty = replace(replay(episode, calls, setting), answer=answer)
+        faulty = replace(replay(episode, calls, context), answer=answer)
         if is_supported_by_tools(task, faulty):
             return faulty
     return None
@@ -59,7 +59,7 @@ def change_count(call: EpisodeCall, number: int) -> EpisodeCall:
     return change_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
-def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def misread(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Make perception return a wrong answer."""
     answer = wrong_answer(task.expected, rng)
     if answer is None or not any(call.name == "query_answer" for call in episode.calls):
@@ -68,10 +68,10 @@ def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
     def change(call: EpisodeCall) -> EpisodeCall:
         return change_result(call, answer=answer, message=answer) if call.name == "query_answer" else call
 
-    return replace(change_calls(episode, setting, change), answer=answer)
+    return replace(change_calls(episode, context, change), answer=answer)
 
 
-def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def overlook(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Make perception miss a target that is in view."""
     if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
         return None
@@ -82,13 +82,13 @@ def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
         result = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
         return replace(call, result=result, after=call.before)
 
-    return replace(change_calls(episode, setting, change), answer="It is not in view.")
+    return replace(change_calls(episode, context, change), answer="It is not in view.")
 
 
 # Wrong answers
 
 
-def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def make_up(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Answer with something that no observation supports."""
     for _ in range(_MAX_TRIES):
         answer = wrong_answer(task.expected, rng)
@@ -99,7 +99,7 @@ def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
     return None
 
 
-def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+def conclude_wrongly(task: Task, episode: Episode, context: FaultContext, rng: random.Random) -> Episode | None:
     """Draw a wrong conclusion from correct observations, or decline to answer."""
     expected = task.expected
     if isinstance(expected, ActionOnly):

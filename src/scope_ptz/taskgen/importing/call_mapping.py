@@ -37,18 +37,18 @@ PresetOf = Callable[[str], str | None]
 
 
 @dataclass
-class Expectation:
+class MappedCalls:
     """A row's required calls, and findings about tools and arguments that could not be mapped."""
 
     calls: list[RequiredCall] = field(default_factory=list)
     findings: list[RowFinding] = field(default_factory=list)
 
-    def note(self, kind: Any, detail: str) -> None:
+    def add_finding(self, kind: Any, detail: str) -> None:
         """Add a finding."""
         self.findings.append(RowFinding(kind=kind, detail=detail[:300]))
 
 
-def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> Expectation:
+def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> MappedCalls:
     """Map a row's expected calls.
 
     Args:
@@ -60,34 +60,34 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     Returns:
         The required calls and the findings.
     """
-    expectation = Expectation()
+    mapped_calls = MappedCalls()
     order, given = (
-        _parse_cell(order_cell, "expected_tool_order_json", expectation),
-        _parse_cell(arguments_cell, "expected_tool_args_json", expectation),
+        _parse_cell(order_cell, "expected_tool_order_json", mapped_calls),
+        _parse_cell(arguments_cell, "expected_tool_args_json", mapped_calls),
     )
-    names = list(find_steps(order, lambda detail: expectation.note("unknown-tool", detail)))
-    if not names and isinstance(given, dict) and any(normalise(name) in TOOLS for name in given):
-        names = [(name, {}) for name in given]  # the row gives only arguments, by tool
-    for detail in find_unused_arguments(given, [name for name, _ in names]):
-        expectation.note("unchecked-argument", detail)
-    for index, (name, call_arguments) in enumerate(names):
+    steps = list(find_steps(order, lambda detail: mapped_calls.add_finding("unknown-tool", detail)))
+    if not steps and isinstance(given, dict) and any(normalise(name) in TOOLS for name in given):
+        steps = [(name, {}) for name in given]  # the row gives only arguments, by tool
+    for detail in find_unused_arguments(given, [name for name, _ in steps]):
+        mapped_calls.add_finding("unchecked-argument", detail)
+    for index, (name, call_arguments) in enumerate(steps):
         tool = TOOLS.get(normalise(name))
         if tool is None:
-            expectation.note("unknown-tool", name)
+            mapped_calls.add_finding("unknown-tool", name)
             continue
-        other_arguments = _arguments_of(given, name, index, [n for n, _ in names[:index]].count(name), only_call=len(names) == 1)
+        other_arguments = _arguments_of(given, name, index, [n for n, _ in steps[:index]].count(name), only_call=len(steps) == 1)
         for detail in argument_contradictions(tool, call_arguments, other_arguments):
-            expectation.note("fields-disagree", detail)
-        mapped = _map_arguments(tool, {**other_arguments, **call_arguments}, preset_of, expectation)
-        expectation.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
-    return expectation
+            mapped_calls.add_finding("fields-disagree", detail)
+        mapped = _map_arguments(tool, {**other_arguments, **call_arguments}, preset_of, mapped_calls)
+        mapped_calls.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
+    return mapped_calls
 
 
-def _parse_cell(cell: str, column: str, expectation: Expectation) -> Any:
+def _parse_cell(cell: str, column: str, mapped_calls: MappedCalls) -> Any:
     try:
         return parse_cell(cell)
     except ValueError as error:
-        expectation.note("unreadable-cell", f"{column}: {error}: {cell[:120]}")
+        mapped_calls.add_finding("unreadable-cell", f"{column}: {error}: {cell[:120]}")
         return None
 
 
@@ -118,7 +118,7 @@ def _arguments_of(given: Any, name: str, index: int, earlier_calls: int, *, only
     return dict(given) if index == 0 and (is_flat or (only_call and is_single_call(given, [name]))) else {}
 
 
-def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, expectation: Expectation) -> dict[str, Argument]:
+def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, mapped_calls: MappedCalls) -> dict[str, Argument]:
     """Return the required arguments under SCOPE's names. Arguments that cannot be mapped are reported and not compared."""
     given = {normalise(name): value for name, value in given.items() if value is not None and value != ""}
     required, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
@@ -129,31 +129,31 @@ def _map_arguments(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf
             required[name] = argument
 
     if tool == "adjust_ptz":
-        _map_move(given, add_argument, used, expectation)
+        _map_move(given, add_argument, used, mapped_calls)
     text = next((name for name in TEXT_ARGUMENTS.get(tool, ()) if isinstance(given.get(name), str)), None)
     if text is not None:
         used.add(text)
-        _map_text(tool, str(given[text]), preset_of, add_argument, expectation)
+        _map_text(tool, str(given[text]), preset_of, add_argument, mapped_calls)
     view = next((name for name in VIEW_ARGUMENTS if name in given), None) if tool in ("count_objects", "query_answer") else None
     if view is not None:
         used.add(view)
         scope = scope_of(str(given[view]))
         if scope is None:
-            expectation.note("wrong-arguments", f"{tool}: {view} is {given[view]!r}")
+            mapped_calls.add_finding("wrong-arguments", f"{tool}: {view} is {given[view]!r}")
         else:
             add_argument("view", scope, Argument(equals=scope))
     if tool == "track_object":
-        _map_duration(given, add_argument, used, expectation)
+        _map_duration(given, add_argument, used, mapped_calls)
     texts = set(TEXT_ARGUMENTS.get(tool, ()))
     for name in sorted(texts & set(given) - used):
         if not isinstance(given[name], str):
-            expectation.note("wrong-arguments", f"{tool}: {name} is {cell_excerpt(given[name])}, which is not text")
+            mapped_calls.add_finding("wrong-arguments", f"{tool}: {name} is {cell_excerpt(given[name])}, which is not text")
         elif tool != "query_answer":  # any wording of a question is accepted
-            expectation.note("unchecked-argument", f"{tool}: {name} is {cell_excerpt(given[name])}, but {text} is used")
+            mapped_calls.add_finding("unchecked-argument", f"{tool}: {name} is {cell_excerpt(given[name])}, but {text} is used")
     unused = sorted(set(given) - used - texts)
     if unused:
-        expectation.note("wrong-arguments", f"{tool} does not take {', '.join(unused)}")
-    _validate_call(tool, call, expectation)
+        mapped_calls.add_finding("wrong-arguments", f"{tool} does not take {', '.join(unused)}")
+    _validate_call(tool, call, mapped_calls)
     return required
 
 
@@ -161,45 +161,47 @@ AddArgument = Callable[[str, Any, Argument | None], None]
 """A function that adds an argument to a call by its name, with its value and its requirement (None for no requirement)."""
 
 
-def _map_move(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], expectation: Expectation) -> None:
+def _map_move(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], mapped_calls: MappedCalls) -> None:
     for name in ("pan_deg", "tilt_deg"):
         if name in given:
             used.add(name)
             degrees = _parse_number(given[name])
             if degrees is None:
-                expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
+                mapped_calls.add_finding("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
                 add_argument(name, degrees, Argument(equals=degrees, within=DEGREES_TOLERANCE))
     if "zoom_factor" in given and "zoom_percent" in given:
-        expectation.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; zoom_percent is used")
+        mapped_calls.add_finding("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; zoom_percent is used")
     for name in ("zoom_factor", "zoom_percent"):
         if name in given:
             used.add(name)
             amount = _parse_number(given[name])
             factor = 1 + amount / 100 if amount is not None and name == "zoom_percent" else amount
             if factor is None or factor <= 0:
-                expectation.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
+                mapped_calls.add_finding("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
                 add_argument("zoom_factor", factor, Argument(equals=factor, within=factor * ZOOM_TOLERANCE))
-    full = next((name for name in ("zoom_full", "zoom_limit") if name in given), None)
-    if full is not None:
-        used.add(full)
-        word = "-1" if str(given[full]).strip() == "-1" else normalise(str(given[full]))
+    limit_name = next((name for name in ("zoom_full", "zoom_limit") if name in given), None)
+    if limit_name is not None:
+        used.add(limit_name)
+        word = "-1" if str(given[limit_name]).strip() == "-1" else normalise(str(given[limit_name]))
         limit = "in" if word in ZOOM_IN else "out" if word in ZOOM_OUT else None
         if limit is not None:
             add_argument("zoom_limit", limit, Argument(equals=limit))
-        elif given[full] is not False:
-            expectation.note("unchecked-argument", f"adjust_ptz: {full} is {given[full]!r}, which does not say whether in or out")
+        elif given[limit_name] is not False:
+            mapped_calls.add_finding(
+                "unchecked-argument", f"adjust_ptz: {limit_name} is {given[limit_name]!r}, which does not say whether in or out"
+            )
     used.update(
         name for name in ("unit", "units") if normalise(str(given.get(name, ""))) in ("deg", "degree", "degrees", "percent", "x")
     )
 
 
-def _map_text(tool: ToolName, text: str, preset_of: PresetOf, add_argument: AddArgument, expectation: Expectation) -> None:
+def _map_text(tool: ToolName, text: str, preset_of: PresetOf, add_argument: AddArgument, mapped_calls: MappedCalls) -> None:
     if tool == "go_to_preset":
         preset = preset_of(text)
         if preset is None:
-            expectation.note("wrong-arguments", f"go_to_preset: there is no preset {text!r}")
+            mapped_calls.add_finding("wrong-arguments", f"go_to_preset: there is no preset {text!r}")
         else:
             add_argument("name", preset, Argument(equals=preset))
     elif tool == "query_answer":
@@ -210,7 +212,7 @@ def _map_text(tool: ToolName, text: str, preset_of: PresetOf, add_argument: AddA
         add_argument("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
 
 
-def _map_duration(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], expectation: Expectation) -> None:
+def _map_duration(given: Mapping[str, Any], add_argument: AddArgument, used: set[str], mapped_calls: MappedCalls) -> None:
     name = next((name for name in DURATION_ARGUMENTS if name in given), None)
     used.add("unit")
     if name is None:
@@ -218,13 +220,13 @@ def _map_duration(given: Mapping[str, Any], add_argument: AddArgument, used: set
     used.add(name)
     amount, unit = _parse_number(given[name]), _UNITS_S.get(normalise(str(given.get("unit", ""))))
     if amount is None or unit is None:
-        expectation.note("wrong-arguments", f"track_object: {name} is {given[name]!r} {given.get('unit', '')}".rstrip())
+        mapped_calls.add_finding("wrong-arguments", f"track_object: {name} is {given[name]!r} {given.get('unit', '')}".rstrip())
     else:
         add_argument("duration_s", amount * unit, Argument(equals=amount * unit, within=SECONDS_TOLERANCE))
 
 
-def _validate_call(tool: ToolName, call: Mapping[str, Any], expectation: Expectation) -> None:
-    """Report a call that the tool would reject. Missing texts are ignored, because files often omit them."""
+def _validate_call(tool: ToolName, call: Mapping[str, Any], mapped_calls: MappedCalls) -> None:
+    """Report a call that the tool would reject. Missing text arguments are ignored, because files often omit them."""
     filled = dict(call)
     for name in ("name", "description", "question"):
         if name in TOOL_FIELDS[tool] and name not in filled:
@@ -232,7 +234,7 @@ def _validate_call(tool: ToolName, call: Mapping[str, Any], expectation: Expecta
     try:
         parse_call(tool, filled)
     except ToolCallError as error:
-        expectation.note("wrong-arguments", str(error))
+        mapped_calls.add_finding("wrong-arguments", str(error))
 
 
 def _parse_number(value: Any) -> float | None:

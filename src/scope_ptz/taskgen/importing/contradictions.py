@@ -29,15 +29,15 @@ _STEP_CATEGORIES = frozenset({"single_call", "multi_step_command", "multi_step_r
 _SINGLE_STEP = frozenset({"single", "single_step", "single_call"})
 
 
-def argument_contradictions(tool: ToolName, in_order: Mapping[str, Any], in_arguments: Mapping[str, Any]) -> Iterator[str]:
+def argument_contradictions(tool: ToolName, tools_cell: Mapping[str, Any], arguments_cell: Mapping[str, Any]) -> Iterator[str]:
     """Yield a sentence for each argument of a call that the row gives twice, with different values.
 
     Args:
         tool: The tool.
-        in_order: The arguments in the cell with the expected tools.
-        in_arguments: The arguments in the cell with the arguments.
+        tools_cell: The arguments in the cell with the expected tools.
+        arguments_cell: The arguments in the cell with the arguments.
     """
-    order, arguments = _group_by_meaning(tool, in_order), _group_by_meaning(tool, in_arguments)
+    order, arguments = _group_by_meaning(tool, tools_cell), _group_by_meaning(tool, arguments_cell)
     for content, source in ((order, "the expected tools"), (arguments, "the arguments")):
         for name, values in content.items():
             if name in ("view", "duration") and len({_comparison_key(name, value) for value in values}) > 1:
@@ -72,8 +72,8 @@ def field_contradictions(cells: Mapping[str, str], calls: Sequence[RequiredCall]
     columns = ("eval_category", "category", "question_type")
     categories = {column: found for column in columns if (found := category_of(cells.get(column, ""))) is not None}
     # A question of any type, such as counting, can take one step or several.
-    by_steps = {category in _STEP_CATEGORIES for category in categories.values()}
-    if len(set(categories.values())) > 1 and len(by_steps) == 1:
+    states_step_count = {category in _STEP_CATEGORIES for category in categories.values()}
+    if len(set(categories.values())) > 1 and len(states_step_count) == 1:
         yield "; ".join(f"{column} says {category}" for column, category in categories.items())
     if normalise(cells.get("multi_step_mode", "")) in _SINGLE_STEP and len(calls) > 1:
         yield f"multi_step_mode says {cells['multi_step_mode']}, but {len(calls)} calls are expected"

@@ -1,4 +1,4 @@
-"""Find questionable rows: duplicates, contradictions, answers given away by the question, and requirements that contradict it.
+"""Find questionable rows: duplicates, contradictions, and questions that give away the answer or contradict other cells.
 
 No row is changed or omitted. Questionable rows are imported like any other, and the report lists the findings about them.
 """
@@ -132,7 +132,7 @@ def _answer_key(answer: str) -> tuple[str, ...]:
 
 
 def normalised_words(text: str) -> list[str]:
-    """Return the words of a text with normalised case, spelling and punctuation, and with numbers as digits."""
+    """Return the words of text with normalised case, spelling and punctuation, and with numbers as digits."""
     return [_NUMBERS.get(word, word) for word in plain_words(text)]
 
 

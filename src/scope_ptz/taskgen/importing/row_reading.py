@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.imported import ImportedTask, Policy
 from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.bench.tasks.task_wording import call_in_words
-from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
+from scope_ptz.taskgen.importing.call_mapping import MappedCalls, expected_calls
 from scope_ptz.taskgen.importing.contradictions import field_contradictions
 from scope_ptz.taskgen.importing.csv_table import Row
 from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, normalise, order_of, policy_of, scope_of
@@ -26,7 +26,7 @@ _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
 _MAX_QUESTION_CHARS = 4000  # longer questions are truncated
-Note = Callable[[FindingKind, str], None]
+AddFinding = Callable[[FindingKind, str], None]
 """A function that adds a finding, given its type and its detail."""
 
 
@@ -111,30 +111,30 @@ def parse_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     """Convert the cells of a row, and add a finding for everything that is missing, unknown or unusual."""
     cells, findings = row.cells, list[RowFinding]()
 
-    def note(kind: FindingKind, detail: str) -> None:
+    def add_finding(kind: FindingKind, detail: str) -> None:
         findings.append(RowFinding(kind=kind, detail=detail[:300]))
 
     question, answer = cells["question"], cells["expected_answer"]
     place = cells.get("file_location", ""), cells.get("preset_start", "")
     if not question:
-        note("empty-question", "")
-    category = _parse_category(cells, note)
-    scene, preset = _find_place(cells, scene_names, note)
-    policy, order, compare = _parse_modes(cells, note)
-    expectation = expected_calls(
+        add_finding("empty-question", "")
+    category = _parse_category(cells, add_finding)
+    scene, preset = _find_place(cells, scene_names, add_finding)
+    policy, order, compare = _parse_modes(cells, add_finding)
+    mapped_calls = expected_calls(
         cells.get("expected_tool_order_json", cells.get("expected_tool_order", "")),
         cells.get("expected_tool_args_json", cells.get("expected_tool_args", "")),
         compare=compare,
         preset_of=lambda name: scene_names.preset(scene, name) if scene is not None and name.strip() else name,
     )
-    findings += expectation.findings
-    if not answer and not expectation.calls:
-        note("nothing-expected", "")
-    scope = _parse_scope(cells, expectation, note)
-    for detail in field_contradictions(cells, expectation.calls, scene_names.scenes[scene].presets if scene is not None else ()):
-        note("fields-disagree", detail)
+    findings += mapped_calls.findings
+    if not answer and not mapped_calls.calls:
+        add_finding("nothing-expected", "")
+    scope = _parse_scope(cells, mapped_calls, add_finding)
+    for detail in field_contradictions(cells, mapped_calls.calls, scene_names.scenes[scene].presets if scene is not None else ()):
+        add_finding("fields-disagree", detail)
     if row.extra or row.missing:
-        note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.missing} cells too few")
+        add_finding("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.missing} cells too few")
     return ParsedRow(
         row=row,
         question=question,
@@ -145,10 +145,10 @@ def parse_row(row: Row, scene_names: SceneNames) -> ParsedRow:
         preset=preset,
         place=place,
         view=scene_names.source_view(*place),
-        calls=tuple(expectation.calls),
+        calls=tuple(mapped_calls.calls),
         policy=policy,
         order=order,
-        difficulty=_parse_difficulty(cells.get("difficulty", ""), note),
+        difficulty=_parse_difficulty(cells.get("difficulty", ""), add_finding),
         findings=tuple(findings),
     )
 
@@ -170,33 +170,33 @@ def _slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:80]
 
 
-def _parse_category(cells: Mapping[str, str], note: Note) -> Category | None:
+def _parse_category(cells: Mapping[str, str], add_finding: AddFinding) -> Category | None:
     columns = ("eval_category", "category", "question_type")
     filled = {column: cells[column] for column in columns if cells.get(column)}
     match = next(((name, category) for name, text in filled.items() if (category := category_of(text)) is not None), None)
     if match is None:
-        note("unknown-category", next(iter(filled.values()), ""))
+        add_finding("unknown-category", next(iter(filled.values()), ""))
         return None
     column, category = match
     first = next(iter(filled))
     if column != first:
-        note("unknown-value", f"{first}: {filled[first]}; read as {category}, based on {column}: {filled[column]}")
+        add_finding("unknown-value", f"{first}: {filled[first]}; read as {category}, based on {column}: {filled[column]}")
     return category
 
 
-def _find_place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tuple[str | None, str | None]:
+def _find_place(cells: Mapping[str, str], scene_names: SceneNames, add_finding: AddFinding) -> tuple[str | None, str | None]:
     location, start = cells.get("file_location", ""), cells.get("preset_start", "")
     scene = scene_names.scene(location)
     if scene is None:
-        note("missing-scene", location)
+        add_finding("missing-scene", location)
         return None, None
     preset = scene_names.preset(scene, start)
     if preset is None:
-        note("missing-preset", f"{scene}: {start}")
+        add_finding("missing-preset", f"{scene}: {start}")
     return scene, preset
 
 
-def _parse_modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["ordered", "any"], bool]:
+def _parse_modes(cells: Mapping[str, str], add_finding: AddFinding) -> tuple[Policy, Literal["ordered", "any"], bool]:
     policy_cell, order_cell = cells.get("required_tools_policy", ""), cells.get("multi_step_mode", "")
     check_cell = cells.get("args_check", "")
     policy, order, compare = policy_of(policy_cell), order_of(order_cell), compares_arguments(check_cell)
@@ -206,11 +206,11 @@ def _parse_modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal[
         ("args_check", check_cell, compare),
     ):
         if parsed is None:
-            note("unknown-value", f"{column}: {cell}")
+            add_finding("unknown-value", f"{column}: {cell}")
     return policy or "all", order or "any", compare if compare is not None else True
 
 
-def _parse_scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
+def _parse_scope(cells: Mapping[str, str], mapped_calls: MappedCalls, add_finding: AddFinding) -> Scope:
     """Return the scope in the cell ``answer_view``.
 
     If it has none, return "full" if an expected call uses the full view, otherwise "current".
@@ -220,15 +220,15 @@ def _parse_scope(cells: Mapping[str, str], expectation: Expectation, note: Note)
     if scope is not None:
         return scope
     if cell and normalise(cell) not in ("none", "na", "n_a", "null", "any", "either"):
-        note("unknown-value", f"answer_view: {cell}")
-    views = {call.arguments["view"].equals for call in expectation.calls if "view" in call.arguments}
+        add_finding("unknown-value", f"answer_view: {cell}")
+    views = {call.arguments["view"].equals for call in mapped_calls.calls if "view" in call.arguments}
     return "full" if "full" in views else "current"
 
 
-def _parse_difficulty(cell: str, note: Note) -> Literal["easy", "medium", "hard"]:
+def _parse_difficulty(cell: str, add_finding: AddFinding) -> Literal["easy", "medium", "hard"]:
     difficulty = _DIFFICULTIES.get(normalise(cell))
     if difficulty is None and cell:
-        note("unknown-value", f"difficulty: {cell}")
+        add_finding("unknown-value", f"difficulty: {cell}")
     return difficulty or "medium"
 
 

@@ -60,7 +60,7 @@ class SceneNames:
         """
         mapped = self.mapping.scenes
         path = PurePosixPath(location.replace("\\", "/"))
-        stem, folder = _scene_spellings(location)
+        stem, folder = _possible_scene_names(location)
         for name in (location, path.name, stem):
             if name in mapped:
                 return mapped[name] if mapped[name] in self.scenes else None
@@ -86,7 +86,7 @@ class SceneNames:
         scene = self.scene(location)
         if scene is None:
             return location, preset_name
-        names = (_normalise(name) for name in _scene_spellings(location))
+        names = (_normalise(name) for name in _possible_scene_names(location))
         scene_key = scene if _normalise(scene) in names else _normalise(location)
         preset = self.preset(scene, preset_name)
         is_own_name = preset is not None and preset == self._preset_by_name(scene, preset_name)
@@ -140,7 +140,7 @@ def read_scene_names(path: Path) -> SceneNameMap:
         raise InputError(f"{path} is not a mapping: {str(error)[:200]}.") from error
 
 
-def _scene_spellings(location: str) -> tuple[str, str]:
+def _possible_scene_names(location: str) -> tuple[str, str]:
     """Return the parts of a file location that may be a scene's name: the file name without its suffix, and the folder."""
     path = PurePosixPath(location.replace("\\", "/"))
     return path.stem if path.suffix else path.name, path.parent.name

@@ -68,12 +68,12 @@ def adaptive_attempts(task: Task, common: Mapping[Form, str]) -> Iterator[Attemp
         return
     form, options = question_form(task.instruction), offered_answers(task.expected, task.instruction)
     common_answer = common.get(form, NONE)
-    exists = "Yes." if form == "exists" else common_answer
+    yes_or_common = "Yes." if form == "exists" else common_answer
     answers = {
         "absence": NONE if form in _ABSENCE_FORMS else common_answer,
         "most common": common_answer,
-        "first offered": _offered_answer(form, options, last=False) or exists,
-        "last offered": _offered_answer(form, options, last=True) or exists,
+        "first offered": _offered_answer(form, options, last=False) or yes_or_common,
+        "last offered": _offered_answer(form, options, last=True) or yes_or_common,
         "absence, else first offered": NONE
         if form in _ABSENCE_FORMS
         else _offered_answer(form, options, last=False) or common_answer,

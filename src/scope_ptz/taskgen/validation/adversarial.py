@@ -140,7 +140,7 @@ def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
         return
     names = offered_answers(task.expected, task.instruction)
     answers: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
-    answers |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
+    answers |= {f"{ordinal} offered": name for ordinal, name in zip(("first", "second", "third"), names, strict=False)}
     answers |= {"last offered": names[-1]} if names else {}
     for name, text in answers.items():
         if text is not None:

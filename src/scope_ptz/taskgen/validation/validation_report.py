@@ -99,14 +99,14 @@ class ValidationReport:
         }
 
 
-def _shares(passed: dict[str, set[str]], whole: dict[str, int], core: int) -> dict[str, dict[str, float]]:
+def _shares(passed: dict[str, set[str]], pairs_passed: dict[str, int], core: int) -> dict[str, dict[str, float]]:
     """Return the number and the fraction of core tasks that each agent passes, for single tasks and for whole pairs."""
     return {
         name: {
             "passed": len(ids),
             "share": len(ids) / core,
-            "pairs_whole": whole[name],
-            "share_pairs_whole": whole[name] / core,
+            "pairs_whole": pairs_passed[name],
+            "share_pairs_whole": pairs_passed[name] / core,
         }
         for name, ids in passed.items()
     }

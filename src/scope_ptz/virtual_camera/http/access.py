@@ -53,10 +53,10 @@ class AccessControl:
         target = request.scope["raw_path"].decode("latin-1")
         if query := request.scope["query_string"].decode("latin-1"):
             target += f"?{query}"
-        verdict = self._digest.check(request.headers.get("authorization"), request.method, target)
-        if verdict.account is None:
-            return self.refusal(stale=verdict.stale)
-        return Client(verdict.account.name, verdict.account.role)
+        result = self._digest.check(request.headers.get("authorization"), request.method, target)
+        if result.account is None:
+            return self.refusal(stale=result.stale)
+        return Client(result.account.name, result.account.role)
 
 
 def client_address(connection: HTTPConnection) -> str:

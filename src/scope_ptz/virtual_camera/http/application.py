@@ -21,19 +21,19 @@ from scope_ptz.virtual_camera.http.virtual_routes import VirtualRoutes
 from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.truth import TruthLog
 from scope_ptz.virtual_camera.vapix.replies import Client
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 # A camera's home page.
 PAGE = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title>
-<h1>{name}</h1><img src="/axis-cgi/mjpg/video.cgi" alt="Live picture" style="max-width:100%">"""
+<h1>{name}</h1><img src="/axis-cgi/mjpg/video.cgi" alt="Live video" style="max-width:100%">"""
 
 
 class CameraApplication:
     """The web application for a camera.
 
     Args:
-        unit: The camera's VAPIX state.
-        source: The camera's live picture.
+        camera: The camera's VAPIX state.
+        source: The camera's live video.
         truth: The ground truth for its frames; None to withhold it from clients.
         onvif: An application for the paths below ``/onvif/``, which authenticates its own clients; None for no ONVIF services.
 
@@ -43,11 +43,11 @@ class CameraApplication:
         jpegs: The JPEG encoder, which all clients share.
     """
 
-    def __init__(self, unit: VapixUnit, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:
+    def __init__(self, camera: VapixCamera, source: LiveSource, truth: TruthLog | None, onvif: ASGIApp | None) -> None:
         self.closing = anyio.Event()
-        device = unit.device
-        access = AccessControl(device.accounts, unit.realm)
-        vapix = VapixRoutes(unit, source, access, TruthHeaders(truth) if truth is not None else None, self.closing)
+        device = camera.device
+        access = AccessControl(device.accounts, camera.realm)
+        vapix = VapixRoutes(camera, source, access, TruthHeaders(truth) if truth is not None else None, self.closing)
         self.jpegs = vapix.jpegs
 
         async def page(_: Request, __: Client) -> Response:

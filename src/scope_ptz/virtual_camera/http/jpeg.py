@@ -43,10 +43,10 @@ def picture_format(device: VirtualDevice, resolution: str, compression: str) -> 
     return PictureFormat(width, height, int(compression) if compression else DEFAULT_COMPRESSION)
 
 
-def encode(image: NDArray[np.uint8], requested: PictureFormat) -> bytes:
+def encode(image: NDArray[np.uint8], requested_format: PictureFormat) -> bytes:
     """Encode an RGB image as a JPEG. If the aspect ratio differs, the image is cropped rather than stretched."""
-    image = crop_and_scale(image, requested.width, requested.height)
-    quality = round(98 - 0.85 * requested.compression)
+    image = crop_and_scale(image, requested_format.width, requested_format.height)
+    quality = round(98 - 0.85 * requested_format.compression)
     encoded, content = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not encoded:
         raise CameraError("The picture cannot be encoded.")
@@ -72,26 +72,28 @@ class SharedJpegs:
         self.encodings = 0
         """Number of encodings so far."""
 
-    async def snapshot(self, requested: PictureFormat) -> tuple[Exposure, bytes]:
+    async def snapshot(self, requested_format: PictureFormat) -> tuple[Exposure, bytes]:
         """Capture an image, and return the exposure and its JPEG."""
         exposure = await to_thread.run_sync(self._device.expose)
-        return exposure, await self.jpeg(exposure, requested)
+        return exposure, await self.jpeg(exposure, requested_format)
 
-    async def jpeg(self, exposure: Exposure, requested: PictureFormat) -> bytes:
+    async def jpeg(self, exposure: Exposure, requested_format: PictureFormat) -> bytes:
         """Return an exposure as a JPEG, reusing the last encoding if possible."""
-        cached = self._newest.get(requested)
+        cached = self._newest.get(requested_format)
         if cached is None or cached[0] is not exposure:
-            cached = exposure, asyncio.create_task(self._encode(exposure, requested))
-            self._newest[requested] = cached
-            self._newest.move_to_end(requested)
+            cached = exposure, asyncio.create_task(self._encode(exposure, requested_format))
+            self._newest[requested_format] = cached
+            self._newest.move_to_end(requested_format)
             if len(self._newest) > MAX_SHARED:
                 self._newest.popitem(last=False)
         content = await asyncio.shield(cached[1])
         return content[: len(content) // 2] if self._device.faults.picture == "truncated" else content
 
-    async def _encode(self, exposure: Exposure, requested: PictureFormat) -> bytes:
+    async def _encode(self, exposure: Exposure, requested_format: PictureFormat) -> bytes:
         self.encodings += 1
         if self._device.faults.picture == "size":
             height, width = exposure.image.shape[:2]
-            requested = PictureFormat(min(width, requested.width // 2), min(height, requested.height // 2), requested.compression)
-        return await to_thread.run_sync(encode, exposure.image, requested)
+            requested_format = PictureFormat(
+                min(width, requested_format.width // 2), min(height, requested_format.height // 2), requested_format.compression
+            )
+        return await to_thread.run_sync(encode, exposure.image, requested_format)

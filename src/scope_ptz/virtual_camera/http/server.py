@@ -21,12 +21,12 @@ from scope_ptz.virtual_camera.http.certificate import Certificate
 from scope_ptz.virtual_camera.http.connection import AbortableProtocol
 from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.truth import TruthLog
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
-SHUTDOWN_S = 3
+SHUTDOWN_TIMEOUT_S = 3
 """Maximum time in seconds to wait for open replies when the server shuts down."""
 
-RETRY_S = 1.0  # seconds to wait before restarting a live picture that failed
+RETRY_S = 1.0  # seconds to wait before restarting live video that failed
 
 logger = logging.getLogger(__name__)
 
@@ -37,8 +37,8 @@ class ServedCamera:
 
     Attributes:
         device: The camera.
-        unit: The camera's VAPIX state.
-        source: The camera's live picture, which its other servers, such as the RTSP server, also use.
+        vapix: The camera's VAPIX state.
+        source: The camera's live video, which its other servers, such as the RTSP server, also use.
         application: The web application that handles requests.
         host: Address on which the camera listens.
         port: Port of the HTTP server, or of the HTTPS server if there is a certificate.
@@ -46,7 +46,7 @@ class ServedCamera:
     """
 
     device: VirtualDevice
-    unit: VapixUnit
+    vapix: VapixCamera
     source: LiveSource
     application: CameraApplication
     host: str
@@ -61,7 +61,7 @@ class ServedCamera:
     @property
     def rtsp_url(self) -> str | None:
         """The URL of the H.264 stream for a client on this machine; None if there is no RTSP server."""
-        port = self.unit.rtsp_port
+        port = self.vapix.rtsp_port
         return None if port is None else f"rtsp://{self._client_host}:{port}/axis-media/media.amp"
 
     @property
@@ -90,7 +90,7 @@ async def serve(
         ports: A port for each camera; 0 for any free port. If the list is empty, the system chooses all ports.
         truth: Whether clients on this machine receive the ground truth for frames.
         onvif: A function that creates a camera's application for the paths below ``/onvif/``; None for no ONVIF services.
-        rate_hz: Frame rate of live pictures in frames per second.
+        rate_hz: Frame rate of live video in frames per second.
         latency_s: Simulated delay in seconds from the exposure of a live frame to its delivery.
         certificates: A certificate for each camera, to serve HTTPS instead of HTTP; empty for HTTP.
 
@@ -160,10 +160,10 @@ def _create_camera(
     source: LiveSource,
     certificate: Certificate | None,
 ) -> ServedCamera:
-    unit = VapixUnit(device)
-    application = CameraApplication(unit, source, log, onvif(device) if onvif is not None else None)
+    vapix = VapixCamera(device)
+    application = CameraApplication(vapix, source, log, onvif(device) if onvif is not None else None)
     host, port = listener.getsockname()[:2]
-    return ServedCamera(device, unit, source, application, host, port, certificate)
+    return ServedCamera(device, vapix, source, application, host, port, certificate)
 
 
 def _uvicorn_config(camera: ServedCamera) -> uvicorn.Config:
@@ -178,7 +178,7 @@ def _uvicorn_config(camera: ServedCamera) -> uvicorn.Config:
         server_header=False,
         proxy_headers=False,  # address headers from clients are not trusted
         timeout_keep_alive=15,
-        timeout_graceful_shutdown=SHUTDOWN_S,
+        timeout_graceful_shutdown=SHUTDOWN_TIMEOUT_S,
         ssl_context_factory=None if certificate is None else lambda _config, _default: certificate.server_context(),
     )
 
@@ -213,10 +213,10 @@ def _is_loopback(host: str) -> bool:
 
 
 async def _keep_running(source: LiveSource) -> None:
-    """Run a live picture, and restart it after each failure. Clients receive no new frames in the meantime."""
+    """Run a live video source, and restart it after each failure. Clients receive no new frames in the meantime."""
     while True:
         try:
             await source.run()
         except* Exception as group:
-            logger.warning("The live picture of %s failed and will be restarted: %s", source.device.name, group.exceptions[0])
+            logger.warning("The live video of %s failed and will be restarted: %s", source.device.name, group.exceptions[0])
             await asyncio.sleep(RETRY_S)

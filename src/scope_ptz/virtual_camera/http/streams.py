@@ -10,10 +10,10 @@ from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from scope_ptz.virtual_camera.device import Exposure
+from scope_ptz.virtual_camera.frame_selector import FrameSelector
 from scope_ptz.virtual_camera.http.connection import abort_connection
 from scope_ptz.virtual_camera.http.jpeg import PictureFormat, SharedJpegs, with_comment
 from scope_ptz.virtual_camera.live_source import LiveSource
-from scope_ptz.virtual_camera.pace import Pace
 
 BOUNDARY = "myboundary"
 SEND_TIMEOUT_S = 20.0
@@ -74,11 +74,11 @@ class MotionJpeg(Response):
 
     async def _send_parts(self, send: Send) -> bool:
         """Send frames until a limit is reached. Return False if the client stopped reading."""
-        options, sent_count, pace = self._options, 0, Pace(self._source.rate_hz, self._options.fps)
+        options, sent_count, selector = self._options, 0, FrameSelector(self._source.rate_hz, self._options.fps)
         started_s = anyio.current_time()
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
-                if not pace.accepts(exposure.taken_s):
+                if not selector.accepts(exposure.taken_s):
                     continue
                 part = await self._part(exposure)
                 with anyio.move_on_after(SEND_TIMEOUT_S) as timeout_scope:

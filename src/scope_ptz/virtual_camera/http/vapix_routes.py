@@ -13,7 +13,7 @@ from starlette.routing import Route
 
 from scope_ptz.errors import InputError
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.device import REBOOT_S, REPLY_S
+from scope_ptz.virtual_camera.device import REBOOT_DELAY_S, REBOOT_S
 from scope_ptz.virtual_camera.http.access import AccessControl, Handler, is_local
 from scope_ptz.virtual_camera.http.jpeg import SharedJpegs, picture_format, with_comment
 from scope_ptz.virtual_camera.http.streams import MotionJpeg, StreamOptions
@@ -24,7 +24,7 @@ from scope_ptz.virtual_camera.vapix.json_apis import api_discovery, basic_device
 from scope_ptz.virtual_camera.vapix.parameters import param
 from scope_ptz.virtual_camera.vapix.ptz import ptz, ptz_config, ptz_queue
 from scope_ptz.virtual_camera.vapix.replies import Client, Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 MAX_BODY_BYTES = 64 * 1024  # maximum size of a request body
 MAX_ARGUMENTS = 200  # maximum number of arguments in the query and in the body, each
@@ -32,52 +32,52 @@ MAX_ARGUMENTS = 200  # maximum number of arguments in the query and in the body,
 METHODS = ["GET", "POST"]
 
 # The user groups that ``usergroup.cgi`` reports for each role.
-GROUPS = {Role.VIEWER: "viewer", Role.OPERATOR: "operator viewer ptz", Role.ADMINISTRATOR: "admin operator viewer ptz"}
+USER_GROUPS = {Role.VIEWER: "viewer", Role.OPERATOR: "operator viewer ptz", Role.ADMINISTRATOR: "admin operator viewer ptz"}
 
 
 class VapixRoutes:
     """A camera's routes below ``/axis-cgi/``.
 
     Args:
-        unit: The camera's VAPIX state.
-        source: The camera's live picture.
+        camera: The camera's VAPIX state.
+        source: The camera's live video.
         access: The access control, which authenticates clients.
         truth: Builds the ground truth that is sent with pictures to clients on this machine; None to send none.
         closing: An event that is set when the server shuts down.
     """
 
     def __init__(
-        self, unit: VapixUnit, source: LiveSource, access: AccessControl, truth: TruthHeaders | None, closing: anyio.Event
+        self, camera: VapixCamera, source: LiveSource, access: AccessControl, truth: TruthHeaders | None, closing: anyio.Event
     ) -> None:
-        self._unit, self._source, self._access, self._truth, self._closing = unit, source, access, truth, closing
-        self.jpegs = SharedJpegs(unit.device)
+        self._camera, self._source, self._access, self._truth, self._closing = camera, source, access, truth, closing
+        self.jpegs = SharedJpegs(camera.device)
 
     def routes(self) -> list[Route]:
         """Return the routes."""
-        unit = self._unit
+        camera = self._camera
         pages: list[tuple[str, Role, Handler]] = [
-            ("com/ptz.cgi", Role.OPERATOR, _page(lambda arguments, client: ptz(unit, arguments, client))),
-            ("com/ptzconfig.cgi", Role.ADMINISTRATOR, _page(lambda arguments, _: ptz_config(unit, arguments))),
-            ("com/ptzqueue.cgi", Role.OPERATOR, _page(lambda arguments, client: ptz_queue(unit, arguments, client))),
-            ("param.cgi", Role.VIEWER, _page(lambda arguments, client: param(unit, arguments, client))),
+            ("com/ptz.cgi", Role.OPERATOR, _page(lambda arguments, client: ptz(camera, arguments, client))),
+            ("com/ptzconfig.cgi", Role.ADMINISTRATOR, _page(lambda arguments, _: ptz_config(camera, arguments))),
+            ("com/ptzqueue.cgi", Role.OPERATOR, _page(lambda arguments, client: ptz_queue(camera, arguments, client))),
+            ("param.cgi", Role.VIEWER, _page(lambda arguments, client: param(camera, arguments, client))),
             ("usergroup.cgi", Role.VIEWER, _user_group),
             ("restart.cgi", Role.ADMINISTRATOR, self._restart),
-            ("apidiscovery.cgi", Role.VIEWER, _json(unit, api_discovery)),
-            ("basicdeviceinfo.cgi", Role.VIEWER, _json(unit, basic_device_info)),
+            ("apidiscovery.cgi", Role.VIEWER, _json(camera, api_discovery)),
+            ("basicdeviceinfo.cgi", Role.VIEWER, _json(camera, basic_device_info)),
             ("jpg/image.cgi", Role.VIEWER, self._image),
             ("mjpg/video.cgi", Role.VIEWER, self._video),
         ]
         return [Route(f"/axis-cgi/{path}", self._access.for_role(role, page), methods=METHODS) for path, role, page in pages]
 
     async def _restart(self, _: Request, __: Client) -> Response:
-        self._unit.device.reboot(REBOOT_S, after_s=REPLY_S)
+        self._camera.device.reboot(REBOOT_S, after_s=REBOOT_DELAY_S)
         return PlainTextResponse("Restarting.\n")
 
     async def _image(self, request: Request, _: Client) -> Response:
         arguments = await read_arguments(request)
         try:
             check_camera(arguments)
-            requested = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
+            requested = picture_format(self._camera.device, arguments.text("resolution"), arguments.text("compression"))
         except InputError as problem:
             return PlainTextResponse(f"Error: {problem}\n", 400)
         exposure, jpeg = await self.jpegs.snapshot(requested)
@@ -92,7 +92,7 @@ class VapixRoutes:
         arguments = await read_arguments(request)
         try:
             check_camera(arguments)
-            picture = picture_format(self._unit.device, arguments.text("resolution"), arguments.text("compression"))
+            picture = picture_format(self._camera.device, arguments.text("resolution"), arguments.text("compression"))
             limits = {name: arguments.number(name, 0, 1e6) for name in ("fps", "nbrofframes", "duration") if name in arguments}
         except InputError as problem:
             return PlainTextResponse(f"Error: {problem}\n", 400)
@@ -147,15 +147,15 @@ def _page(answer: Callable[[Arguments, Client], Reply]) -> Handler:
     return page
 
 
-def _json(unit: VapixUnit, answer: Callable[[VapixUnit, str, bytes], Reply]) -> Handler:
+def _json(camera: VapixCamera, answer: Callable[[VapixCamera, str, bytes], Reply]) -> Handler:
     async def page(request: Request, _: Client) -> Response:
-        return _response(answer(unit, request.method, await read_body(request)))
+        return _response(answer(camera, request.method, await read_body(request)))
 
     return page
 
 
 async def _user_group(_: Request, client: Client) -> Response:
-    return PlainTextResponse(f"{client.name}\n{GROUPS[client.role]}\n")
+    return PlainTextResponse(f"{client.name}\n{USER_GROUPS[client.role]}\n")
 
 
 def _response(reply: Reply) -> Response:

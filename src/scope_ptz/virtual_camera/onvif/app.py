@@ -12,7 +12,7 @@ from zeep.exceptions import Error as ZeepError
 
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.digest import DigestAuthenticator, Verdict
+from scope_ptz.virtual_camera.digest import DigestAuthenticator, DigestResult
 from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
@@ -50,12 +50,12 @@ class RequestTarget:
     Attributes:
         host: The device's host name or address, in the form used in URLs.
         origin: The device's scheme, host and port.
-        verdict: The result of HTTP digest authentication; None if the client did not use it.
+        digest_result: The result of HTTP digest authentication; None if the client did not use it.
     """
 
     host: str
     origin: str
-    verdict: Verdict | None = None
+    digest_result: DigestResult | None = None
 
 
 class OnvifApp:
@@ -103,7 +103,7 @@ class OnvifApp:
         except SoapFault as fault:
             status, reply = fault.status, fault.envelope()
             if status == 401:
-                stale = target.verdict is not None and target.verdict.stale
+                stale = target.digest_result is not None and target.digest_result.stale
                 headers = [(b"www-authenticate", text.encode()) for text in self._digest.challenges(stale=stale)]
         return await _send(send, status, reply, headers)
 
@@ -143,7 +143,7 @@ class OnvifApp:
         if self._device.accounts.is_open:
             return creation_time(envelope.header)
         sender = self._tokens.sender(envelope.header)
-        account = sender.account if sender else target.verdict.account if target.verdict else None
+        account = sender.account if sender else target.digest_result.account if target.digest_result else None
         if account is None:
             raise not_authorized("The operation requires authentication.", status=401)
         if account.role < role:

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote, urlsplit
 
 from scope_ptz.virtual_camera.accounts import Role
-from scope_ptz.virtual_camera.device import REBOOT_S, REPLY_S, VirtualDevice
+from scope_ptz.virtual_camera.device import REBOOT_DELAY_S, REBOOT_S, VirtualDevice
 from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_uuid, hostname, mac_address, serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_datetime
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
@@ -149,7 +149,7 @@ class DeviceService:
         return {"NetworkProtocols": [{"Name": name, "Enabled": True, "Port": [port]} for name, port in ports.items()]}
 
     def _reboot(self, _: Request) -> Reply:
-        self._device.reboot(REBOOT_S, after_s=REPLY_S)
+        self._device.reboot(REBOOT_S, after_s=REBOOT_DELAY_S)
         return {"Message": f"The device will be back in about {REBOOT_S:g} seconds."}
 
     def _users(self, _: Request) -> Reply:

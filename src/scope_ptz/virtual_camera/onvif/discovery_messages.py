@@ -15,7 +15,7 @@ from scope_ptz.virtual_camera.onvif.wsdl import DEVICE
 
 DISCOVERY = "http://schemas.xmlsoap.org/ws/2005/04/discovery"
 NETWORK = "http://www.onvif.org/ver10/network/wsdl"
-EVERYONE = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"  # the destination for messages to all clients
+ALL_CLIENTS = "urn:schemas-xmlsoap-org:ws:2005:04:discovery"  # the destination for messages to all clients
 
 TYPES = {(NETWORK, "NetworkVideoTransmitter"), (DEVICE, "Device")}
 """The device's types, as pairs of namespace and name."""
@@ -120,11 +120,11 @@ class DiscoveryMessages:
 
     def hello(self) -> bytes:
         """Return a Hello message."""
-        return self._message("Hello", EVERYONE, None, _D.Hello(*self._description(self.target.xaddr)))
+        return self._message("Hello", ALL_CLIENTS, None, _D.Hello(*self._description(self.target.xaddr)))
 
     def bye(self) -> bytes:
         """Return a Bye message."""
-        return self._message("Bye", EVERYONE, None, _D.Bye(self._reference()))
+        return self._message("Bye", ALL_CLIENTS, None, _D.Bye(self._reference()))
 
     def match(self, query: Query, xaddr: str) -> bytes:
         """Return the response to a query that matches the device.

@@ -11,13 +11,13 @@ from scope_ptz.virtual_camera.onvif.media_profiles import SOURCE
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
 
-DARKEST_DB = 20.0
+CLOSED_IRIS_DB = 20.0
 """Attenuation of the closed iris in dB, the unit of ONVIF iris values. The open iris has an attenuation of 0 dB."""
 
 _MODES = ["AUTO", "MANUAL"]
 _POSITIONS = {"Min": 0.0, "Max": 1.0}
 _DISTANCES = {"Min": -1.0, "Max": 1.0}
-_IRIS = {"Min": 0.0, "Max": DARKEST_DB}
+_IRIS = {"Min": 0.0, "Max": CLOSED_IRIS_DB}
 _TOLERANCE = 1e-4  # clients that calculate in single precision may slightly exceed a range
 
 
@@ -47,7 +47,7 @@ class ImagingService:
     def _settings(self, request: Request) -> Reply:
         _require_source(request)
         lens = self._device.lens
-        exposure = {"Mode": _mode(lens.autoiris), "Iris": (1.0 - lens.iris) * DARKEST_DB}
+        exposure = {"Mode": _mode(lens.autoiris), "Iris": (1.0 - lens.iris) * CLOSED_IRIS_DB}
         return {"ImagingSettings": {"Exposure": exposure, "Focus": {"AutoFocusMode": _mode(lens.autofocus)}}}
 
     def _options(self, request: Request) -> Reply:
@@ -74,13 +74,13 @@ class ImagingService:
         _require_source(request)
         lens, settings = self._device.lens, request.ImagingSettings
         focus, exposure = settings.Focus, settings.Exposure
-        iris = None if exposure is None or exposure.Iris is None else _validate_range(exposure.Iris, 0.0, DARKEST_DB)
+        iris = None if exposure is None or exposure.Iris is None else _validate_range(exposure.Iris, 0.0, CLOSED_IRIS_DB)
         if focus is not None and (focus.AutoFocusMode == "AUTO") != lens.autofocus:
             lens.set_autofocus(on=focus.AutoFocusMode == "AUTO")
         if exposure is not None:
             lens.set_autoiris(on=exposure.Mode == "AUTO")
             if exposure.Mode == "MANUAL" and iris is not None:
-                lens.set_iris(1.0 - iris / DARKEST_DB)
+                lens.set_iris(1.0 - iris / CLOSED_IRIS_DB)
         return {}
 
     def _move(self, request: Request) -> Reply:

@@ -50,7 +50,7 @@ class RtspConnection:
 
     Args:
         device: The camera.
-        source: The camera's live picture.
+        source: The camera's live video.
         sessions: The camera's sessions, which all of its connections share.
         tunnels: The camera's RTSP-over-HTTP tunnels, which all of its connections share.
         digest: The authenticator.
@@ -181,11 +181,11 @@ class RtspConnection:
         if "require" in request.headers:
             raise RefusedError(551, {"Unsupported": request.headers["require"]})
         if self._device.faults.unauthorized or (request.method != "OPTIONS" and not self._device.accounts.is_open):
-            verdict = self._digest.check(request.headers.get("authorization"), request.method)
-            if verdict.account is None or self._device.faults.unauthorized:
-                challenges = self._digest.challenges(stale=verdict.stale)
+            result = self._digest.check(request.headers.get("authorization"), request.method)
+            if result.account is None or self._device.faults.unauthorized:
+                challenges = self._digest.challenges(stale=result.stale)
                 return Reply(401, tuple(("WWW-Authenticate", challenge) for challenge in challenges))
-            self._account = verdict.account.name
+            self._account = result.account.name
         return await handler(request)
 
     def _stream_format(self, url: StreamUrl) -> StreamFormat:
@@ -212,9 +212,10 @@ class RtspConnection:
         if url.events_only:
             body = describe_events(url, name=self._device.name, host=self._local_address)
         else:
-            requested = self._stream_format(url)
-            sets = await to_thread.run_sync(parameter_sets, requested.width, requested.height, requested.fps)
-            body = describe(url, requested, sets, name=self._device.name, host=self._local_address)
+            requested_format = self._stream_format(url)
+            width, height, fps = requested_format.width, requested_format.height, requested_format.fps
+            encoder_sets = await to_thread.run_sync(parameter_sets, width, height, fps)
+            body = describe(url, requested_format, encoder_sets, name=self._device.name, host=self._local_address)
         head = (("Content-Type", "application/sdp"), ("Content-Base", url.content_base), ("Cache-Control", "no-cache"))
         return Reply(headers=head, body=body)
 

@@ -1,4 +1,4 @@
-"""Encode live pictures as H.264 with libx264 in a single thread, without frame reordering or look-ahead."""
+"""Encode live video as H.264 with libx264 in a single thread, without frame reordering or look-ahead."""
 
 from __future__ import annotations
 

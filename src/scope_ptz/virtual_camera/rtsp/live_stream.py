@@ -1,4 +1,4 @@
-"""Encoded live pictures. Each format is encoded once for all clients that are playing it."""
+"""Encoded live video. Each format is encoded once for all clients that are playing it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from anyio import to_thread
 
 from scope_ptz.errors import ScopeError
 from scope_ptz.virtual_camera.device import Exposure, VirtualDevice
+from scope_ptz.virtual_camera.frame_selector import FrameSelector
 from scope_ptz.virtual_camera.live_source import LiveSource
-from scope_ptz.virtual_camera.pace import Pace
 from scope_ptz.virtual_camera.rtsp.encoder import H264Encoder
 from scope_ptz.virtual_camera.rtsp.messages import RefusedError
 from scope_ptz.virtual_camera.rtsp.rtp import payloads
@@ -60,7 +60,7 @@ class LiveStreams:
     """A camera's streams, one for each format that is being played.
 
     Args:
-        source: The camera's live picture.
+        source: The camera's live video.
     """
 
     def __init__(self, source: LiveSource) -> None:
@@ -72,11 +72,11 @@ class LiveStreams:
         """The formats that are being encoded."""
         return list(self._streams)
 
-    def join(self, requested: StreamFormat, viewer: Viewer, start_s: float) -> None:
+    def join(self, requested_format: StreamFormat, viewer: Viewer, start_s: float) -> None:
         """Add a viewer.
 
         Args:
-            requested: The format.
+            requested_format: The format.
             viewer: The client that receives the pictures.
             start_s: The ``time.monotonic`` time from which the viewer requires pictures. A keyframe follows as soon as
                 ``MIN_KEYFRAME_INTERVAL_S`` allows.
@@ -84,21 +84,21 @@ class LiveStreams:
         Raises:
             RefusedError: Too many formats are being played.
         """
-        if requested not in self._streams:
+        if requested_format not in self._streams:
             if len(self._streams) >= MAX_FORMATS:
                 raise RefusedError(453)
-            self._streams[requested] = _Stream(self._source, requested)
-        stream = self._streams[requested]
+            self._streams[requested_format] = _Stream(self._source, requested_format)
+        stream = self._streams[requested_format]
         stream.viewers.add(viewer)
         stream.keyframe_from_s = start_s
 
-    def leave(self, requested: StreamFormat, viewer: Viewer) -> None:
+    def leave(self, requested_format: StreamFormat, viewer: Viewer) -> None:
         """Remove a viewer. Encoding stops when a format has no more viewers."""
-        stream = self._streams.get(requested)
+        stream = self._streams.get(requested_format)
         if stream is not None:
             stream.viewers.discard(viewer)
             if not stream.viewers:
-                del self._streams[requested]
+                del self._streams[requested_format]
                 stream.task.cancel()
 
     async def close(self) -> None:
@@ -110,10 +110,10 @@ class LiveStreams:
 
 
 class _Stream:
-    """Encodes the live picture in one format in a separate task."""
+    """Encodes the live video in one format in a separate task."""
 
-    def __init__(self, source: LiveSource, requested: StreamFormat) -> None:
-        self._source, self._requested = source, requested
+    def __init__(self, source: LiveSource, requested_format: StreamFormat) -> None:
+        self._source, self._requested_format = source, requested_format
         self._random = random.Random(0)
         self.viewers: set[Viewer] = set()
         self.keyframe_from_s = inf  # the time from which a viewer is waiting for a keyframe
@@ -129,26 +129,28 @@ class _Stream:
                 viewer.end()
 
     async def _encode(self) -> None:
-        device, fps = self._source.device, self._requested.fps
+        device, fps = self._source.device, self._requested_format.fps
         encoder: H264Encoder | None = None
         previous: Exposure | None = None
-        pace, keyframe_s = Pace(self._source.rate_hz, fps), -inf
+        selector, keyframe_s = FrameSelector(self._source.rate_hz, fps), -inf
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
                 # Time stamps keep increasing when the picture is frozen, as on a camera whose sensor is stuck.
                 taken_s = exposure.taken_s if exposure is not previous else monotonic() - self._source.latency_s
                 previous = exposure
-                if not pace.accepts(taken_s):
+                if not selector.accepts(taken_s):
                     continue
-                width, height = _size(device, self._requested)
+                width, height = _size(device, self._requested_format)
                 if encoder is None or (encoder.width, encoder.height) != (width, height):
                     encoder = await to_thread.run_sync(H264Encoder, width, height, fps)
                     keyframe_s = -inf
-                requested = taken_s >= self.keyframe_from_s
-                keyframe = taken_s - keyframe_s >= (MIN_KEYFRAME_INTERVAL_S if requested else KEYFRAME_INTERVAL_S - 0.5 / fps)
+                keyframe_requested = taken_s >= self.keyframe_from_s
+                keyframe = taken_s - keyframe_s >= (
+                    MIN_KEYFRAME_INTERVAL_S if keyframe_requested else KEYFRAME_INTERVAL_S - 0.5 / fps
+                )
                 if keyframe:
                     keyframe_s = taken_s
-                    self.keyframe_from_s = inf if requested else self.keyframe_from_s
+                    self.keyframe_from_s = inf if keyframe_requested else self.keyframe_from_s
                 nals = await to_thread.run_sync(_encode, encoder, exposure, taken_s, keyframe)
                 unit = AccessUnit(taken_s, keyframe, tuple(payloads(self._corrupt(nals))))
                 for viewer in list(self.viewers):
@@ -167,11 +169,11 @@ class _Stream:
         return nals
 
 
-def _size(device: VirtualDevice, requested: StreamFormat) -> tuple[int, int]:
+def _size(device: VirtualDevice, requested_format: StreamFormat) -> tuple[int, int]:
     """Return the size to encode: the requested size, or half its width and height if the camera has the fault ``size``."""
     if device.faults.picture != "size":
-        return requested.width, requested.height
-    return max(2, requested.width // 4 * 2), max(2, requested.height // 4 * 2)
+        return requested_format.width, requested_format.height
+    return max(2, requested_format.width // 4 * 2), max(2, requested_format.height // 4 * 2)
 
 
 def _encode(encoder: H264Encoder, exposure: Exposure, taken_s: float, keyframe: bool) -> list[bytes]:

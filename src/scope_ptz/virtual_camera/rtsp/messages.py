@@ -15,7 +15,7 @@ MAX_BODY_BYTES = 64 * 1024
 
 _INTERLEAVED = b"$"
 _METHOD = re.compile(r"[A-Z_]{1,32}")
-_VISIBLE = re.compile(r"[\x20-\x7e\t\x80-\xff]*")
+_PRINTABLE = re.compile(r"[\x20-\x7e\t\x80-\xff]*")
 _TUNNEL = re.compile(rb"(GET|POST) \S+ HTTP/1\.[01]")
 _CSEQ = re.compile(r"\d{1,10}")
 
@@ -170,7 +170,7 @@ async def _headers(reader: asyncio.StreamReader) -> dict[str, str]:
         if not line:
             return headers
         name, colon, value = line.partition(":")
-        if not colon or not _VISIBLE.fullmatch(line):
+        if not colon or not _PRINTABLE.fullmatch(line):
             raise MalformedError(400)
         headers[name.strip().lower()] = value.strip()
     raise MalformedError(413)

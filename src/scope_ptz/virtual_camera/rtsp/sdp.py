@@ -9,22 +9,23 @@ from scope_ptz.virtual_camera.rtsp.rtp import CLOCK_HZ, PAYLOAD_TYPE
 from scope_ptz.virtual_camera.rtsp.stream_url import StreamFormat, StreamUrl
 
 
-def describe(url: StreamUrl, requested: StreamFormat, sets: ParameterSets, *, name: str, host: str) -> bytes:
+def describe(url: StreamUrl, requested_format: StreamFormat, parameter_sets: ParameterSets, *, name: str, host: str) -> bytes:
     """Describe a video stream.
 
     Args:
         url: The URL that the client requested.
-        requested: Size and frame rate of the stream.
-        sets: The encoder's parameter sets.
+        requested_format: Size and frame rate of the stream.
+        parameter_sets: The encoder's parameter sets.
         name: The camera's name.
         host: The camera's IP address.
     """
-    sprop = ",".join(b64encode(parameter_set).decode() for parameter_set in (sets.sps, sets.pps))
+    sprop = ",".join(b64encode(parameter_set).decode() for parameter_set in (parameter_sets.sps, parameter_sets.pps))
     track = [
         f"a=rtpmap:{PAYLOAD_TYPE} H264/{CLOCK_HZ}",
-        f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={sets.profile_level_id};sprop-parameter-sets={sprop}",
-        f"a=framerate:{requested.fps:.6f}",
-        f"a=framesize:{PAYLOAD_TYPE} {requested.width}-{requested.height}",
+        f"a=fmtp:{PAYLOAD_TYPE} packetization-mode=1;profile-level-id={parameter_sets.profile_level_id};"
+        f"sprop-parameter-sets={sprop}",
+        f"a=framerate:{requested_format.fps:.6f}",
+        f"a=framesize:{PAYLOAD_TYPE} {requested_format.width}-{requested_format.height}",
     ]
     return _description(url, "video", track, name, host)
 

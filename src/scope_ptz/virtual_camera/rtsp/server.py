@@ -28,10 +28,10 @@ WATCH_INTERVAL_S = 0.1  # interval in seconds between checks for faults and sess
 
 
 class RtspServer:
-    """Serves a camera's live picture.
+    """Serves a camera's live video.
 
     Args:
-        source: The live picture. The caller runs it.
+        source: The live video. The caller runs it.
         realm: The authentication realm, which clients show to their users.
         session_timeout_s: Seconds of client inactivity after which a session ends.
     """

@@ -22,9 +22,9 @@ class Session:
     """A client's session.
 
     Args:
-        requested: The format of the stream; None for an event stream, which is always empty.
+        requested_format: The format of the stream; None for an event stream, which is always empty.
         owner: The client's address and account. Other clients cannot access the session.
-        source: The live picture.
+        source: The live video.
         streams: The encoded streams.
         statistics: The counters to update.
 
@@ -40,13 +40,13 @@ class Session:
 
     def __init__(
         self,
-        requested: StreamFormat | None,
+        requested_format: StreamFormat | None,
         owner: tuple[str, str],
         source: LiveSource,
         streams: LiveStreams,
         statistics: StreamStatistics,
     ) -> None:
-        self.requested, self.owner = requested, owner
+        self.requested_format, self.owner = requested_format, owner
         self._source, self._streams, self._statistics = source, streams, statistics
         self.token = secrets.token_hex(8)
         self.packetizer = RtpPacketizer()
@@ -81,7 +81,7 @@ class Session:
             RefusedError: Too many formats are being played.
         """
         assert self.sink is not None  # noqa: S101 - sessions without a transport are not kept
-        if self.requested is None:
+        if self.requested_format is None:
             return self.packetizer.sequence, self.packetizer.timestamp(monotonic())
         if self._playback is None:
             playback = Playback(
@@ -93,7 +93,7 @@ class Session:
                 # Over TCP, a sent picture shows that the client is active; over UDP, its reports do.
                 on_sent=self.touch if isinstance(self.sink, InterleavedSink) else lambda: None,
             )
-            self._streams.join(self.requested, playback, playback.start_s)
+            self._streams.join(self.requested_format, playback, playback.start_s)
             self._playback = playback
             self._task = asyncio.create_task(self._run(playback))
         return self.packetizer.sequence, self.packetizer.timestamp(self._playback.start_s)
@@ -101,8 +101,8 @@ class Session:
     def pause(self) -> None:
         """Stop sending pictures."""
         playback, self._playback = self._playback, None
-        if playback is not None and self._task is not None and self.requested is not None:
-            self._streams.leave(self.requested, playback)
+        if playback is not None and self._task is not None and self.requested_format is not None:
+            self._streams.leave(self.requested_format, playback)
             self._task.cancel()
 
     async def close(self) -> None:

@@ -21,7 +21,7 @@ class Sessions:
     """A camera's sessions.
 
     Args:
-        source: The live picture.
+        source: The live video.
         timeout_s: Seconds of client inactivity after which a session ends.
 
     Attributes:
@@ -40,7 +40,7 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._sessions)
 
-    def open(self, requested: StreamFormat | None, owner: tuple[str, str]) -> Session:
+    def open(self, requested_format: StreamFormat | None, owner: tuple[str, str]) -> Session:
         """Open a session. The arguments are those of ``Session``.
 
         Raises:
@@ -48,7 +48,7 @@ class Sessions:
         """
         if len(self._sessions) >= MAX_SESSIONS:
             raise RefusedError(453)
-        session = Session(requested, owner, self._source, self.streams, self.statistics)
+        session = Session(requested_format, owner, self._source, self.streams, self.statistics)
         self._sessions[session.token] = session
         self.statistics.sessions += 1
         return session

@@ -110,19 +110,19 @@ class UdpSink:
 
 
 class _Receiver(asyncio.DatagramProtocol):
-    def __init__(self, on_packet: Callable[[], None], on_gone: Callable[[], None]) -> None:
-        self._on_packet, self._on_gone = on_packet, on_gone
+    def __init__(self, on_packet: Callable[[], None], on_unreachable: Callable[[], None]) -> None:
+        self._on_packet, self._on_unreachable = on_packet, on_unreachable
 
     def datagram_received(self, _data: bytes, _addr: object) -> None:
         self._on_packet()
 
     def error_received(self, exc: Exception) -> None:
         if isinstance(exc, ConnectionRefusedError):  # the client's port is closed
-            self._on_gone()
+            self._on_unreachable()
 
 
 async def open_udp(
-    local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_gone: Callable[[], None]
+    local_host: str, remote_host: str, ports: tuple[int, int], on_packet: Callable[[], None], on_unreachable: Callable[[], None]
 ) -> UdpSink:
     """Open two adjacent UDP ports for RTP and RTCP, and connect them to a client's ports.
 
@@ -131,7 +131,7 @@ async def open_udp(
         remote_host: Address of the other end. Packets are never sent elsewhere.
         ports: The client's ports.
         on_packet: Called for each packet from the client, such as an RTCP report.
-        on_gone: Called when the client's ports turn out to be closed.
+        on_unreachable: Called when the client's ports turn out to be closed.
 
     Raises:
         RefusedError: No ports are free, or the client's ports cannot be reached.
@@ -145,7 +145,7 @@ async def open_udp(
     try:
         for udp_socket, port in zip(pair, ports, strict=True):
             udp_socket.connect((remote_host, port))
-            endpoint = await loop.create_datagram_endpoint(lambda: _Receiver(on_packet, on_gone), sock=udp_socket)
+            endpoint = await loop.create_datagram_endpoint(lambda: _Receiver(on_packet, on_unreachable), sock=udp_socket)
             opened.append(endpoint[0])
     except OSError as error:
         for udp_socket in pair:

@@ -91,7 +91,7 @@ def stream_format(url: StreamUrl, device: VirtualDevice, rate_hz: float) -> Stre
     Args:
         url: The URL.
         device: The camera.
-        rate_hz: Frame rate of its live picture, which is the default and the maximum.
+        rate_hz: Frame rate of its live video, which is the default and the maximum.
 
     Raises:
         RefusedError: An option has a value that the camera does not support.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 
-def identity(unit: VapixUnit) -> dict[str, str]:
+def identity(camera: VapixCamera) -> dict[str, str]:
     """Return the brand, product, versions and serial number by VAPIX name."""
     return {
         "Architecture": "aarch64",
@@ -18,7 +18,7 @@ def identity(unit: VapixUnit) -> dict[str, str]:
         "ProdShortName": f"{BRAND} {PRODUCT}",
         "ProdType": "PTZ Camera",
         "ProdVariant": "SCOPE virtual camera",
-        "SerialNumber": unit.serial,
+        "SerialNumber": camera.serial,
         "Soc": "virtual",
         "SocSerialNumber": "",
         "Version": FIRMWARE,

@@ -9,7 +9,7 @@ from typing import Any
 from scope_ptz.virtual_camera.vapix import replies
 from scope_ptz.virtual_camera.vapix.identity import identity
 from scope_ptz.virtual_camera.vapix.replies import Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 DISCOVERY_VERSION, DEVICE_INFO_VERSION = "1.0", "1.3"
 
@@ -24,7 +24,7 @@ APIS = (
 INVALID_VALUE, ONLY_POST, WRONG_VERSION, UNKNOWN_METHOD, INVALID_JSON, MISSING = 1000, 2002, 2003, 2004, 4000, 4002
 
 
-def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: ARG001 - the signature of all JSON interfaces
+def api_discovery(camera: VapixCamera, method: str, body: bytes) -> Reply:  # noqa: ARG001 - the signature of all JSON interfaces
     """Handle a request to ``apidiscovery.cgi``."""
     apis = [{"id": key, "version": version, "name": name, "docLink": "", "status": "official"} for key, name, version in APIS]
 
@@ -34,9 +34,9 @@ def api_discovery(unit: VapixUnit, method: str, body: bytes) -> Reply:  # noqa: 
     return _answer(method, body, DISCOVERY_VERSION, {"getApiList": api_list})
 
 
-def basic_device_info(unit: VapixUnit, method: str, body: bytes) -> Reply:
+def basic_device_info(camera: VapixCamera, method: str, body: bytes) -> Reply:
     """Handle a request to ``basicdeviceinfo.cgi``."""
-    properties = identity(unit)
+    properties = identity(camera)
 
     def selected_properties(request: dict[str, Any]) -> dict[str, Any]:
         names = request.get("params", {}).get("propertyList") if isinstance(request.get("params"), dict) else None

@@ -12,7 +12,7 @@ from scope_ptz.geometry import Perspective, Pose, pan_tilt_deg
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.vapix import scales
 from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 STEP_FRACTION = 0.25
 """Fraction of the field of view by which commands such as ``move=left`` turn the camera."""
@@ -37,39 +37,39 @@ COMMANDS = ("move", *PRESETS, *PIXELS, *CONTINUOUS, *ABSOLUTE, *RELATIVE)
 """Arguments of ``ptz.cgi`` that move the camera."""
 
 
-def move(unit: VapixUnit, arguments: Arguments) -> None:
+def move(camera: VapixCamera, arguments: Arguments) -> None:
     """Carry out the movement commands in a request. If there are several types, only one of them is carried out.
 
     Raises:
         InputError: An argument is invalid, or there is no such preset. In this case, nothing moves.
     """
-    device = unit.device
+    device = camera.device
     if "move" in arguments:
-        _move_word(unit, arguments.choice("move", WORDS))
+        _move_word(camera, arguments.choice("move", WORDS))
     elif any(name in arguments for name in PRESETS):
-        _go(unit, _preset_pose(device, arguments))
+        _go(camera, _preset_pose(device, arguments))
     elif any(name in arguments for name in PIXELS):
-        _go(unit, _pixel_pose(device, arguments))
+        _go(camera, _pixel_pose(device, arguments))
     elif any(name in arguments for name in CONTINUOUS):
         _drive(device, arguments)
     else:
-        _go(unit, _target(device, arguments))
+        _go(camera, _target(device, arguments))
 
 
-def _go(unit: VapixUnit, pose: Pose) -> None:
-    unit.device.move(pose, speed_fraction=scales.speed_fraction(unit.speed), zoom_fraction=1.0)
+def _go(camera: VapixCamera, pose: Pose) -> None:
+    camera.device.move(pose, speed_fraction=scales.speed_fraction(camera.speed), zoom_fraction=1.0)
 
 
-def _move_word(unit: VapixUnit, word: str) -> None:
-    device = unit.device
+def _move_word(camera: VapixCamera, word: str) -> None:
+    device = camera.device
     if word == "stop":
         device.stop()
     elif word == "home":
-        _go(unit, device.home)
+        _go(camera, device.home)
     else:
         right, up = DIRECTIONS[word]
         view = _view(device, device.pose(), device.width, device.height)
-        _go(unit, device.pose().turned(right * STEP_FRACTION * view.hfov_deg, up * STEP_FRACTION * view.vfov_deg))
+        _go(camera, device.pose().turned(right * STEP_FRACTION * view.hfov_deg, up * STEP_FRACTION * view.vfov_deg))
 
 
 def _target(device: VirtualDevice, arguments: Arguments) -> Pose:

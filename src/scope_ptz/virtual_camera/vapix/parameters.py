@@ -12,7 +12,7 @@ from scope_ptz.virtual_camera.vapix.control_queue import CONTROL_TIMEOUT_S, PRIO
 from scope_ptz.virtual_camera.vapix.identity import identity
 from scope_ptz.virtual_camera.vapix.queries import limit_values, preset_data
 from scope_ptz.virtual_camera.vapix.replies import Client, Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 ABILITIES = (
     "AbsoluteFocus", "AbsoluteIris", "AbsolutePan", "AbsoluteTilt", "AbsoluteZoom", "AreaZoom", "AutoFocus", "AutoIris",
@@ -25,28 +25,28 @@ UNSUPPORTED_ABILITIES = (
     "ProportionalSpeed", "RelativeBrightness",
 )  # fmt: skip
 
-QUEUE = "PTZ.Various.V1"  # the group of parameters that configure the control queue
+QUEUE_GROUP = "PTZ.Various.V1"  # the group of parameters that configure the control queue
 
 
-def param(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+def param(camera: VapixCamera, arguments: Arguments, client: Client) -> Reply:
     """Handle a request to ``param.cgi`` with ``action=list`` or ``action=update``."""
     action = arguments.text("action")
     if action == "list":
-        return _list(unit, arguments.text("group"))
+        return _list(camera, arguments.text("group"))
     if action == "update":
         if client.role < Role.ADMINISTRATOR:
             return Reply(403, "Forbidden\n")
-        return _update(unit, arguments)
+        return _update(camera, arguments)
     return replies.parameter_error(f"action: expected list or update, got {action[:MAX_SHOWN_CHARS]!r}")
 
 
-def parameters(unit: VapixUnit) -> dict[str, str]:
+def parameters(camera: VapixCamera) -> dict[str, str]:
     """Return all parameters by name, without the prefix ``root.``."""
-    return {**_properties(unit), **_media(unit), **_ptz(unit), **_presets(unit)}
+    return {**_properties(camera), **_media(camera), **_ptz(camera), **_presets(camera)}
 
 
-def _list(unit: VapixUnit, groups: str) -> Reply:
-    known = parameters(unit)
+def _list(camera: VapixCamera, groups: str) -> Reply:
+    known = parameters(camera)
     rows: dict[str, str] = {}
     for group in groups.split(",") if groups else ["*"]:
         name = group.strip().removeprefix("root.").strip(".")
@@ -62,33 +62,33 @@ def _matches(key: str, pattern: str) -> bool:
     return key == pattern or key.startswith(f"{pattern}.") or ("*" in pattern and fnmatchcase(key, pattern))
 
 
-def _update(unit: VapixUnit, arguments: Arguments) -> Reply:
+def _update(camera: VapixCamera, arguments: Arguments) -> Reply:
     changes = {name.removeprefix("root."): name for name in arguments if name not in ("action", "usergroup", "camera")}
     if not changes:
         return replies.parameter_error("Error -1, nothing to update")
     try:
         for name, argument in changes.items():
-            _set(unit, name, arguments, argument)
+            _set(camera, name, arguments, argument)
     except InputError as problem:
         return replies.parameter_error(f"Error -1 setting param, {problem}")
     return Reply(200, "OK\n")
 
 
-def _set(unit: VapixUnit, name: str, arguments: Arguments, argument: str) -> None:
-    if name == f"{QUEUE}.CtlQueueing":
-        unit.queue.enabled = arguments.choice(argument, ("true", "false")) == "true"
-    elif name == f"{QUEUE}.CtlQueueLimit":
-        unit.queue.limit = arguments.integer(argument, 1, 100)
-    elif name == f"{QUEUE}.CtlQueuePollTime":
-        unit.queue.poll_s = arguments.integer(argument, 5, 3600)
+def _set(camera: VapixCamera, name: str, arguments: Arguments, argument: str) -> None:
+    if name == f"{QUEUE_GROUP}.CtlQueueing":
+        camera.queue.enabled = arguments.choice(argument, ("true", "false")) == "true"
+    elif name == f"{QUEUE_GROUP}.CtlQueueLimit":
+        camera.queue.limit = arguments.integer(argument, 1, 100)
+    elif name == f"{QUEUE_GROUP}.CtlQueuePollTime":
+        camera.queue.poll_s = arguments.integer(argument, 5, 3600)
     elif name == "PTZ.UserAdv.U1.MoveSpeed":
-        unit.speed = arguments.integer(argument, 1, 100)
+        camera.speed = arguments.integer(argument, 1, 100)
     else:
         raise InputError(f"'{name[:MAX_SHOWN_CHARS]}' is unknown or read-only")
 
 
-def _properties(unit: VapixUnit) -> dict[str, str]:
-    properties = identity(unit)
+def _properties(camera: VapixCamera) -> dict[str, str]:
+    properties = identity(camera)
     brand = {
         f"Brand.{key}": properties[key] for key in ("Brand", "ProdFullName", "ProdNbr", "ProdShortName", "ProdType", "ProdVariant")
     }
@@ -106,7 +106,7 @@ def _properties(unit: VapixUnit) -> dict[str, str]:
         "Properties.Firmware.Version": properties["Version"],
         "Properties.Image.Format": "jpeg,mjpeg,h264",
         "Properties.Image.NbrOfViews": "1",
-        "Properties.Image.Resolution": ",".join(unit.resolutions()),
+        "Properties.Image.Resolution": ",".join(camera.resolutions()),
         "Properties.Image.Rotation": "0",
         "Properties.Image.ShowSuboptimalResolutions": "false",
         "Properties.PTZ.DigitalPTZ": "no",
@@ -124,11 +124,11 @@ def _properties(unit: VapixUnit) -> dict[str, str]:
     }
 
 
-def _media(unit: VapixUnit) -> dict[str, str]:
-    resolution = unit.resolutions()[0]
+def _media(camera: VapixCamera) -> dict[str, str]:
+    resolution = camera.resolutions()[0]
     rtsp = {"Network.RTSP.Enabled": "no"}
-    if unit.rtsp_port is not None:
-        rtsp = {"Network.RTSP.Enabled": "yes", "Network.RTSP.Port": str(unit.rtsp_port)}
+    if camera.rtsp_port is not None:
+        rtsp = {"Network.RTSP.Enabled": "yes", "Network.RTSP.Port": str(camera.rtsp_port)}
     return {
         **rtsp,
         "Image.I0.Appearance.ColorEnabled": "yes",
@@ -137,7 +137,7 @@ def _media(unit: VapixUnit) -> dict[str, str]:
         "Image.I0.Appearance.Resolution": resolution,
         "Image.I0.Appearance.Rotation": "0",
         "Image.I0.Enabled": "yes",
-        "Image.I0.Name": unit.device.name.replace("\n", " "),
+        "Image.I0.Name": camera.device.name.replace("\n", " "),
         "Image.I0.Source": "0",
         "Image.I0.Stream.Duration": "0",
         "Image.I0.Stream.FPS": "0",
@@ -154,8 +154,8 @@ def _media(unit: VapixUnit) -> dict[str, str]:
     }
 
 
-def _ptz(unit: VapixUnit) -> dict[str, str]:
-    queue = unit.queue
+def _ptz(camera: VapixCamera) -> dict[str, str]:
+    queue = camera.queue
     support = {**dict.fromkeys(ABILITIES, "true"), **dict.fromkeys(UNSUPPORTED_ABILITIES, "false")}
     content: dict[str, object] = {
         "BoaProtPTZOperator": "password",
@@ -164,10 +164,10 @@ def _ptz(unit: VapixUnit) -> dict[str, str]:
         "NbrOfSerPorts": 0,
         "CamPorts.Cam1Port": -1,
         "ImageSource.I0.PTZEnabled": "true",
-        **{f"Limit.L1.{name}": value for name, value in limit_values(unit.device).items()},
+        **{f"Limit.L1.{name}": value for name, value in limit_values(camera.device).items()},
         "PTZDriverStatuses.Driver1Status": 3,
         **{f"Support.S1.{name}": support[name] for name in sorted(support)},
-        "UserAdv.U1.MoveSpeed": unit.speed,
+        "UserAdv.U1.MoveSpeed": camera.speed,
         "Various.V1.CtlQueueing": str(queue.enabled).lower(),
         "Various.V1.CtlQueueLimit": queue.limit,
         "Various.V1.CtlQueuePollTime": queue.poll_s,
@@ -186,8 +186,8 @@ def _ptz(unit: VapixUnit) -> dict[str, str]:
     return {f"PTZ.{name}": str(value) for name, value in content.items()}
 
 
-def _presets(unit: VapixUnit) -> dict[str, str]:
-    device = unit.device
+def _presets(camera: VapixCamera) -> dict[str, str]:
+    device = camera.device
     home = next((preset.number for preset in device.presets() if preset.pose == device.home), -1)
     content = {"HomePosition": str(home), "ImageSource": "0", "Name": ""}
     for preset in device.presets():

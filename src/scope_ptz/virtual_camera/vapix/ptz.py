@@ -9,7 +9,7 @@ from scope_ptz.virtual_camera.vapix.arguments import MAX_SHOWN_CHARS, Arguments,
 from scope_ptz.virtual_camera.vapix.control_queue import QueueStatus
 from scope_ptz.virtual_camera.vapix.queries import QUERIES, query
 from scope_ptz.virtual_camera.vapix.replies import DONE, Client, Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 UNSUPPORTED = (
     "continuousirismove", "brightness", "rbrightness", "continuousbrightnessmove", "ircutfilter", "backlight", "auxiliary",
@@ -58,22 +58,22 @@ query={{ {" | ".join(QUERIES)} }}
 """
 
 
-def ptz(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+def ptz(camera: VapixCamera, arguments: Arguments, client: Client) -> Reply:
     """Handle a request to ``ptz.cgi``, which contains either a query or commands."""
     try:
         check_camera(arguments)
         if "query" in arguments:
-            return query(unit, arguments)
+            return query(camera, arguments)
         if "info" in arguments:
             return Reply(200, COMMANDS)
         if "whoami" in arguments:
             return replies.lines([f"AXIS {PRODUCT}"])
-        return _command(unit, arguments, client)
+        return _command(camera, arguments, client)
     except (InputError, CameraError) as problem:
         return replies.error(str(problem))
 
 
-def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+def _command(camera: VapixCamera, arguments: Arguments, client: Client) -> Reply:
     for name in arguments:
         if name in UNSUPPORTED:
             raise InputError(f"{name}: not supported by this camera")
@@ -81,27 +81,27 @@ def _command(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
     known = moving or any(name in arguments for name in ("speed", *lens.COMMANDS))
     if not known:
         raise InputError("no command; info=1 lists the commands")
-    unit.queue.check(client)
+    camera.queue.check(client)
     if "speed" in arguments:
-        unit.speed = arguments.integer("speed", 1, 100)
-    lens.adjust(unit.device.lens, arguments)
+        camera.speed = arguments.integer("speed", 1, 100)
+    lens.adjust(camera.device.lens, arguments)
     if moving:
-        moves.move(unit, arguments)
+        moves.move(camera, arguments)
     return DONE
 
 
-def ptz_config(unit: VapixUnit, arguments: Arguments) -> Reply:
+def ptz_config(camera: VapixCamera, arguments: Arguments) -> Reply:
     """Handle a request to ``ptzconfig.cgi``, which saves, renames and removes presets, and sets the home position."""
     try:
         check_camera(arguments)
-        _configure(unit, arguments)
+        _configure(camera, arguments)
     except (InputError, CameraError) as problem:
         return replies.error(str(problem))
     return DONE
 
 
-def _configure(unit: VapixUnit, arguments: Arguments) -> None:
-    device = unit.device
+def _configure(camera: VapixCamera, arguments: Arguments) -> None:
+    device = camera.device
     home = "home" in arguments and arguments.choice("home", ("yes", "no")) == "yes"
     if "setserverpresetname" in arguments:
         device.save_preset(_preset_name(arguments, "setserverpresetname"))
@@ -124,23 +124,23 @@ def _configure(unit: VapixUnit, arguments: Arguments) -> None:
         device.set_home()
 
 
-def ptz_queue(unit: VapixUnit, arguments: Arguments, client: Client) -> Reply:
+def ptz_queue(camera: VapixCamera, arguments: Arguments, client: Client) -> Reply:
     """Handle a request to ``ptzqueue.cgi``. The reply contains the three values of ``QueueStatus``."""
     try:
-        status = _queue_status(unit, arguments, client)
+        status = _queue_status(camera, arguments, client)
     except (InputError, CameraError) as problem:
         return replies.error(str(problem))
     fields = (status.position, status.seconds, status.poll_s)
     return Reply(200, "".join(f'<a name="{value}"></a>' for value in fields) + "\n", "text/html; charset=utf-8")
 
 
-def _queue_status(unit: VapixUnit, arguments: Arguments, client: Client) -> QueueStatus:
+def _queue_status(camera: VapixCamera, arguments: Arguments, client: Client) -> QueueStatus:
     check_camera(arguments)
     if "control" not in arguments:
         raise InputError("control: expected request, drop or query")
-    if not unit.queue.enabled:
+    if not camera.queue.enabled:
         raise CameraError("control queueing is off (PTZ.Various.V1.CtlQueueing)")
-    actions = {"request": unit.queue.request, "drop": unit.queue.drop, "query": unit.queue.status}
+    actions = {"request": camera.queue.request, "drop": camera.queue.drop, "query": camera.queue.status}
     return actions[arguments.choice("control", tuple(actions))](client)
 
 

@@ -10,29 +10,29 @@ from scope_ptz.virtual_camera.device import DevicePreset, VirtualDevice
 from scope_ptz.virtual_camera.vapix import lens, replies, scales
 from scope_ptz.virtual_camera.vapix.arguments import Arguments
 from scope_ptz.virtual_camera.vapix.replies import Reply
-from scope_ptz.virtual_camera.vapix.unit import VapixUnit
+from scope_ptz.virtual_camera.vapix.vapix_camera import VapixCamera
 
 GROUPS = ("zoom", "speed")  # the attribute groups that ``query=attributes`` can select
 
 Attributes = Mapping[str, str | Sequence[Mapping[str, str]]]
 
 
-def query(unit: VapixUnit, arguments: Arguments) -> Reply:
+def query(camera: VapixCamera, arguments: Arguments) -> Reply:
     """Handle ``query=...``.
 
     Raises:
         InputError: There is no such query.
     """
-    return QUERIES[arguments.choice("query", tuple(QUERIES))](unit, arguments)
+    return QUERIES[arguments.choice("query", tuple(QUERIES))](camera, arguments)
 
 
-def _position(unit: VapixUnit, _: Arguments) -> Reply:
-    pose = unit.device.pose()
+def _position(camera: VapixCamera, _: Arguments) -> Reply:
+    pose = camera.device.pose()
     content = {
         "pan": f"{pose.pan_deg:.4f}",
         "tilt": f"{pose.tilt_deg:.4f}",
-        "zoom": scales.zoom_step(pose.zoom, unit.device.limits),
-        **lens.state(unit.device.lens),
+        "zoom": scales.zoom_step(pose.zoom, camera.device.limits),
+        **lens.state(camera.device.lens),
     }
     return replies.values(content)
 
@@ -53,16 +53,16 @@ def limit_values(device: VirtualDevice) -> dict[str, object]:
     }
 
 
-def _limits(unit: VapixUnit, _: Arguments) -> Reply:
-    return replies.values(limit_values(unit.device))
+def _limits(camera: VapixCamera, _: Arguments) -> Reply:
+    return replies.values(limit_values(camera.device))
 
 
-def _speed(unit: VapixUnit, _: Arguments) -> Reply:
-    return replies.values({"speed": unit.speed})
+def _speed(camera: VapixCamera, _: Arguments) -> Reply:
+    return replies.values({"speed": camera.speed})
 
 
-def _presets(unit: VapixUnit, arguments: Arguments) -> Reply:
-    return _preset_list(arguments, [f"presetposno{preset.number}={preset.name}" for preset in unit.device.presets()])
+def _presets(camera: VapixCamera, arguments: Arguments) -> Reply:
+    return _preset_list(arguments, [f"presetposno{preset.number}={preset.name}" for preset in camera.device.presets()])
 
 
 def preset_data(preset: DevicePreset, limits: Limits) -> str:
@@ -71,9 +71,9 @@ def preset_data(preset: DevicePreset, limits: Limits) -> str:
     return f"tilt={pose.tilt_deg:.6f}:pan={pose.pan_deg:.6f}:zoom={scales.zoom_step(pose.zoom, limits)}"
 
 
-def _preset_positions(unit: VapixUnit, arguments: Arguments) -> Reply:
-    limits = unit.device.limits
-    rows = [f"presetposno{preset.number}={preset.name}:{preset_data(preset, limits)}" for preset in unit.device.presets()]
+def _preset_positions(camera: VapixCamera, arguments: Arguments) -> Reply:
+    limits = camera.device.limits
+    rows = [f"presetposno{preset.number}={preset.name}:{preset_data(preset, limits)}" for preset in camera.device.presets()]
     return _preset_list(arguments, rows)
 
 
@@ -83,13 +83,13 @@ def _preset_list(arguments: Arguments, rows: list[str]) -> Reply:
     return replies.lines(["Preset Positions for camera 1", *rows])
 
 
-def _attributes(unit: VapixUnit, arguments: Arguments) -> Reply:
+def _attributes(camera: VapixCamera, arguments: Arguments) -> Reply:
     groups = (arguments.choice("group", GROUPS),) if "group" in arguments else GROUPS
     attributes: dict[str, str | Sequence[Mapping[str, str]]] = {}
     if "zoom" in groups:
-        attributes.update(_zoom_attributes(unit.device))
+        attributes.update(_zoom_attributes(camera.device))
     if "speed" in groups:
-        rows = scales.speed_table(unit.device.head.pan)
+        rows = scales.speed_table(camera.device.head.pan)
         attributes["speeds"] = [{"value": str(value), "speed": f"{speed:g}"} for value, speed in rows]
     if arguments.text("format") == "json":
         return replies.document({"Camera 1": attributes})
@@ -113,7 +113,7 @@ def _format_attribute(value: Any) -> str:
     return ",".join(" | ".join(f"{name}={content}" for name, content in row.items()) for row in value)
 
 
-QUERIES: dict[str, Callable[[VapixUnit, Arguments], Reply]] = {
+QUERIES: dict[str, Callable[[VapixCamera, Arguments], Reply]] = {
     "position": _position,
     "limits": _limits,
     "speed": _speed,

@@ -27,7 +27,7 @@ def shed(
 ) -> Built:
     """Build an industrial shed facing north, with a low-pitched roof, loading doors, office windows and a name over the doors."""
     tag = f"{colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
-    skin = cladding_material(f"cladding {tag}", colour)
+    finish = cladding_material(f"cladding {tag}", colour)
     edge = plain(f"trim {trim[0]:.2f} {trim[1]:.2f} {trim[2]:.2f}", trim, 0.45)
     w, d, h = width_m / 2, depth_m / 2, height_m
     ridge = h + depth_m * 0.06
@@ -44,7 +44,7 @@ def shed(
         (w, 0, ridge),
     ]
     parts = [
-        from_data("walls", walls, [(0, 1, 5, 4), (2, 3, 7, 6), (1, 2, 6, 9, 5), (3, 0, 4, 8, 7)], skin),
+        from_data("walls", walls, [(0, 1, 5, 4), (2, 3, 7, 6), (1, 2, 6, 9, 5), (3, 0, 4, 8, 7)], finish),
         from_data(
             "roof",
             [

@@ -11,7 +11,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
-OPEN_SHARE = {"closed": 0.0, "half open": 0.5, "open": 0.94}
+OPEN_FRACTION = {"closed": 0.0, "half open": 0.5, "open": 0.94}
 """Fraction of the opening that is free, for each state of the door."""
 
 
@@ -25,12 +25,12 @@ def roller_door(
 ) -> Built:
     """Build a roller door in its guides. ``state`` is "closed", "half open" or "open"."""
     s = Solid("roller door")
-    skin = paint(colour, dirt=0.30)
-    low = sill + height * OPEN_SHARE[state]
+    finish = paint(colour, dirt=0.30)
+    low = sill + height * OPEN_FRACTION[state]
     slats = max(1, round((sill + height - low) / 0.115))
     pitch = (sill + height - low) / slats
     for k in range(slats):
-        s.box((width - 0.06, 0.035, pitch - 0.008), (0, -0.10 + 0.004 * (k % 2), low + pitch * (k + 0.5)), skin, 0.012)
+        s.box((width - 0.06, 0.035, pitch - 0.008), (0, -0.10 + 0.004 * (k % 2), low + pitch * (k + 0.5)), finish, 0.012)
     s.box((width - 0.06, 0.06, 0.08), (0, -0.10, low + 0.04), rubber(), 0.01)
     for x in (-width / 2, width / 2):
         s.box((0.10, 0.10, height), (x, -0.08, sill + height / 2), steel(), 0.005)
@@ -69,9 +69,9 @@ def leveller(*, lowered: bool = True) -> Built:
 
 
 def signal(state: str) -> Built:
-    """Build a dock traffic light, red over green, on a grey backing.
+    """Build a dock traffic light, red over green, on a grey backing board.
 
-    ``state`` is "red", "green" or "unlit". Its back is at y = 0, and its middle is at z = 0.
+    ``state`` is "red", "green" or "unlit". Its back is at y = 0, and it is centred on z = 0.
     """
     s = Solid("dock light")
     s.box((0.30, 0.10, 0.62), (0, 0.05, 0), paint("dark grey", dirt=0.2), 0.02)
@@ -89,7 +89,7 @@ def signal(state: str) -> Built:
 
 
 def number(value: str) -> Built:
-    """Build a large dock number on a blue board. Its back is at y = 0, and its middle is at z = 0."""
+    """Build a large dock number on a blue board. Its back is at y = 0, and it is centred on z = 0."""
     s = Solid("dock number")
     with s.at(0, 0.02, 0):
         board(s, 1.20, 1.40, "blue", back=False)

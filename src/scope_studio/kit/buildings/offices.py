@@ -75,11 +75,11 @@ def _room_wall(warm: tuple[float, float, float]) -> bpy.types.Material:
 def wing(*, width: float, depth: float, height: float, openings: Sequence[Opening], colour: tuple[float, float, float]) -> Built:
     """Build an office wing with a flat roof, a parapet, a plinth, and openings for windows in its front (y = 0)."""
     s = Solid("office")
-    skin = office_panel(colour)
-    wall(s, -width / 2, width / 2, 0.0, height, openings, skin)
+    finish = office_panel(colour)
+    wall(s, -width / 2, width / 2, 0.0, height, openings, finish)
     for x in (-width / 2, width / 2):
-        s.box((0.22, depth, height), (x, -depth / 2, height / 2), skin, 0.0)
-    s.box((width, 0.22, height), (0, -depth, height / 2), skin, 0.0)
+        s.box((0.22, depth, height), (x, -depth / 2, height / 2), finish, 0.0)
+    s.box((width, 0.22, height), (0, -depth, height / 2), finish, 0.0)
     s.box((width, depth, 0.15), (0, -depth / 2, height - 0.2), concrete(light=False), 0.0)
     for y in (0.02, -depth - 0.02):
         s.box((width + 0.3, 0.34, 0.30), (0, y, height), paint("blue", dirt=0.3), 0.01)

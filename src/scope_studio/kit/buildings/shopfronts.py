@@ -21,15 +21,15 @@ from scope_studio.kit.signs.faces import write
 
 SILL_M = 0.60
 """Height in metres of the display shelf behind the glass."""
-PILASTER_M = 0.34
+PILASTER_WIDTH_M = 0.34
 """Width in metres of the pilasters at both ends of a shop front."""
-INSIDE_M = 2.6
+ROOM_DEPTH_M = 2.6
 """Depth in metres of the room behind the glass."""
 
 
 @dataclass(frozen=True)
-class Front:
-    """Parameters of a shop front. It is ``width_m`` wide, and the middle of its door is at ``door_x``.
+class ShopFront:
+    """Parameters of a shop front. It is ``width_m`` wide, and the centre of its door is at ``door_x``.
 
     For a viewer in front of it, x increases to the left. ``room`` is the colour of the inside walls, and ``lit`` turns on
     the lamps. ``tiles`` is the colour of the tiles below the windows; None means wood.
@@ -43,21 +43,21 @@ class Front:
     tiles: str | None = None
 
 
-def shop_front(spec: Front) -> Built:
+def shop_front(spec: ShopFront) -> Built:
     """Build the woodwork, the glass and the room behind the glass as one object. The door and the fascia are built separately."""
     s = Solid("shop front")
     wood = paint(spec.colour, dirt=0.10, roughness=0.34)
     w = spec.width_m / 2
-    for x in (-w + PILASTER_M / 2, w - PILASTER_M / 2):
-        s.box((PILASTER_M, 0.20, 3.38), (x, 0.02, 1.69), wood, 0.012)
-        s.box((PILASTER_M + 0.06, 0.26, 0.34), (x, 0.02, 0.17), wood, 0.015)
+    for x in (-w + PILASTER_WIDTH_M / 2, w - PILASTER_WIDTH_M / 2):
+        s.box((PILASTER_WIDTH_M, 0.20, 3.38), (x, 0.02, 1.69), wood, 0.012)
+        s.box((PILASTER_WIDTH_M + 0.06, 0.26, 0.34), (x, 0.02, 0.17), wood, 0.015)
         for dx in (-0.07, 0.07):
             s.box((0.045, 0.02, 2.0), (x + dx, 0.125, 1.55), wood, 0.008)
-        s.box((PILASTER_M + 0.02, 0.36, 0.62), (x, 0.08, 3.10), wood, 0.03)
+        s.box((PILASTER_WIDTH_M + 0.02, 0.36, 0.62), (x, 0.08, 3.10), wood, 0.03)
     s.box((spec.width_m, 0.46, 0.10), (0, 0.13, 3.45), wood, 0.025)
     s.box((spec.width_m, 0.36, 0.07), (0, 0.10, 3.375), wood, 0.02)
-    s.box((spec.width_m - 2 * PILASTER_M, 0.14, 0.14), (0, 0.0, 2.77), wood, 0.012)
-    inner = w - PILASTER_M
+    s.box((spec.width_m - 2 * PILASTER_WIDTH_M, 0.14, 0.14), (0, 0.0, 2.77), wood, 0.012)
+    inner = w - PILASTER_WIDTH_M
     for low, high in ((-inner, spec.door_x - 0.56), (spec.door_x + 0.56, inner)):
         if high - low > 0.35:
             _window(s, low, high, wood, spec.tiles)
@@ -88,7 +88,7 @@ def _pane(s: Solid, x0: float, x1: float, z0: float, z1: float, y: float) -> Non
     s.add([(x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1)], [(1, 0, 3, 2)], shop_glass())
 
 
-def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
+def _doorway(s: Solid, spec: ShopFront, wood: bpy.types.Material) -> None:
     x = spec.door_x
     for side in (-1, 1):
         s.box((0.08, 0.16, 2.70), (x + side * 0.53, -0.02, 1.35), wood, 0.01)
@@ -97,9 +97,9 @@ def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
     s.box((1.15, 0.50, 0.13), (x, -0.12, 0.065), plain("doorstep", (0.22, 0.21, 0.19), 0.5), 0.015)
 
 
-def _room(s: Solid, spec: Front) -> None:
+def _room(s: Solid, spec: ShopFront) -> None:
     """Add the room behind the glass: five inner faces and a row of ceiling lamps."""
-    w, d, z1 = spec.width_m / 2 - 0.06, -INSIDE_M, 2.74
+    w, d, z1 = spec.width_m / 2 - 0.06, -ROOM_DEPTH_M, 2.74
     walls = _indoor_material(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
     floor = _indoor_material(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
     top = _indoor_material(f"ceiling {spec.lit}", (0.6, 0.6, 0.58), 0.5 if spec.lit else 0.03)
@@ -122,7 +122,7 @@ def _room(s: Solid, spec: Front) -> None:
         _stock(s, w - 0.3, d + 0.18, Random(f"stock {spec.width_m} {spec.colour} {spec.door_x:.2f}"))
 
 
-STOCK = ("red", "navy", "cream", "green", "white", "amber", "brown", "light blue", "dark red")
+STOCK_COLOURS = ("red", "navy", "cream", "green", "white", "amber", "brown", "light blue", "dark red")
 
 
 def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
@@ -130,7 +130,7 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
     for z in (0.77, 1.27, 1.77, 2.22):
         x = -half_m
         while x < half_m - 0.3:
-            tint = rng.choice(STOCK)
+            tint = rng.choice(STOCK_COLOURS)
             width, height = rng.uniform(0.07, 0.22), rng.uniform(0.12, 0.36)
             goods = _indoor_material(f"stock {tint}", PALETTE[tint], 0.30)
             for _ in range(rng.randrange(2, 6)):
@@ -186,9 +186,9 @@ def _tiles(colour: str) -> bpy.types.Material:
 
 
 def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """Build the name board over a shop front, at its mounting height. ``small`` is an optional small text at the right end."""
+    """Build the name board over a shop front, at its mounting height. ``small`` is optional small lettering at the right end."""
     s = Solid(f"{name} sign")
-    board = width_m - 2 * PILASTER_M - 0.04
+    board = width_m - 2 * PILASTER_WIDTH_M - 0.04
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
     for z in (2.84, 3.33):
         s.box((board, 0.12, 0.03), (0, 0.085, z), paint(ink if ink in PALETTE else "white", dirt=0.1), 0.006)
@@ -207,7 +207,7 @@ def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | Non
 
 
 def shop_door(colour: str, *, number: str | None = None) -> Built:
-    """Build a closed, half-glazed shop door with the middle of its lower edge at the origin. The number is on the glass."""
+    """Build a closed, half-glazed shop door with the centre of its lower edge at the origin. The number is on the glass."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.16, roughness=0.28)
     for x in (-0.42, 0.42):
@@ -227,7 +227,7 @@ def shop_door(colour: str, *, number: str | None = None) -> Built:
 
 
 def house_door(colour: str, *, number: str | None = None) -> Built:
-    """Build a six-panel front door with a knocker, letter plate and number. The middle of its lower edge is at the origin."""
+    """Build a six-panel front door with a knocker, letter plate and number. The centre of its lower edge is at the origin."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.12, roughness=0.22)
     s.box((0.96, 0.045, 2.02), (0, 0, 1.01), wood, 0.006)

@@ -73,9 +73,9 @@ def industrial(
     s = Solid("industrial shed")
     rng = random.Random(f"shed {seed}")
     tag = f"{colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
-    skin, trim = cladding_material(f"far cladding {tag}", colour, 0.3), plain("far trim", (0.06, 0.07, 0.085), 0.5)
+    finish, trim = cladding_material(f"far cladding {tag}", colour, 0.3), plain("far trim", (0.06, 0.07, 0.085), 0.5)
     w, d, h = width / 2, depth / 2, height
-    s.box((width, depth, h - 0.9), (0, 0, 0.9 + (h - 0.9) / 2), skin, 0.0)
+    s.box((width, depth, h - 0.9), (0, 0, 0.9 + (h - 0.9) / 2), finish, 0.0)
     s.box((width + 0.1, depth + 0.1, 0.95), (0, 0, 0.47), concrete(light=False), 0.0)
     ridge = h + depth * 0.07
     roof = [
@@ -148,11 +148,11 @@ def chimney(height: float = 46.0) -> Built:
 def silos(count: int = 3, *, height: float = 17.0, lettering: str = "") -> Built:
     """Build steel silos in a row along x, with a gantry on top, an elevator leg and a red light."""
     s = Solid("silos")
-    skin = steel()
+    finish = steel()
     for k in range(count):
         x = (k - (count - 1) / 2) * 5.4
         rings = [(2.5 + 0.02 * (i % 2), 3.0 + (height - 5.2) * i / 12) for i in range(13)]
-        s.lathe([(0.5, 1.2), (2.5, 3.0), *rings, (2.5, height - 2.2), (0.5, height - 0.8)], skin, (x, 0, 0), steps=32)
+        s.lathe([(0.5, 1.2), (2.5, 3.0), *rings, (2.5, height - 2.2), (0.5, height - 0.8)], finish, (x, 0, 0), steps=32)
         for a in range(6):
             c, d = math.cos(a * math.pi / 3), math.sin(a * math.pi / 3)
             s.rod((x + 2.4 * c, 2.4 * d, 0), (x + 2.4 * c, 2.4 * d, 3.2), 0.10, steel(dark=True))

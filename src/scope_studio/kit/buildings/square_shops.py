@@ -15,8 +15,8 @@ from scope_studio.kit.core.stage import Built
 def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
     """Build a timber shop front, 0.3 m deep, in front of y = 0.
 
-    It has pilasters, stall risers, transoms, and plate glass with goods behind it. A dark gap in the middle, 1.1 m wide, is
-    for a ``shop_door``.
+    It has pilasters, stall risers, transoms, and plate glass with goods behind it. A dark gap in the centre, 1.1 m wide,
+    takes a ``shop_door``.
     """
     s = Solid("shop front")
     rng = random.Random(f"shop front {seed}")

@@ -18,7 +18,7 @@ from scope_studio.kit.core.shapes import arc
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
-GROUND_M = 3.55
+GROUND_FLOOR_M = 3.55
 """Height in metres of the ground floor."""
 STOREY_M = 2.95
 """Height in metres of each upper floor."""
@@ -28,7 +28,7 @@ WHITE = (0.66, 0.655, 0.62)
 
 
 @dataclass(frozen=True)
-class Terrace:
+class TerracedBuilding:
     """Parameters of one building in a row.
 
     ``wall`` contains the arguments of ``wet_masonry.wall``: kind and colour. ``columns`` is the number of windows on each upper
@@ -52,15 +52,15 @@ class Terrace:
     @property
     def eaves_m(self) -> float:
         """Height of the eaves in metres."""
-        return GROUND_M + STOREY_M * (self.storeys - 1) + 0.15
+        return GROUND_FLOOR_M + STOREY_M * (self.storeys - 1) + 0.15
 
 
-def terrace(spec: Terrace) -> Built:
+def terraced_building(spec: TerracedBuilding) -> Built:
     """Build a terraced building as one mesh."""
     s = Solid(f"{spec.wall[1]} {spec.wall[0]} building")
     rng = Random(f"terrace {spec.seed} {spec.width_m}")
     face = wall(*spec.wall)
-    low = GROUND_M - 0.1 if spec.shop else 0.0
+    low = GROUND_FLOOR_M - 0.1 if spec.shop else 0.0
     holes = _upper_holes(spec)
     if not spec.shop:
         holes += _ground_floor_holes(spec)
@@ -75,30 +75,30 @@ def terrace(spec: Terrace) -> Built:
     _chimney(s, spec, rng)
     _rainwater(s, spec)
     if spec.wall[0] != "brick" or spec.bars == 2:
-        for z in (GROUND_M + STOREY_M * k - 0.05 for k in range(1, spec.storeys)):
+        for z in (GROUND_FLOOR_M + STOREY_M * k - 0.05 for k in range(1, spec.storeys)):
             if z < spec.eaves_m - 1:
                 s.box((spec.width_m, 0.05, 0.14), (0, 0.025, z), trim(spec.stone), 0.012)
     return s.built()
 
 
 Hole = tuple[float, float, float, float, int, int]
-"""Hole in a wall: x of its middle, z of its lower edge, width, height, floor (0 = ground floor, -1 = door opening), column."""
+"""Hole in a wall: x of its centre, z of its lower edge, width, height, floor (0 = ground floor, -1 = door opening), column."""
 
 
-def _upper_holes(spec: Terrace) -> list[Hole]:
+def _upper_holes(spec: TerracedBuilding) -> list[Hole]:
     """Return the window holes of the upper floors."""
     holes: list[Hole] = []
     pitch = spec.width_m / spec.columns
     for floor in range(1, spec.storeys):
         height = 1.75 if floor == 1 else 1.35
-        base = GROUND_M + STOREY_M * (floor - 1) + 0.72
+        base = GROUND_FLOOR_M + STOREY_M * (floor - 1) + 0.72
         holes += [
             (pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)
         ]
     return holes
 
 
-def _ground_floor_holes(spec: Terrace) -> list[Hole]:
+def _ground_floor_holes(spec: TerracedBuilding) -> list[Hole]:
     """Return the window and door holes of a ground floor without a shop."""
     pitch = spec.width_m / spec.columns
     holes: list[Hole] = []
@@ -128,7 +128,7 @@ def _front_wall(s: Solid, width: float, low: float, high: float, holes: list[Hol
         s.add(corners, [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)], face)
 
 
-def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
+def _shell(s: Solid, spec: TerracedBuilding, face: bpy.types.Material) -> None:
     """Add side walls with their gables, and the back wall."""
     w, d, h = spec.width_m / 2, DEPTH_M, spec.eaves_m
     top = h + (0.75 if spec.parapet else 0.0)
@@ -144,12 +144,12 @@ def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
         s.box((spec.width_m, 0.09, 0.12), (0, 0.03, h - 0.22), trim(spec.stone), 0.02)
 
 
-def _roof_rise(spec: Terrace) -> float:
+def _roof_rise(spec: TerracedBuilding) -> float:
     """Return the height of the ridge above the eaves in metres."""
     return DEPTH_M / 2 * (0.80 if spec.roof == "clay" else 0.68)
 
 
-def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: Random, *, lit: bool) -> None:
+def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: TerracedBuilding, rng: Random, *, lit: bool) -> None:
     """Add a sash window in its hole, with frame, glazing bars, curtains or a blind, sill and lintel."""
     joinery = trim((0.66, 0.66, 0.63))
     back = -0.115
@@ -244,7 +244,7 @@ def lit_pane() -> bpy.types.Material:
     return s.surface(base_color=(0.2, 0.14, 0.08), roughness=0.05, emission_color=warm, emission_strength=glow)
 
 
-def _roof(s: Solid, spec: Terrace) -> None:
+def _roof(s: Solid, spec: TerracedBuilding) -> None:
     cover = roofing(spec.roof)
     w, d, h, rise = spec.width_m / 2, DEPTH_M, spec.eaves_m, _roof_rise(spec)
     front = -0.32 if spec.parapet else 0.28
@@ -268,7 +268,7 @@ def _roof(s: Solid, spec: Terrace) -> None:
         )
 
 
-def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
+def _chimney(s: Solid, spec: TerracedBuilding, rng: Random) -> None:
     side = rng.choice((-1, 1))
     x, y = side * (spec.width_m / 2 - 0.35), -DEPTH_M / 2 + rng.choice((-0.6, 0.5))
     top = spec.eaves_m + _roof_rise(spec) + 1.25
@@ -300,7 +300,7 @@ def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
             )
 
 
-def _rainwater(s: Solid, spec: Terrace) -> None:
+def _rainwater(s: Solid, spec: TerracedBuilding) -> None:
     """Add a gutter along the eaves, and a downpipe at one end of the front."""
     black = paint("black", dirt=0.25)
     w, h = spec.width_m / 2, spec.eaves_m

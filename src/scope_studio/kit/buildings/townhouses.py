@@ -109,19 +109,19 @@ def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random,
 
 def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str) -> None:
     """Add louvred shutters, folded back against the wall on both sides of a window."""
-    skin = paint(colour, dirt=0.25, roughness=0.5)
+    finish = paint(colour, dirt=0.25, roughness=0.5)
     leaf = w / 2 - 0.02
     for sign in (-1, 1):
         cx = x + sign * (w / 2 + leaf / 2 + 0.03)
         for dx in (-leaf / 2 + 0.03, leaf / 2 - 0.03):
-            block(s, (0.06, 0.045, zb - za), (cx + dx, 0.03, (za + zb) / 2), skin)
+            block(s, (0.06, 0.045, zb - za), (cx + dx, 0.03, (za + zb) / 2), finish)
         for z in (za + 0.04, (za + zb) / 2, zb - 0.04):
-            block(s, (leaf, 0.045, 0.08), (cx, 0.03, z), skin)
+            block(s, (leaf, 0.045, 0.08), (cx, 0.03, z), finish)
         count = 16
         for k in range(count):
             z = za + 0.1 + (zb - za - 0.2) * (k + 0.5) / count
             with s.at(cx, 0.026, z, pitch=38):
-                block(s, (leaf - 0.1, 0.012, (zb - za) / count * 0.95), (0, 0, 0), skin)
+                block(s, (leaf - 0.1, 0.012, (zb - za) / count * 0.95), (0, 0, 0), finish)
 
 
 def town_house(h: House) -> Built:

@@ -58,21 +58,21 @@ def shell(
 ) -> Built:
     """Build the warehouse: walls with front openings, a parapet, a low-pitched roof with roof lights and vents, and the hall.
 
-    The hall's floor is at dock height, except where x is less than ``ramp_to``: there it is at yard level. Its back wall is 13 m
-    behind the front.
+    The hall's floor is at dock height where x is at least ``ramp_to``, and at yard level elsewhere. Its back wall is 13 m behind
+    the front.
     """
     s = Solid("warehouse")
-    skin, trim = cladding_material("warehouse cladding", colour, 0.25), plain("warehouse band", band, 0.45)
+    finish, trim = cladding_material("warehouse cladding", colour, 0.25), plain("warehouse band", band, 0.45)
     w, h = width / 2, height
-    wall(s, -w, w, 1.3, h, openings, skin)
+    wall(s, -w, w, 1.3, h, openings, finish)
     wall(s, -w, w, 0.0, 1.3, openings, concrete(light=False), 0.30)
     s.box((width + 0.2, 0.10, 0.55), (0, 0.05, h + 0.10), trim, 0.01)
     s.box((width + 0.24, 0.36, 0.08), (0, -0.06, h + 0.40), paint("light grey", dirt=0.4), 0.01)
     for x in (-w, w):
-        s.box((0.22, depth, h - 1.3), (x, -depth / 2, 1.3 + (h - 1.3) / 2), skin, 0.0)
+        s.box((0.22, depth, h - 1.3), (x, -depth / 2, 1.3 + (h - 1.3) / 2), finish, 0.0)
         s.box((0.30, depth, 1.3), (x, -depth / 2, 0.65), concrete(light=False), 0.0)
         s.box((0.34, depth, 0.55), (x, -depth / 2, h + 0.10), trim, 0.01)
-    s.box((width, 0.22, h), (0, -depth, h / 2), skin, 0.0)
+    s.box((width, 0.22, h), (0, -depth, h / 2), finish, 0.0)
     s.box((width + 0.2, 0.30, 0.55), (0, -depth, h + 0.10), trim, 0.01)
     _roof(s, w, depth, h)
     _hall(s, w, h, ramp_to)
@@ -171,7 +171,7 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
     """Build flat letters with the cap height ``cap`` on a rail, emissive white if lit.
 
-    The wall is the plane y = 0. The middle of the letters is at z = 0.
+    The wall is the plane y = 0. The letters are centred on z = 0.
     """
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)

@@ -194,9 +194,9 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
     return _get_or_create(f"cloth {colour} {roughness:.2f}", make)
 
 
-def pane(tint: float = 0.25) -> bpy.types.Material:
-    """Return the material of clear glass that transmits most of the light and reflects the fraction ``tint``."""
-    name = f"pane {tint:.2f}"
+def pane(reflectance: float = 0.25) -> bpy.types.Material:
+    """Return the material of clear glass that transmits most of the light and reflects the fraction ``reflectance``."""
+    name = f"pane {reflectance:.2f}"
     existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing
@@ -205,7 +205,7 @@ def pane(tint: float = 0.25) -> bpy.types.Material:
     clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
     mirror.inputs["Roughness"].default_value = 0.03
     mixed = s.node("ShaderNodeMixShader")
-    mixed.inputs[0].default_value = tint
+    mixed.inputs[0].default_value = reflectance
     s.tree.links.new(clear.outputs[0], mixed.inputs[1])
     s.tree.links.new(mirror.outputs[0], mixed.inputs[2])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")

@@ -135,7 +135,7 @@ def text(
 
     Args:
         facing: Direction that the lettering faces: "-Y", "+Y", "+X", "-X" or "+Z".
-        centre: Middle of the text block if ``align`` is "CENTER", or its left edge if ``align`` is "LEFT".
+        centre: Centre of the text block if ``align`` is "CENTER", or its left edge if ``align`` is "LEFT".
 
     Returns:
         The object, and its text mark with the measured size of the text.

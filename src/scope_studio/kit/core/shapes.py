@@ -1,4 +1,4 @@
-"""Plane outlines (arcs, rounded rectangles) and a plain block."""
+"""Two-dimensional outlines (arcs, rounded rectangles), and a block without chamfers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A builder that collects primitives, materials and texts, and creates one mesh object from them."""
+"""A builder that collects primitives, materials and text marks, and creates one mesh object from them."""
 
 from __future__ import annotations
 
@@ -239,7 +239,7 @@ class Solid:
         """Add one line of lettering that faces in the direction ``facing``, with its exact text mark.
 
         Args:
-            centre: Point at half the height of the capitals, at the middle, left end or right end of the line (see ``align``).
+            centre: Point at half the height of the capitals, at the centre, left end or right end of the line (see ``align``).
             mark: Whether to add a text mark for the line.
 
         Returns:
@@ -281,5 +281,5 @@ class Solid:
         return obj
 
     def built(self) -> Built:
-        """Create the mesh object and return it with its texts."""
+        """Create the mesh object and return it with its text marks."""
         return Built.of(self.name, [self.object()], self.texts)

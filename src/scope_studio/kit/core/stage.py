@@ -20,9 +20,9 @@ INSTANCE_PROP = "scope_instance"
 
 @dataclass
 class TextMark:
-    """A readable text on an object, in object coordinates (before placement).
+    """Readable text on an object, in object coordinates (before placement).
 
-    ``centre`` is the middle of the text block. ``right`` and ``up`` are unit vectors that point along the line of text, as a
+    ``centre`` is the centre of the text block. ``right`` and ``up`` are unit vectors that point along the line of text, as a
     viewer sees it, and towards the top of the letters. The outward normal is ``right x up``. ``cap_height_m`` is the height of a
     capital letter.
     """
@@ -38,7 +38,7 @@ class TextMark:
 
 @dataclass
 class Built:
-    """The result of a builder: Blender objects whose parent is ``root``, and the readable texts on them."""
+    """The result of a builder: Blender objects whose parent is ``root``, and the readable text on them."""
 
     root: bpy.types.Object
     objects: list[bpy.types.Object]
@@ -58,21 +58,21 @@ class Built:
 
     def copy(self) -> Built:
         """Return a linked duplicate. It shares the mesh data, so a hundred cones need as much memory as one."""
-        twins: dict[bpy.types.Object, bpy.types.Object] = {}
+        copies: dict[bpy.types.Object, bpy.types.Object] = {}
         for obj in [self.root, *self.objects]:
-            twin = obj.copy()
-            bpy.context.scene.collection.objects.link(twin)
-            twins[obj] = twin
-        for obj, twin in twins.items():
-            if obj.parent in twins:
-                twin.parent = twins[obj.parent]
-                twin.matrix_parent_inverse = obj.matrix_parent_inverse.copy()
-        return Built(twins[self.root], [twins[o] for o in self.objects], list(self.texts))
+            duplicate = obj.copy()
+            bpy.context.scene.collection.objects.link(duplicate)
+            copies[obj] = duplicate
+        for obj, duplicate in copies.items():
+            if obj.parent in copies:
+                duplicate.parent = copies[obj.parent]
+                duplicate.matrix_parent_inverse = obj.matrix_parent_inverse.copy()
+        return Built(copies[self.root], [copies[o] for o in self.objects], list(self.texts))
 
 
 @dataclass
 class Instance:
-    """An annotated object of the scene. ``number`` is its value in the instance-number layer (also ``object.pass_index``)."""
+    """An annotated object of the scene. ``number`` is its pixel value in instance masks (``object.pass_index``)."""
 
     id: str
     number: int
@@ -95,7 +95,7 @@ class Viewpoint:
 
 @dataclass
 class Preset:
-    """A named pan, tilt and zoom of a viewpoint. One preset of the scene is the home preset."""
+    """A named pan, tilt and zoom at a viewpoint. One preset of the scene is the home preset."""
 
     name: str
     viewpoint: str
@@ -167,8 +167,8 @@ class Stage:
 
         Args:
             name: A plain English noun phrase, such as "white van".
-            lean_deg: Rotations about the object's x axis and y axis.
-            attributes: Facts that questions can be about, such as colour, material, state ("open", "lit", "parked") or facing.
+            lean_deg: Rotations in degrees about the object's x axis and y axis.
+            attributes: Facts that questions can ask about, such as colour, material, state ("open", "lit", "parked") or facing.
                 Values are short lower-case strings, numbers or booleans.
 
         Returns:

@@ -1,4 +1,4 @@
-"""Rounded bodies of people, animals and objects. A voxel remesh merges capsules, ellipsoids and lofts into one skin."""
+"""Rounded bodies of people, animals and objects. A voxel remesh merges capsules, ellipsoids and lofts into one surface."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix, Vector, noise
 
 Vec = Vector | tuple[float, float, float]
-Skin = tuple[np.ndarray, list[tuple[int, ...]]]
+SurfaceMesh = tuple[np.ndarray, list[tuple[int, ...]]]
 """Surface mesh of a body: points (n, 3) and faces."""
 
 
@@ -70,7 +70,7 @@ class Volume:
             rows.append(row)
         self.rings(rows)
 
-    def merge(self, voxel_m: float, smooth: int = 4) -> Skin:
+    def merge(self, voxel_m: float, smooth: int = 4) -> SurfaceMesh:
         """Merge the shapes into one smoothed, watertight surface."""
         mesh = bpy.data.meshes.new("merge")
         mesh.from_pydata(self.points, [], self.faces)
@@ -95,9 +95,9 @@ class Volume:
         return points.reshape(-1, 3), faces
 
 
-def normals(skin: Skin) -> np.ndarray:
-    """Return the unit vertex normals of a quad skin, (n, 3)."""
-    points, faces = skin
+def normals(surface: SurfaceMesh) -> np.ndarray:
+    """Return the unit vertex normals of a quad surface, (n, 3)."""
+    points, faces = surface
     quads = np.array([f if len(f) == 4 else (*f, f[-1]) for f in faces])
     cross = np.cross(points[quads[:, 2]] - points[quads[:, 0]], points[quads[:, 3]] - points[quads[:, 1]])
     total = np.zeros_like(points)
@@ -107,17 +107,17 @@ def normals(skin: Skin) -> np.ndarray:
 
 
 def crease(
-    skin: Skin,
+    surface: SurfaceMesh,
     amount: Callable[[np.ndarray], np.ndarray] | np.ndarray | float,
     scale: tuple[float, float, float],
     seed: float,
-) -> Skin:
-    """Return the skin displaced by noise that imitates the folds of cloth.
+) -> SurfaceMesh:
+    """Return the surface displaced by noise that imitates the folds of cloth.
 
     Args:
         amount: Displacement in metres: a number, an array (n,), or a function of the points (n, 3) that returns either.
     """
-    points, faces = skin
+    points, faces = surface
     size = amount(points) if callable(amount) else amount
     shift = np.array(
         [
@@ -126,4 +126,4 @@ def crease(
             for x, y, z in points
         ]
     )
-    return points + normals(skin) * (shift * size)[:, None], faces
+    return points + normals(surface) * (shift * size)[:, None], faces

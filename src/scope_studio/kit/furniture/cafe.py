@@ -13,9 +13,9 @@ from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
-TABLE_M = 0.74
+TABLE_HEIGHT_M = 0.74
 """Height of a table top in metres."""
-SEAT_M = 0.45
+SEAT_HEIGHT_M = 0.45
 """Height of a seat in metres."""
 
 
@@ -23,11 +23,19 @@ def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
     """Build a round pedestal table with a metal-edged top."""
     s = Solid("café table")
     iron = paint("black", dirt=0.2)
-    s.lathe([(radius - 0.004, TABLE_M - 0.028), (radius, TABLE_M - 0.022), (radius, TABLE_M - 0.004), (radius - 0.006, TABLE_M)],
-            paint(colour, dirt=0.08, roughness=0.3), steps=40)  # fmt: skip
+    s.lathe(
+        [
+            (radius - 0.004, TABLE_HEIGHT_M - 0.028),
+            (radius, TABLE_HEIGHT_M - 0.022),
+            (radius, TABLE_HEIGHT_M - 0.004),
+            (radius - 0.006, TABLE_HEIGHT_M),
+        ],
+        paint(colour, dirt=0.08, roughness=0.3),
+        steps=40,
+    )
     s.tube(
         [
-            ((radius + 0.003) * math.cos(a), (radius + 0.003) * math.sin(a), TABLE_M - 0.013)
+            ((radius + 0.003) * math.cos(a), (radius + 0.003) * math.sin(a), TABLE_HEIGHT_M - 0.013)
             for a in (2 * math.pi * k / 40 for k in range(40))
         ],
         0.012,
@@ -35,7 +43,7 @@ def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
         sides=6,
         closed=True,
     )
-    s.lathe([(0.05, 0.05), (0.032, 0.12), (0.028, 0.60), (0.06, 0.70), (0.16, TABLE_M - 0.028)], iron, steps=20)
+    s.lathe([(0.05, 0.05), (0.032, 0.12), (0.028, 0.60), (0.06, 0.70), (0.16, TABLE_HEIGHT_M - 0.028)], iron, steps=20)
     for k in range(3):
         a = 2 * math.pi * k / 3 + 0.4
         s.tube(
@@ -53,15 +61,18 @@ def chair(colour: str = "dark green") -> Built:
     for sign in (-1, 1):
         x = sign * 0.19
         s.tube(
-            [(x, 0.20, 0.0), (x, 0.17, SEAT_M - 0.02), (x, -0.16, SEAT_M - 0.02), (x * 0.98, -0.24, 0.88)], 0.012, metal, sides=8
+            [(x, 0.20, 0.0), (x, 0.17, SEAT_HEIGHT_M - 0.02), (x, -0.16, SEAT_HEIGHT_M - 0.02), (x * 0.98, -0.24, 0.88)],
+            0.012,
+            metal,
+            sides=8,
         )
-        s.rod((x, -0.26, 0.0), (x, -0.12, SEAT_M - 0.02), 0.012, metal, sides=8)
+        s.rod((x, -0.26, 0.0), (x, -0.12, SEAT_HEIGHT_M - 0.02), 0.012, metal, sides=8)
         s.rod((x, 0.19, 0.18), (x, -0.22, 0.18), 0.007, metal, sides=6)
     for k in range(7):
-        s.box((0.40, 0.044, 0.014), (0, 0.17 - 0.055 * k, SEAT_M - 0.007), wood, 0.004)
+        s.box((0.40, 0.044, 0.014), (0, 0.17 - 0.055 * k, SEAT_HEIGHT_M - 0.007), wood, 0.004)
     for k in range(3):
         z = 0.60 + 0.11 * k
-        with s.at(0, -0.178 - 0.185 * (z - SEAT_M) / 1.0, z, pitch=-10):
+        with s.at(0, -0.178 - 0.185 * (z - SEAT_HEIGHT_M) / 1.0, z, pitch=-10):
             s.box((0.40, 0.014, 0.055), (0, 0, 0), wood, 0.004)
     return s.built()
 

@@ -18,7 +18,7 @@ from scope_studio.kit.core.stage import Built
 def fountain_basin(radius: float = 3.0) -> Built:
     """Build a stone basin with a moulded rim, water, and eight low jets.
 
-    A base in the middle, 1.5 m square and 0.6 m high, supports a pedestal.
+    A base in the centre, 1.5 m square and 0.6 m high, supports a pedestal.
     """
     s = Solid("fountain")
     stone = _basin_stone()

@@ -12,7 +12,7 @@ from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
-CRATE_M = (0.56, 0.38, 0.16)
+CRATE_SIZE_M = (0.56, 0.38, 0.16)
 """Width, depth and height of a produce crate in metres."""
 
 
@@ -25,7 +25,7 @@ def crate(colour: str = "timber") -> Built:
 
 def _crate(s: Solid, colour: str) -> None:
     """Add an empty crate."""
-    w, d, h = CRATE_M
+    w, d, h = CRATE_SIZE_M
     material = timber() if colour == "timber" else paint(colour, dirt=0.25, roughness=0.55)
     s.box((w, d, 0.012), (0, 0, 0.008), material, 0.0)
     for z in (0.045, 0.125):
@@ -38,11 +38,11 @@ def _crate(s: Solid, colour: str) -> None:
             s.box((0.03, 0.03, h), (x, y, h / 2), material, 0.002)
 
 
-Maker = Callable[[Solid, random.Random, float, float, float], None]
+AddPiece = Callable[[Solid, random.Random, float, float, float], None]
 """A function that adds one piece of produce at a position (x, y, z). The generator varies its appearance."""
 
 
-def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> Maker:
+def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.92, name: str) -> AddPiece:
     """Return a function that adds a round fruit or vegetable in one of the colours, chosen at random."""
     profile = [(0.15, -0.95), (0.7, -0.7), (1.0, 0.0), (0.75, 0.72), (0.3, 0.93), (0.08, 0.82)]
 
@@ -55,7 +55,7 @@ def _ball(radius: float, *tints: tuple[float, float, float], squash: float = 0.9
     return make
 
 
-def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> Maker:
+def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip: float = 0.3, name: str) -> AddPiece:
     """Return a function that adds a long vegetable, loaf or fish in one of the colours, chosen at random."""
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -68,7 +68,7 @@ def _stick(length: float, radius: float, *tints: tuple[float, float, float], tip
     return make
 
 
-def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, float, float], name: str) -> Maker:
+def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, float, float], name: str) -> AddPiece:
     """Return a function that adds a leafy vegetable."""
 
     def make(s: Solid, rng: random.Random, x: float, y: float, z: float) -> None:
@@ -98,7 +98,7 @@ def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, fl
     return make
 
 
-PRODUCE: dict[str, tuple[Maker, float]] = {
+PRODUCE: dict[str, tuple[AddPiece, float]] = {
     "apples": (_ball(0.040, (0.42, 0.020, 0.018), (0.36, 0.05, 0.02), (0.48, 0.10, 0.03), name="apple"), 0.078),
     "green apples": (_ball(0.040, (0.24, 0.34, 0.035), (0.30, 0.36, 0.05), name="green apple"), 0.078),
     "oranges": (_ball(0.043, (0.80, 0.22, 0.008), (0.76, 0.26, 0.012), name="orange"), 0.082),
@@ -128,7 +128,7 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
     s = Solid(f"crate of {kind}")
     rng = random.Random(f"{kind} {seed}")
     _crate(s, colour)
-    w, d, h = CRATE_M
+    w, d, h = CRATE_SIZE_M
     make, pitch = PRODUCE[kind]
     bed = {"fish": (0.62, 0.70, 0.74), "salmon": (0.62, 0.70, 0.74), "prawns": (0.62, 0.70, 0.74)}.get(kind, (0.10, 0.08, 0.05))
     s.box((w - 0.02, d - 0.02, h - 0.06), (0, 0, (h - 0.06) / 2 + 0.01), plain(f"crate bed {bed[0]:.2f}", bed, 0.7), 0.0)

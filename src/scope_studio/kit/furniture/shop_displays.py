@@ -147,7 +147,7 @@ def crate(load: str | None = None, *, colour: str | None = None) -> Built:
     if load is None:
         return s.built()
     colour_rgb, r = PRODUCE[load]
-    skin = plain(f"fruit {load}", colour_rgb, 0.32)
+    finish = plain(f"fruit {load}", colour_rgb, 0.32)
     rng = Random(load)
     s.box((0.52, 0.35, 0.10), (0, 0, 0.13), plain(f"fruit shade {load}", tuple(c * 0.25 for c in colour_rgb), 0.8), 0.02)
     profile = [(r * math.sin(a) + 0.001, -r * math.cos(a)) for a in (math.pi * k / 6 for k in range(7))]
@@ -157,7 +157,7 @@ def crate(load: str | None = None, *, colour: str | None = None) -> Built:
             y = -0.165 + r + 1.75 * r * j
             if x < 0.26 - r:
                 heap = 0.035 * (1 - (x / 0.26) ** 2) * (1 - (y / 0.18) ** 2)
-                s.lathe(profile, skin, (x, y, 0.20 + heap + rng.uniform(-0.006, 0.006)), steps=10)
+                s.lathe(profile, finish, (x, y, 0.20 + heap + rng.uniform(-0.006, 0.006)), steps=10)
     return s.built()
 
 
@@ -211,7 +211,7 @@ def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: 
 
 
 def _flower(s: Solid, at: Point, size: float, turn: float, material: bpy.types.Material) -> None:
-    """Add five petals around a raised middle."""
+    """Add five petals around a raised centre."""
     x, y, z = at
     for j in range(5):
         b = turn + 2 * math.pi * j / 5

@@ -33,8 +33,8 @@ def loaf(seed: int = 0) -> Built:
     v = Volume()
     half = rng.uniform(0.09, 0.13)
     v.capsule((-half, 0, 0.055), (half, 0, 0.055), 0.062, 0.062, flat=0.9)
-    skin = v.merge(0.012, 2)
-    s.add(skin[0].tolist(), skin[1], _goods_material("crust", (0.36, 0.165, 0.055), 0.7))
+    surface = v.merge(0.012, 2)
+    s.add(surface[0].tolist(), surface[1], _goods_material("crust", (0.36, 0.165, 0.055), 0.7))
     for k in range(4):
         with s.at(-half + 2 * half * k / 3, 0, 0.113, turn=35):
             s.box((0.018, 0.085, 0.010), (0, 0, 0), _goods_material("crumb", (0.66, 0.46, 0.24), 0.8), 0.004)
@@ -63,8 +63,8 @@ def ham() -> Built:
     v = Volume()
     v.capsule((0, 0, -0.16), (0, 0, -0.30), 0.030, 0.075)
     v.ellipsoid((0.01, 0, -0.40), (0.105, 0.085, 0.13))
-    skin = v.merge(0.012, 3)
-    s.add(skin[0].tolist(), skin[1], _goods_material("ham", (0.40, 0.085, 0.055), 0.35))
+    surface = v.merge(0.012, 3)
+    s.add(surface[0].tolist(), surface[1], _goods_material("ham", (0.40, 0.085, 0.055), 0.35))
     return s.built()
 
 
@@ -133,8 +133,8 @@ def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
         v.capsule((side * 0.15, 0, 1.32), (side * 0.20, 0.02, 1.05), 0.055, 0.042)
         if not dress:
             v.capsule((side * 0.20, 0.02, 1.05), (side * 0.19, 0.09, 0.82), 0.042, 0.036)
-    skin = v.merge(0.016, 3)
-    s.add(skin[0].tolist(), skin[1], _goods_material(f"garment {colour}", PALETTE[colour], 0.85))
+    surface = v.merge(0.016, 3)
+    s.add(surface[0].tolist(), surface[1], _goods_material(f"garment {colour}", PALETTE[colour], 0.85))
     n, rows = 28, []
     flare = (0.165, 0.24, 0.33) if dress else (0.165, 0.185, 0.21)
     for i, r in enumerate(flare):

@@ -13,7 +13,7 @@ from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
-COUNTER_M = 0.78
+COUNTER_HEIGHT_M = 0.78
 """Height in metres of a stall's counter at its front edge."""
 
 
@@ -42,15 +42,15 @@ def stall(
     else:
         _canopy(s, cloth, w + 0.14, d + 0.22)
     if table:
-        with s.at(0, 0.35, COUNTER_M + 0.12, pitch=-14):
+        with s.at(0, 0.35, COUNTER_HEIGHT_M + 0.12, pitch=-14):
             s.box((2 * w - 0.08, 1.24, 0.04), (0, 0, 0), timber(fresh=False), 0.006)
         for x in (-w + 0.15, 0.0, w - 0.15):
-            s.rod((x, 0.88, 0.0), (x, 0.88, COUNTER_M - 0.03), 0.02, pole)
+            s.rod((x, 0.88, 0.0), (x, 0.88, COUNTER_HEIGHT_M - 0.03), 0.02, pole)
             s.rod((x, -0.2, 0.0), (x, -0.2, 1.02), 0.02, pole)
         skirt = plain("stall skirt", (0.030, 0.065, 0.034), 0.95)
         n = 40
         line = [(-w + 0.02 + (2 * w - 0.04) * k / n, 0.955 + 0.014 * math.sin(k * 2.1), 0.0) for k in range(n + 1)]
-        points = [(x, y, 0.04) for x, y, _ in line] + [(x, 0.955, COUNTER_M - 0.02) for x, _, _ in line]
+        points = [(x, y, 0.04) for x, y, _ in line] + [(x, 0.955, COUNTER_HEIGHT_M - 0.02) for x, _, _ in line]
         s.add(points, [(k + 1, k, n + 1 + k, n + 2 + k) for k in range(n)], skirt)
         s.add(
             [(-w + 0.02, 0.955, 0.04), (-w + 0.02, -0.2, 0.04), (-w + 0.02, -0.2, 1.0), (-w + 0.02, 0.955, 0.76)],

@@ -17,7 +17,7 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A dual carriageway along y that bends in the distance. Offsets are measured from the middle of the central reserve.
+    """A dual carriageway along y that bends in the distance. Offsets are measured from the centre line of the central reserve.
 
     Each side is paved from the offset ``reserve_m`` to ``edge_m``, and its lanes, ``lane_m`` wide, begin at ``first_lane_m``. The
     road is straight up to the distance ``straight_m`` from the origin, and then bends with ``radius_m`` until ``length_m``.
@@ -34,7 +34,7 @@ class Carriageway:
     patches: Sequence[markings.Patch] = field(default_factory=tuple)
 
     def centre_x(self, y: float) -> float:
-        """Return the x coordinate of the road's middle at ``y``. The road bends left in the north and right in the south."""
+        """Return the x coordinate of the road's centre line at ``y``. The road bends left in the north and right in the south."""
         beyond = max(0.0, abs(y) - self.straight_m)
         return -math.copysign(1.0, y) * beyond * beyond / (2 * self.radius_m)
 

@@ -15,7 +15,7 @@ from scope_studio.kit.ground.markings import Stencil
 KERB_M = 0.12
 """Height of the footways above the road, in metres."""
 
-LIFT_M = 0.004
+PAINT_HEIGHT_M = 0.004
 """Height of paint above the road, in metres."""
 
 Outline = Sequence[tuple[float, float]]
@@ -34,9 +34,9 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
     p = s.position()
     x, y, _ = s.xyz(p)
     stones = s.xyz(s.voronoi(p, 70.0, output="Color"))[0]
-    fine, middle, broad = s.noise(p, 8.0, 4.0, 0.65), s.noise(p, 0.9, 5.0, 0.6), s.noise(p, 0.13, 4.0)
+    fine, medium, broad = s.noise(p, 8.0, 4.0, 0.65), s.noise(p, 0.9, 5.0, 0.6), s.noise(p, 0.13, 4.0)
     tone = s.math("ADD", 0.024, s.math("MULTIPLY", stones, 0.022))
-    tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", middle, 0.5), 0.020))
+    tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", medium, 0.5), 0.020))
     tone = s.math("ADD", tone, s.math("MULTIPLY", s.math("SUBTRACT", broad, 0.45), 0.035))
     grey = s.node("ShaderNodeCombineColor")
     for socket, warmth in zip(grey.inputs, (1.0, 1.0, 1.03), strict=True):
@@ -67,7 +67,12 @@ def markings(bars: Sequence[Stencil], colour: str) -> Built:
     points, faces = [], []
     for bar in bars:
         n = len(points)
-        points += [(bar.u0, bar.v0, LIFT_M), (bar.u1, bar.v0, LIFT_M), (bar.u1, bar.v1, LIFT_M), (bar.u0, bar.v1, LIFT_M)]
+        points += [
+            (bar.u0, bar.v0, PAINT_HEIGHT_M),
+            (bar.u1, bar.v0, PAINT_HEIGHT_M),
+            (bar.u1, bar.v1, PAINT_HEIGHT_M),
+            (bar.u0, bar.v1, PAINT_HEIGHT_M),
+        ]
         faces.append((n, n + 1, n + 2, n + 3))
     return Built.of("road paint", [from_data("road paint", points, faces, road_paint(colour))])
 
@@ -114,7 +119,7 @@ def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Bu
 
 
 def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
-    """Return the convex outline moved inwards."""
+    """Return a convex outline, inset by ``by_m`` metres."""
     corners = []
     n = len(outline)
     for i in range(n):
@@ -146,8 +151,8 @@ def _paving(slab: tuple[float, float]) -> bpy.types.Material:
     s.set_input(brick.inputs["Color1"], (0.150, 0.145, 0.134))
     s.set_input(brick.inputs["Color2"], (0.088, 0.085, 0.080))
     s.set_input(brick.inputs["Mortar"], (0.022, 0.022, 0.019))
-    middle, fine = s.noise(p, 0.8, 6.0, 0.62), s.noise(p, 14.0, 4.0, 0.65)
-    colour = s.mix(s.ramp(middle, 0.35, 0.70, 0.0, 0.55), brick.outputs["Color"], (0.055, 0.053, 0.050))
+    medium, fine = s.noise(p, 0.8, 6.0, 0.62), s.noise(p, 14.0, 4.0, 0.65)
+    colour = s.mix(s.ramp(medium, 0.35, 0.70, 0.0, 0.55), brick.outputs["Color"], (0.055, 0.053, 0.050))
     colour = s.mix(s.ramp(fine, 0.35, 0.75, 0.0, 0.3), colour, (0.20, 0.195, 0.18))
     gum = s.ramp(s.voronoi(p, 1.9), 0.035, 0.045, 0.7, 0.0)
     colour = s.mix(gum, colour, (0.045, 0.044, 0.042))

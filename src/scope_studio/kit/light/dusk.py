@@ -17,18 +17,18 @@ GLOW_BEARING_DEG = 312.0
 """Bearing of the sunset glow, in degrees clockwise from north."""
 
 ZENITH = (0.050, 0.095, 0.235)
-MIDDLE = (0.150, 0.225, 0.400)
+MID_SKY = (0.150, 0.225, 0.400)
 COOL_HORIZON = (0.300, 0.320, 0.400)
 WARM_HORIZON = (1.10, 0.520, 0.220)
 HAZE = (0.135, 0.155, 0.205)
-"""Linear RGB colours of the sky (at the zenith, in the middle, and at the horizon away from and near the glow) and of the haze."""
+"""Linear RGB colours of the sky (at the zenith, halfway up, and at the horizon away from and near the glow) and of the haze."""
 
 SODIUM = (1.0, 0.56, 0.20)
 LED = (0.86, 0.93, 1.0)
 WARM = (1.0, 0.80, 0.56)
 """Linear RGB colours of lamp light, by type of lamp."""
 
-DIMMED = ("paint ", "vehicle lamp", "sheet ")
+DIMMED_PREFIXES = ("paint ", "vehicle lamp", "sheet ")
 """Name prefixes of slightly emissive materials, such as reflective sheeting. Without dimming, they would look like lit lamps."""
 
 
@@ -65,7 +65,7 @@ def _world(scene: bpy.types.Scene, strength: float) -> None:
     bearing = math.radians(GLOW_BEARING_DEG)
     toward_glow = s.math("ADD", s.math("MULTIPLY", x, math.sin(bearing)), s.math("MULTIPLY", y, math.cos(bearing)))
     horizon = s.mix(s.ramp(toward_glow, -0.25, 1.0), COOL_HORIZON, WARM_HORIZON)
-    clear_sky = s.mix(s.ramp(height, 0.0, 0.26), horizon, MIDDLE)
+    clear_sky = s.mix(s.ramp(height, 0.0, 0.26), horizon, MID_SKY)
     clear_sky = s.mix(s.ramp(height, 0.14, 0.85), clear_sky, ZENITH)
     visible_sky = _clouds(s, x, y, height, toward_glow, clear_sky)
     diffuse_light = s.mix(s.ramp(z, -0.1, 0.9), (0.42, 0.42, 0.50), (0.30, 0.37, 0.56))
@@ -136,7 +136,7 @@ def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()
         if material.name in skip or material.node_tree is None:
             continue
         material.cycles.emission_sampling = "NONE"
-        if material.name.startswith(DIMMED):
+        if material.name.startswith(DIMMED_PREFIXES):
             _dim(material.node_tree)
         _add_haze(material.node_tree, visibility_m)
 

@@ -24,7 +24,7 @@ def glowing_face(colour: str, strength: float) -> bpy.types.Material:
 
 
 def lit_lens(kind: str, strength: float = 5.0) -> bpy.types.Material:
-    """Return the emissive material of a lamp's lens: "sodium", "led" or "warm"."""
+    """Return the emissive material of a lamp's lens. ``kind`` is "sodium", "led" or "warm"."""
     rgb = {"sodium": dusk.SODIUM, "led": dusk.LED, "warm": dusk.WARM}[kind]
     name = f"lit lens {kind} {strength:g}"
     return bpy.data.materials.get(name) or Shader(name).surface(

@@ -9,7 +9,7 @@ from mathutils import Matrix, Vector
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.core.volumes import Skin, Volume
+from scope_studio.kit.core.volumes import SurfaceMesh, Volume
 
 PLUMAGE = {
     "grey": ((0.16, 0.175, 0.20), (0.30, 0.32, 0.35)),
@@ -26,9 +26,9 @@ def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
     lift = {"stand": 0.0, "peck": -0.004, "rest": -0.055}[pose]
     tip = Matrix.Rotation(-0.32 if pose == "peck" else 0.18 if pose == "stand" else 0.0, 4, "X")
     body = Matrix.Translation((0, 0, 0.135 + lift)) @ tip
-    skin = _body(body, pose)
-    rest = [tuple(body.inverted() @ Vector(p)) for p in skin[0]]
-    s.add(skin[0].tolist(), skin[1], _feathers(colour), rest)
+    surface = _body(body, pose)
+    rest = [tuple(body.inverted() @ Vector(p)) for p in surface[0]]
+    s.add(surface[0].tolist(), surface[1], _feathers(colour), rest)
     head = body @ _HEAD_POSITIONS[pose]
     beak = plain("pigeon beak", (0.03, 0.028, 0.03), 0.4)
     aim = ((body @ (_HEAD_POSITIONS[pose] + _BEAK_DIRECTIONS[pose])) - head).normalized()
@@ -54,8 +54,8 @@ _BEAK_DIRECTIONS = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.
 """Direction of the beak, by pose."""
 
 
-def _body(frame: Matrix, pose: str) -> Skin:
-    """Return body, neck, head, folded wings and tail as one skin, transformed by ``frame``."""
+def _body(frame: Matrix, pose: str) -> SurfaceMesh:
+    """Return body, neck, head, folded wings and tail as one surface, transformed by ``frame``."""
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))

@@ -45,8 +45,8 @@ def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | N
     wag = 0.05 * math.sin(2 * math.pi * (phase or 0.0))
     v.capsule((0, -0.33, 0.49), (wag, -0.47, 0.45), 0.030, 0.021)
     v.capsule((wag, -0.47, 0.45), (2 * wag, -0.60, 0.50), 0.021, 0.011)
-    skin = crease(v.merge(0.011, 3), 0.0025, (30.0, 12.0, 30.0), 3.0)
-    s.add(skin[0].tolist(), skin[1], _coat(colour))
+    surface = crease(v.merge(0.011, 3), 0.0025, (30.0, 12.0, 30.0), 3.0)
+    s.add(surface[0].tolist(), surface[1], _coat(colour))
     dark = plain("dog nose", (0.008, 0.007, 0.007), 0.25)
     s.lathe([(0.008, 0.0), (0.017, 0.008), (0.006, 0.020)], dark, (0, 0.613, 0.648), "Y", 12)
     for side in (-1, 1):

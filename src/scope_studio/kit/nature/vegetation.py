@@ -83,22 +83,22 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
         fraction = (k + 0.5) / boughs
         z_fraction = sp.bare_fraction + (0.93 - sp.bare_fraction) * fraction
         index = z_fraction * sp.height_m / top * 8
-        base = _along(trunk, min(index, 7.99))
+        base = _point_along(trunk, min(index, 7.99))
         azimuth += 2.4 + rng.uniform(-0.5, 0.5)
         rise, reach = _bough_shape(sp, fraction)
         reach *= rng.uniform(0.82, 1.12)
         heading = Vector((math.cos(azimuth) * math.cos(rise), math.sin(azimuth) * math.cos(rise), math.sin(rise)))
-        bough = _limb(base, heading, reach, rng, 6, 0.20, _lift(sp))
+        bough = _limb(base, heading, reach, rng, 6, 0.20, _bend_per_step(sp))
         radius = max(0.022, girth * (0.42 - 0.26 * fraction))
         limbs.append((bough, radius, radius * 0.3))
         for j in range(7):
             fork_at = 1.2 + 4.7 * (j + rng.random()) / 7
             side = _fork(bough, fork_at, rng, 0.75)
-            branch = _limb(_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _lift(sp))
+            branch = _limb(_point_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _bend_per_step(sp))
             limbs.append((branch, radius * 0.34, 0.007))
             for _ in range(5):
                 position = rng.uniform(0.8, 3.99)
-                start = _along(branch, position)
+                start = _point_along(branch, position)
                 end = start + _fork(branch, position, rng, 0.9) * reach * rng.uniform(0.12, 0.24)
                 twigs.append((start, end))
             twigs.append((branch[-2], branch[-1]))
@@ -120,8 +120,8 @@ def _bough_shape(sp: Species, fraction: float) -> tuple[float, float]:
     return 0.75 + 0.25 * fraction, r * (1.15 - 0.75 * fraction)
 
 
-def _lift(sp: Species) -> float:
-    """Return the bend of limbs at each step: upwards if positive, downwards if negative."""
+def _bend_per_step(sp: Species) -> float:
+    """Return how much limbs bend at each step: upwards if positive, downwards if negative."""
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 
 
@@ -137,8 +137,8 @@ def _limb(
     return points
 
 
-def _along(points: Sequence[Vector], index: float) -> Vector:
-    """Return the point of a path at a fractional index."""
+def _point_along(points: Sequence[Vector], index: float) -> Vector:
+    """Return the point on a path at a fractional index."""
     low = min(int(index), len(points) - 2)
     return points[low].lerp(points[low + 1], index - low)
 
@@ -179,20 +179,20 @@ def _leaves(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the points, quads and tints of leaves around the twigs. A lower ``detail`` gives fewer and larger leaves."""
     gen = np.random.default_rng(rng.randrange(2**31))
-    each = max(5, round(42 * detail))
+    leaves_per_twig = max(5, round(42 * detail))
     size = sp.leaf_m * detail**-0.42
     starts, ends = np.array([tuple(a) for a, _ in twigs]), np.array([tuple(b) for _, b in twigs])
-    which = np.repeat(np.arange(len(twigs)), each)
-    fraction = gen.random(len(which))[:, None]
-    centres = starts[which] * (1 - fraction) + ends[which] * fraction
-    spread = np.linalg.norm(ends - starts, axis=1)[which][:, None] * 0.26 + sp.leaf_m * 0.8
+    twig_index = np.repeat(np.arange(len(twigs)), leaves_per_twig)
+    fraction = gen.random(len(twig_index))[:, None]
+    centres = starts[twig_index] * (1 - fraction) + ends[twig_index] * fraction
+    spread = np.linalg.norm(ends - starts, axis=1)[twig_index][:, None] * 0.26 + sp.leaf_m * 0.8
     centres = centres + gen.normal(size=centres.shape) * spread * np.array([1, 1, 0.75])
-    outward = (ends - starts)[which]
+    outward = (ends - starts)[twig_index]
     outward /= np.linalg.norm(outward, axis=1, keepdims=True) + 1e-9
-    return cards(gen, centres, outward, size, sp.leaf_aspect)
+    return leaf_cards(gen, centres, outward, size, sp.leaf_aspect)
 
 
-def cards(
+def leaf_cards(
     gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, leaf_aspect: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly in the directions ``outward``.
@@ -262,14 +262,14 @@ def leaf_material(sp: Species) -> bpy.types.Material:
     yellow = tuple(c * k for c, k in zip(sp.bright, (1.35, 1.05, 0.8), strict=True))
     colour = s.mix(s.math("MULTIPLY", s.random(), 0.45), colour, yellow)
     s.surface(base_color=colour, roughness=0.55, specular_ior_level=0.25)
-    through = s.node("ShaderNodeBsdfTranslucent")
-    s.set_input(through.inputs["Color"], s.mix(0.5, colour, yellow))
-    both = s.node("ShaderNodeMixShader")
-    both.inputs[0].default_value = 0.34
-    s.set_input(both.inputs[1], s.bsdf.outputs[0])
-    s.set_input(both.inputs[2], through.outputs[0])
+    translucent = s.node("ShaderNodeBsdfTranslucent")
+    s.set_input(translucent.inputs["Color"], s.mix(0.5, colour, yellow))
+    mixed = s.node("ShaderNodeMixShader")
+    mixed.inputs[0].default_value = 0.34
+    s.set_input(mixed.inputs[1], s.bsdf.outputs[0])
+    s.set_input(mixed.inputs[2], translucent.outputs[0])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.set_input(output.inputs["Surface"], both.outputs[0])
+    s.set_input(output.inputs["Surface"], mixed.outputs[0])
     return s.material
 
 
@@ -303,7 +303,7 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
     z = np.sin(around) ** 0.55 * height_m * depth
     outward = np.stack([gen.normal(size=count) * 0.3, np.cos(around), np.sin(around) + 0.2], axis=1)
     outward /= np.linalg.norm(outward, axis=1, keepdims=True)
-    leaf = cards(gen, np.stack([along, y, z], axis=1), outward, HAWTHORN.leaf_m * detail**-0.45, 0.7)
+    leaf = leaf_cards(gen, np.stack([along, y, z], axis=1), outward, HAWTHORN.leaf_m * detail**-0.45, 0.7)
     core_points, core_faces = [], []
     stations = max(2, int(length_m))
     outline = [(-0.38, 0.0), (-0.40, 0.55), (-0.26, 0.80), (0.26, 0.80), (0.40, 0.55), (0.38, 0.0)]
@@ -343,7 +343,7 @@ def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowe
         )
         petals = np.repeat(heads, 4, axis=0)
         up = np.repeat([[0.0, 0.0, 0.6]], len(petals), axis=0)
-        points, faces, _ = cards(gen, petals, up, 0.035, 0.8)
+        points, faces, _ = leaf_cards(gen, petals, up, 0.035, 0.8)
         petal = Shader("dandelion").surface(base_color=(0.75, 0.55, 0.03), roughness=0.7)
         parts.append((points, faces, petal))
     parts.append((quad, np.arange(4 * blades).reshape(blades, 4), grass_material()))

@@ -11,7 +11,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Volume
 
-TROT_M = 0.78
+TROT_STRIDE_M = 0.78
 """Length in metres of one gait cycle of a trotting fox."""
 
 

@@ -2,7 +2,8 @@
 
 A person stands at the origin facing +y and consists of one object with about 45,000 points. Appearance and small asymmetries are
 random and depend on ``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and
-"carry". A gait cycle is ``STRIDE_M`` long for a person 1.77 m tall; it is proportional to the person's height.
+"carry". The length of a gait cycle is
+``STRIDE_M`` for a person 1.77 m tall, and proportional to the height.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from mathutils import Matrix, Vector
 from scope_studio.kit.core.finishes import paint, rubber
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.core.volumes import Skin, normals
+from scope_studio.kit.core.volumes import SurfaceMesh, normals
 from scope_studio.kit.people import clothing, figure, heads
-from scope_studio.kit.people.hand_props import PROP_BUILDERS, hold
+from scope_studio.kit.people.hand_props import PROP_BUILDERS, add_prop
 from scope_studio.kit.people.poses import Joints, Pose, named_pose, solve
 
 
@@ -59,23 +60,26 @@ def _random_appearance(random: Random, hair: str | None, woman_share: float) -> 
     )
 
 
-def _add_skin(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None) -> None:
-    """Add a skin with a material and, optionally, rest coordinates of its points."""
-    points, faces = skin
+def _add_surface(s: Solid, surface: SurfaceMesh, material: object, rest: np.ndarray | None = None) -> None:
+    """Add a surface with a material and, optionally, rest coordinates of its points."""
+    points, faces = surface
     s.add(points.tolist(), faces, material, None if rest is None else rest.tolist())
 
 
 def _head(s: Solid, joints: Joints, appearance: _Appearance, covered: bool) -> None:
     """Add head and hair. If ``covered``, the hair is shorter, to fit under a helmet."""
-    skin = heads.head_and_neck(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
-    _add_skin(
-        s, heads.place(skin, joints.head), clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble), skin[0]
+    surface = heads.head_and_neck(woman=appearance.woman, stout=0.9 + 0.12 * (appearance.girth - 0.95) / 0.25)
+    _add_surface(
+        s,
+        heads.to_posed(surface, joints.head),
+        clothing.skin(appearance.tone, appearance.hair, stubble=appearance.stubble),
+        surface[0],
     )
     if appearance.hair is None or appearance.hair == "bald":
         return
     style = "crop" if covered and appearance.style in ("short", "bun") else appearance.style
     hair = heads.hair_cap(style, 0.004 if style == "crop" else 0.009, appearance.height_m * 10)
-    _add_skin(s, heads.place(hair, joints.head), clothing.hair(appearance.hair), hair[0])
+    _add_surface(s, heads.to_posed(hair, joints.head), clothing.hair(appearance.hair), hair[0])
 
 
 def _helmet(s: Solid, joints: Joints, colour: str) -> None:
@@ -140,21 +144,21 @@ def _add_body(
         neck=outfit.neck,
         seed=seed,
     )
-    _add_skin(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
+    _add_surface(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
     sleeve, along = figure.sleeves(joints, loose=0.008 if vest else loose * 0.7, seed=seed + 4)
     bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
-    _add_skin(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb_coords(along))
+    _add_surface(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb_coords(along))
     if vest:
-        skin, rest = figure.trunk(
+        vest_surface, rest = figure.trunk(
             joints, swell=0.024, low=0.835, girth=appearance.girth, woman=appearance.woman, flare=0.007, seed=seed + 1
         )
-        _add_skin(s, skin, clothing.vest(vest, outfit.top), rest)
-    leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=appearance.girth, seed=seed + 2)
+        _add_surface(s, vest_surface, clothing.vest(vest, outfit.top), rest)
+    trousers, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=appearance.girth, seed=seed + 2)
     bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
-    _add_skin(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb_coords(along))
+    _add_surface(s, trousers, clothing.cloth(outfit.legs, bands=bands), _limb_coords(along))
     shoe = vest is None
     upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.38, roughness=0.6)
-    _add_skin(s, figure.boots(joints, shoe=shoe), upper)
+    _add_surface(s, figure.boots(joints, shoe=shoe), upper)
     for i, side in enumerate((-1, 1)):
         low, high = figure.sole_outline(joints.feet[i], side, 0.0, 0.026)
         n = len(low)
@@ -169,9 +173,9 @@ def _add_body(
         )
     hands = figure.hands(joints, curls, glove=outfit.glove is not None)
     if outfit.glove:
-        _add_skin(s, hands, paint(outfit.glove, dirt=0.5, roughness=0.8))
+        _add_surface(s, hands, paint(outfit.glove, dirt=0.5, roughness=0.8))
     else:
-        _add_skin(
+        _add_surface(
             s, hands, clothing.skin(appearance.tone, appearance.hair, stubble=False), np.full_like(hands[0], 5.0) + normals(hands)
         )
 
@@ -209,7 +213,7 @@ def _person(
         _helmet(s, joints, outfit.helmet)
     prop = holding or DEFAULT_PROP.get(pose)
     if prop:
-        hold(s, joints, prop)
+        add_prop(s, joints, prop)
     return s.built()
 
 

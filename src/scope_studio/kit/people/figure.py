@@ -8,7 +8,7 @@ import math
 import numpy as np
 from mathutils import Matrix, Vector
 
-from scope_studio.kit.core.volumes import Skin, Volume, crease
+from scope_studio.kit.core.volumes import SurfaceMesh, Volume, crease
 from scope_studio.kit.people.poses import SIDES, Joints
 
 # Height, half width, half depth and forward shift of the clothed trunk, from hem to collar (m).
@@ -54,7 +54,7 @@ def trunk(
     neck: str | None = None,
     flare: float = 0.0,
     seed: float,
-) -> tuple[Skin, np.ndarray]:
+) -> tuple[SurfaceMesh, np.ndarray]:
     """Return the body of a garment, and the upright (rest) coordinates of its points.
 
     Args:
@@ -84,18 +84,18 @@ def trunk(
         turns = np.linspace(0, 2 * math.pi, 20, endpoint=False)
         heights = ((1.45, 0.080), (1.49, 0.074), (1.528, 0.072))
         v.rings([[(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns] for z, r in heights])
-    skin = crease(
+    surface = crease(
         v.merge(0.012, 4),
         lambda p: 0.004 + (0.004 + flare) * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1),
         (7.0, 7.0, 10.0),
         seed,
     )
-    points, faces = crease(skin, 0.002, (22.0, 22.0, 26.0), seed + 5)
+    points, faces = crease(surface, 0.002, (22.0, 22.0, 26.0), seed + 5)
     posed = np.array([tuple(joints.torso(Vector(p))) for p in points])
     return (posed, faces), points
 
 
-def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
+def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[SurfaceMesh, np.ndarray]:
     """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
 
     ``loose`` is the additional width of the sleeve (m).
@@ -116,11 +116,11 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
     bend = [(e - s).angle(w - e) for s, e, w in zip(joints.shoulders, joints.elbows, joints.wrists, strict=True)]
     depth = 0.006 + 0.006 * min(1.0, max(bend))
     near = np.exp(-(((along - 0.295) / 0.09) ** 2))
-    skin = crease((points, faces), 0.0035 + depth * near, (9.0, 9.0, 17.0), seed)
-    return crease(skin, 0.002, (26.0, 26.0, 30.0), seed + 5), along
+    surface = crease((points, faces), 0.0035 + depth * near, (9.0, 9.0, 17.0), seed)
+    return crease(surface, 0.002, (26.0, 26.0, 30.0), seed + 5), along
 
 
-def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
+def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tuple[SurfaceMesh, np.ndarray]:
     """Return both legs and the seat, and the height of each point along the upright leg (m above the sole)."""
     v = Volume()
     w = 1 + 0.5 * (girth - 1)
@@ -143,10 +143,10 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
     knee_weight = np.exp(-(((along - 0.50) / 0.09) ** 2))
     cuff_weight = np.exp(-(((along - 0.10) / 0.10) ** 2))
     crotch_weight = np.exp(-(((along - 0.86) / 0.07) ** 2))
-    skin = crease(
+    surface = crease(
         (points, faces), 0.0035 + 0.007 * knee_weight + 0.012 * cuff_weight + 0.005 * crotch_weight, (8.0, 8.0, 15.0), seed
     )
-    return crease(skin, 0.002, (24.0, 24.0, 30.0), seed + 3), along
+    return crease(surface, 0.002, (24.0, 24.0, 30.0), seed + 3), along
 
 
 def _interpolate_along_bones(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
@@ -166,7 +166,7 @@ def _interpolate_along_bones(points: np.ndarray, bones: list[tuple[Vector, Vecto
     return value
 
 
-def boots(joints: Joints, *, shoe: bool) -> Skin:
+def boots(joints: Joints, *, shoe: bool) -> SurfaceMesh:
     """Return both boots or low shoes, without their soles."""
     v = Volume()
     for i in range(2):
@@ -197,7 +197,7 @@ def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[
     return [[tuple(foot @ Vector((x + side * -0.004 * (y > 0.1), y, z))) for x, y in ring] for z in (low, high)]
 
 
-def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
+def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> SurfaceMesh:
     """Return both hands with fingers. A curl of -1 points the index finger, 0 is flat, 1 is a fist."""
     v = Volume()
     glove_m = 0.0015 if glove else 0.0

@@ -13,7 +13,7 @@ from scope_studio.kit.people.poses import Joints
 
 
 def _grip(joints: Joints, index: int, reach: float = 0.085) -> Vector:
-    """Return the middle of the closed hand, left (``index`` 0) or right (1)."""
+    """Return the centre of the closed hand, left (``index`` 0) or right (1)."""
     wrist, elbow = joints.wrists[index], joints.elbows[index]
     return wrist + (wrist - elbow).normalized() * reach
 
@@ -134,7 +134,7 @@ PROP_BUILDERS: dict[str, Callable[[Solid, Joints], None]] = {
 """Functions that add a prop to the hands, by the name of the prop."""
 
 
-def hold(s: Solid, joints: Joints, name: str) -> None:
+def add_prop(s: Solid, joints: Joints, name: str) -> None:
     """Add the prop with this name to the hands."""
     saved = s.frame
     PROP_BUILDERS[name](s, joints)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from mathutils import Matrix, Vector, noise
 
-from scope_studio.kit.core.volumes import Skin, Volume, normals
+from scope_studio.kit.core.volumes import SurfaceMesh, Volume, normals
 
 CENTRE = (0.0, 0.012, 1.648)
 """Centre of the head of the upright figure (m)."""
@@ -19,8 +19,8 @@ EYES = ((-0.0315, 0.0775, 0.012), (0.0315, 0.0775, 0.012))
 """Positions of the eyes relative to ``CENTRE`` (m)."""
 
 
-def head_and_neck(*, woman: bool, stout: float) -> Skin:
-    """Return the head and neck as one skin, in head coordinates."""
+def head_and_neck(*, woman: bool, stout: float) -> SurfaceMesh:
+    """Return the head and neck as one surface, in head coordinates."""
     v = Volume()
     jaw = 0.90 if woman else 1.0
     v.ellipsoid((0, -0.014, 0.036), (0.0755, 0.096, 0.086))
@@ -50,7 +50,7 @@ def head_and_neck(*, woman: bool, stout: float) -> Skin:
     return points, faces
 
 
-def hair_cap(style: str, thickness: float, seed: float) -> Skin:
+def hair_cap(style: str, thickness: float, seed: float) -> SurfaceMesh:
     """Return hair as a shell over the skull. ``style`` is "short", "crop", "long", "bun" or "tail"."""
     v = Volume()
     t = thickness
@@ -101,8 +101,8 @@ def _hairline(points: np.ndarray, style: str) -> np.ndarray:
     return np.interp(y, [t[0] for t in table], [t[1] for t in table])
 
 
-def place(skin: Skin, frame: Matrix) -> Skin:
-    """Return the skin transformed from head coordinates to posed coordinates."""
-    points, faces = skin
+def to_posed(surface: SurfaceMesh, frame: Matrix) -> SurfaceMesh:
+    """Return a surface transformed from head coordinates to posed coordinates."""
+    points, faces = surface
     offset = Vector(CENTRE)
     return np.array([tuple(frame @ (Vector(p) + offset)) for p in points]), faces

@@ -50,10 +50,10 @@ def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
 def backpack(colour: str = "red") -> Built:
     """Build a full backpack that stands on the ground, with its pocket towards +y."""
     s = Solid(f"{colour} backpack")
-    skin, strap = cloth(colour), paint("black", dirt=0.1, roughness=0.8)
-    s.box((0.32, 0.20, 0.46), (0, 0, 0.23), skin, 0.07)
-    s.box((0.25, 0.09, 0.22), (0, 0.12, 0.14), skin, 0.035)
-    s.box((0.33, 0.22, 0.10), (0, 0.01, 0.45), skin, 0.045)
+    finish, strap = cloth(colour), paint("black", dirt=0.1, roughness=0.8)
+    s.box((0.32, 0.20, 0.46), (0, 0, 0.23), finish, 0.07)
+    s.box((0.25, 0.09, 0.22), (0, 0.12, 0.14), finish, 0.035)
+    s.box((0.33, 0.22, 0.10), (0, 0.01, 0.45), finish, 0.045)
     for x in (-0.09, 0.09):
         s.box((0.03, 0.012, 0.20), (x, 0.115, 0.36), strap, 0.003)
         s.tube([(x, -0.10, 0.42), (x * 1.2, -0.16, 0.34), (x * 1.2, -0.15, 0.16), (x, -0.09, 0.08)], 0.016, strap, sides=6)

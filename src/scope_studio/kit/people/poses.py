@@ -93,7 +93,7 @@ class Joints:
 
 
 def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: float) -> Matrix:
-    """Return a rotation (degrees) about a pivot."""
+    """Return a rotation about a pivot. The angles are in degrees."""
     rotation = Matrix.Rotation(math.radians(yaw), 4, "Z") @ Matrix.Rotation(math.radians(tilt), 4, "Y")
     rotation @= Matrix.Rotation(-math.radians(lean), 4, "X")
     return Matrix.Translation(pivot) @ rotation @ Matrix.Translation(-Vector(pivot))
@@ -162,7 +162,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
 
 
 def _gait_foot(phase: float, x: float) -> Foot:
-    """Return the position of a foot during a walk. It strikes the ground at phase 0 and stays there for 0.6 of the cycle."""
+    """Return the position of a foot of a walking person. It strikes the ground at phase 0 and stays there for 0.6 of the cycle."""
     p = phase % 1.0
     start, stop = 0.33, 0.33 - 0.6 * STRIDE_M
     if p < 0.6:

@@ -12,19 +12,19 @@ from scope_studio.kit.people.poses import Arm, Foot, Pose, solve, standing, walk
 from scope_studio.kit.vehicles import cycles
 
 UMBRELLA_GRIP: Point = (0.17, 0.24, 1.24)
-"""Position in metres of the right hand of ``with_umbrella`` on the handle."""
+"""Position in metres of the right hand on the handle in ``with_umbrella``."""
 PRAM_HANDLE: Point = (0.17, 0.40, 1.04)
-"""Position in metres of the right hand of ``pushing``. The left hand is its mirror image."""
+"""Position in metres of the right hand in ``pushing``. The left hand is its mirror image."""
 LEAD_GRIP: Point = (0.27, 0.22, 0.98)
-"""Position in metres of the right hand of ``leading``, which holds a dog's lead."""
-HAND_M = 0.085
-"""Distance in metres from the wrist to the middle of a closed hand."""
+"""Position in metres of the right hand in ``leading``, which holds a dog's lead."""
+WRIST_TO_PALM_M = 0.085
+"""Distance in metres from the wrist to the centre of a closed hand."""
 
 
-def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, drop: float = -0.5) -> Pose:
+def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, elbow_up: float = -0.5) -> Pose:
     """Return ``pose`` with closed hands at the given positions, in metres on a figure that is not yet scaled to its height.
 
-    ``drop`` is the upward component of the direction in which the elbows point: the lower it is, the lower the elbows.
+    ``elbow_up`` is the upward component of the direction in which the elbows point.
     """
     chest = solve(pose).chest
     arms = list(pose.arms)
@@ -33,8 +33,8 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
             continue
         shoulder = chest @ Vector((side * 0.178, -0.008, 1.412))
         direction = (Vector(target) - shoulder).normalized()
-        wrist = chest.inverted() @ (Vector(target) - direction * HAND_M)
-        arms[index] = Arm(hand=tuple(wrist), elbow=(0.7, -0.8, drop), curl=0.9)
+        wrist = chest.inverted() @ (Vector(target) - direction * WRIST_TO_PALM_M)
+        arms[index] = Arm(hand=tuple(wrist), elbow=(0.7, -0.8, elbow_up), curl=0.9)
     return replace(pose, arms=(arms[0], arms[1]))
 
 
@@ -42,13 +42,13 @@ def with_umbrella(phase: float | None = None, *, seed: int = 0) -> Pose:
     """Return a standing pose, or a walking pose if a gait phase is given, with the right hand at ``UMBRELLA_GRIP``."""
     random = Random(f"umbrella {seed}")
     base = standing(random) if phase is None else walking(phase)
-    return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, drop=-0.9)
+    return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, elbow_up=-0.9)
 
 
 def leading(phase: float | None = None, *, seed: int = 0) -> Pose:
     """Return a standing pose, or a walking pose if a gait phase is given, with the right hand at ``LEAD_GRIP``."""
     base = standing(Random(f"lead {seed}")) if phase is None else walking(phase)
-    return reaching(replace(base, twist=0.0), right=LEAD_GRIP, drop=-0.9)
+    return reaching(replace(base, twist=0.0), right=LEAD_GRIP, elbow_up=-0.9)
 
 
 def pushing(phase: float) -> Pose:

@@ -18,13 +18,13 @@ from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shapes import rounded_rectangle
 from scope_studio.kit.core.solid import Solid
 
-LIFT_M = 0.0035
+LETTERING_GAP_M = 0.0035
 """Distance in metres between lettering and its board, large enough to be rendered correctly in distant views."""
 
-INK = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
+INK_BY_BACKGROUND = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
 """Colour of lettering for each background colour. On other backgrounds, lettering is black."""
 
-ARROW_TURN = {
+ARROW_ROTATION_DEG = {
     "up": 0.0,
     "left": 90.0,
     "right": -90.0,
@@ -42,7 +42,7 @@ class Panel:
     r"""Parameters of a direction or information sign. Sizes are in metres.
 
     The text after a tab in a line, as in "Halden\t12", is aligned to the right edge. ``arrows`` gives a direction (a key of
-    ``ARROW_TURN``) or None for each line, or a single direction for the whole panel. ``route`` is a road number that is shown
+    ``ARROW_ROTATION_DEG``) or None for each line, or a single direction for the whole panel. ``route`` is a road number, shown
     on a patch in the first row.
     """
 
@@ -70,7 +70,7 @@ def board(
     """Add a rounded board with a border stripe. Its face is at y = 0."""
     edge = edge if edge is not None else min(0.05, 0.035 * min(width, height) + 0.006)
     corner = min(0.10, 0.09 * min(width, height))
-    ink = border or INK.get(background, "black")
+    ink = border or INK_BY_BACKGROUND.get(background, "black")
     s.prism(rounded_rectangle(width, height, corner), (-0.010, -0.006), steel(), "XZ")
     s.prism(rounded_rectangle(width, height, corner), (-0.006, -0.004), sheet(background), "XZ")
     gap = edge * 0.45
@@ -84,12 +84,14 @@ def board(
             s.box((width * 0.96, 0.03, 0.045), (0, -0.026, z), steel(), 0.003)
 
 
-def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = LIFT_M) -> None:
+def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = LETTERING_GAP_M) -> None:
     """Add a flat shape on the face. ``outline`` is in (u, v) coordinates."""
     s.prism([(-u, v) for u, v in outline], (lift - 0.002, lift), material, "XZ")
 
 
-def stroke(s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = LIFT_M) -> None:
+def stroke(
+    s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = LETTERING_GAP_M
+) -> None:
     """Add a thick line with round ends, made of flat shapes."""
     for (u1, v1), (u2, v2) in itertools.pairwise(path):
         length = math.hypot(u2 - u1, v2 - v1)
@@ -99,7 +101,9 @@ def stroke(s: Solid, path: Sequence[tuple[float, float]], width: float, material
         disc(s, u, v, width / 2, material, lift)
 
 
-def disc(s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = LIFT_M, sides: int = 24) -> None:
+def disc(
+    s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = LETTERING_GAP_M, sides: int = 24
+) -> None:
     """Add a filled circle on the face."""
     angles = [2 * math.pi * k / sides for k in range(sides)]
     flat(s, [(u + radius * math.cos(a), v + radius * math.sin(a)) for a in angles], material, lift)
@@ -118,9 +122,9 @@ def arrow(s: Solid, u: float, v: float, size: float, direction: str, material: b
         (-0.27, -0.05),
         (-0.10, 0.12),
     ]
-    a = math.radians(ARROW_TURN[direction])
+    a = math.radians(ARROW_ROTATION_DEG[direction])
     cos, sin = math.cos(a) * size, math.sin(a) * size
-    flat(s, [(u + x * cos - y * sin, v + x * sin + y * cos) for x, y in shape], material, LIFT_M + 0.0005)
+    flat(s, [(u + x * cos - y * sin, v + x * sin + y * cos) for x, y in shape], material, LETTERING_GAP_M + 0.0005)
 
 
 def write(
@@ -133,7 +137,7 @@ def write(
     *,
     align: str = "CENTER",
     bold: bool = True,
-    lift: float = LIFT_M,
+    lift: float = LETTERING_GAP_M,
 ) -> float:
     """Add one line of lettering and return its width in metres."""
     return s.text(
@@ -149,7 +153,7 @@ def write(
 def panel_face(s: Solid, spec: Panel) -> None:
     """Add a complete panel, centred on the frame's origin."""
     board(s, spec.width, spec.height, spec.background)
-    ink = INK.get(spec.background, "black")
+    ink = INK_BY_BACKGROUND.get(spec.background, "black")
     rows = len(spec.lines)
     margin = 0.075 * min(spec.width, spec.height) + 0.03
     pitch = (spec.height - 1.4 * margin) / max(1, rows)
@@ -176,7 +180,7 @@ def panel_face(s: Solid, spec: Panel) -> None:
             right -= arrow_size * 1.35
         if i == 0 and spec.route:
             left += _route_patch(s, spec, left, v, cap) + cap * 0.7
-        _line(s, line, cap, left, right, v, ink, spec.align)
+        _write_line(s, line, cap, left, right, v, ink, spec.align)
     if panel_arrow:
         size = spec.height * 0.36
         arrow(s, spec.width / 2 - margin - size * 0.45, 0.0, size, panel_arrow, sheet(ink))
@@ -188,7 +192,7 @@ def _relative_width(line: str) -> float:
     return extent(head, 1.0) + (extent(tail, 1.0) + 1.2 if tail else 0.0)
 
 
-def _line(s: Solid, line: str, cap: float, left: float, right: float, v: float, ink: str, align: str) -> None:
+def _write_line(s: Solid, line: str, cap: float, left: float, right: float, v: float, ink: str, align: str) -> None:
     """Add one line of text. The part after a tab is aligned to ``right``."""
     head, _, tail = line.partition("\t")
     if head:
@@ -210,7 +214,7 @@ def _route_patch(s: Solid, spec: Panel, left: float, v: float, cap: float) -> fl
         cap,
         centre,
         v,
-        "yellow" if colour in ("green", "dark green") else INK.get(colour, "black"),
+        "yellow" if colour in ("green", "dark green") else INK_BY_BACKGROUND.get(colour, "black"),
         lift=0.006,
     )
     return width

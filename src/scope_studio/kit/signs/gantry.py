@@ -11,12 +11,12 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import Panel, panel_face
 
-TRUSS_M = (1.1, 1.3)
+TRUSS_SIZE_M = (1.1, 1.3)
 """Depth (along the road) and height of the truss in metres."""
 
 
 @dataclass(frozen=True)
-class Signal:
+class LaneSignal:
     """A matrix lane signal: a black box with a lit figure ("50") or a red "X"."""
 
     text: str
@@ -27,16 +27,16 @@ def gantry(
     panels: Sequence[tuple[float, Panel]] = (),
     clearance_m: float = 5.8,
     *,
-    signals: Sequence[tuple[float, Signal]] = (),
+    signals: Sequence[tuple[float, LaneSignal]] = (),
     facing: str = "-Y",
 ) -> Built:
     """Build a gantry along x. Its legs are at x = -``span_m`` / 2 and x = ``span_m`` / 2.
 
-    ``panels`` and ``signals`` hang at the given x; their lower edges are ``clearance_m`` above the road. ``facing`` is
+    ``panels`` and ``signals`` hang at the given x coordinates; their lower edges are ``clearance_m`` above the road. ``facing`` is
     the direction that they face: "-Y" for drivers who travel towards +y, "+Y" for drivers in the other direction.
     """
     s = Solid("gantry")
-    depth, height = TRUSS_M
+    depth, height = TRUSS_SIZE_M
     base = clearance_m + 0.35
     _truss(s, span_m, base)
     for sign in (-1, 1):
@@ -63,7 +63,7 @@ def gantry(
 
 
 def _truss(s: Solid, span: float, base: float) -> None:
-    depth, height = TRUSS_M
+    depth, height = TRUSS_SIZE_M
     bays = max(4, round(span / 1.7))
     step = span / bays
     paintwork = steel()
@@ -86,7 +86,7 @@ def _truss(s: Solid, span: float, base: float) -> None:
 
 
 def _leg(s: Solid, x: float, top: float) -> None:
-    depth, _ = TRUSS_M
+    depth, _ = TRUSS_SIZE_M
     for y in (-depth / 2, depth / 2):
         s.box((0.30, 0.30, top + 0.05), (x, y, (top + 0.05) / 2), steel(), 0.02)
         s.box((0.62, 0.62, 0.06), (x, y, 0.43), steel(dark=True), 0.01)
@@ -109,7 +109,7 @@ def _leg(s: Solid, x: float, top: float) -> None:
 
 
 def _walkway(s: Solid, span: float, base: float, side: float) -> None:
-    depth, height = TRUSS_M
+    depth, height = TRUSS_SIZE_M
     s.box((span, depth - 0.2, 0.04), (0, 0, base + 0.09), steel(dark=True), 0.005)
     y = side * (depth / 2)
     top = base + height
@@ -124,7 +124,7 @@ def _walkway(s: Solid, span: float, base: float, side: float) -> None:
     s.tube([(-span / 2, y, base + 0.16), (span / 2, y, base + 0.16)], 0.04, paint("black"), sides=6)
 
 
-def _signal(s: Solid, signal: Signal) -> None:
+def _signal(s: Solid, signal: LaneSignal) -> None:
     s.box((1.15, 0.30, 1.15), (0, -0.16, 0), paint("dark grey", dirt=0.3), 0.02)
     s.box((1.05, 0.02, 1.05), (0, -0.006, 0), lens("black"), 0.004)
     s.box((1.2, 0.20, 0.03), (0, 0.06, 0.57), paint("dark grey"), 0.004)

@@ -9,7 +9,7 @@ from scope_studio.kit.core.finishes import paint, sheet, steel
 from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.faces import INK, Panel, arrow, board, disc, flat, panel_face, stroke, write
+from scope_studio.kit.signs.faces import INK_BY_BACKGROUND, Panel, arrow, board, disc, flat, panel_face, stroke, write
 from scope_studio.kit.signs.stands import add_posts, frame_stand
 
 
@@ -36,7 +36,7 @@ def panel(
     return s.built()
 
 
-def round_limit(text: str = "50", *, diameter: float = 0.75, post_height: float = 2.1) -> Built:
+def speed_limit_sign(text: str = "50", *, diameter: float = 0.75, post_height: float = 2.1) -> Built:
     """Build a speed limit sign: black digits in a red ring."""
     s = Solid(f"{text} speed limit sign")
     r = diameter / 2
@@ -225,7 +225,7 @@ def project_board(
                 fitted,
                 left,
                 v,
-                INK.get(background, "black") if i == 0 else "black",
+                INK_BY_BACKGROUND.get(background, "black") if i == 0 else "black",
                 align="LEFT",
                 bold=not small,
                 lift=0.0065 if i == 0 else 0.0035,
@@ -287,7 +287,7 @@ def warning_plate(
     with s.at(0, 0, post_height + height / 2):
         board(s, width, height, background, back=False)
         for i, line in enumerate(lines):
-            write(s, line, cap_height, 0, (len(lines) / 2 - i - 0.5) * 1.6 * cap_height, INK.get(background, "black"))
+            write(s, line, cap_height, 0, (len(lines) / 2 - i - 0.5) * 1.6 * cap_height, INK_BY_BACKGROUND.get(background, "black"))
     if posts:
         add_posts(s, 0.0, post_height + height * 0.9, 0.025, -0.037)
     return s.built()

@@ -1,6 +1,6 @@
 """Articulated lorries: tractor units and trailers (curtain-sided, box, skeletal with a container).
 
-The tractor's fifth wheel is at y = ``COUPLING_Y`` in the tractor's coordinates. A trailer's origin is the middle of its length,
+The tractor's fifth wheel is at y = ``COUPLING_Y`` in the tractor's coordinates. A trailer's origin is at half its length,
 and its front faces +y.
 """
 
@@ -21,13 +21,13 @@ from scope_studio.kit.vehicles import lorry_chassis as chassis
 from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.yard.containers import LENGTH_M, container
 
-TRAILER_M = 13.6
+TRAILER_LENGTH_M = 13.6
 """Length of a trailer in metres."""
 _FRONT, _REAR = 3.10, -2.75
 """y coordinates of the front and the rear of the tractor in metres."""
 COUPLING_Y = -1.25
 """y coordinate in metres of the trailer's kingpin, in the tractor's coordinates."""
-KINGPIN_M = 1.25
+KINGPIN_SETBACK_M = 1.25
 """Distance in metres between a trailer's front and its kingpin."""
 
 
@@ -65,7 +65,7 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
 
     ``name`` is the lettering above the windscreen. ``lit`` turns on the headlamps and marker lamps.
     """
-    extra_parts, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
+    extra_parts, letters = bw.number_plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
     if name:
         letters.append(bw.text_line(name, 0.19, (0, _FRONT - 0.445, 3.20), "+Y", fittings.lettering_colour(colour), width_m=1.9))
     if lit:
@@ -86,9 +86,9 @@ def _bogie(parts: Parts, *, bed_m: float) -> None:
 
     ``bed_m`` is the height of the bed's underside.
     """
-    half, dark = TRAILER_M / 2, chassis.chassis_paint()
+    half, dark = TRAILER_LENGTH_M / 2, chassis.chassis_paint()
     for x in (-0.46, 0.46):
-        parts.box((0.10, TRAILER_M - 0.3, 0.32), (x, 0, bed_m - 0.17), dark)
+        parts.box((0.10, TRAILER_LENGTH_M - 0.3, 0.32), (x, 0, bed_m - 0.17), dark)
     for k in range(12):
         parts.box((2.40, 0.06, 0.10), (0, -half + 0.6 + 1.12 * k, bed_m - 0.06), dark)
     for k in range(3):
@@ -114,32 +114,32 @@ def _bogie(parts: Parts, *, bed_m: float) -> None:
         parts.box((0.5, 0.012, 0.36), (0.95, -half + 1.35, 0.36), wheels.rubber(), bevel_m=0.0)
     parts.matrix = Matrix.Identity(4)
     parts.box((2.30, 0.10, 0.14), (0, -half + 0.06, 0.60), fittings.aluminium())
-    parts.disc(0.05, bed_m - 0.18, bed_m - 0.02, (0, half - KINGPIN_M, 0), fittings.iron(), axis="Z", steps=12)
+    parts.disc(0.05, bed_m - 0.18, bed_m - 0.02, (0, half - KINGPIN_SETBACK_M, 0), fittings.iron(), axis="Z", steps=12)
     parts.box((0.9, 0.4, 0.5), (-0.6, 1.6, bed_m - 0.45), dark)
 
 
 def _body_parts(kind: str) -> Parts:
     parts = Parts()
     parts.slot(pw.paint_slot(0))
-    bed, top, half = 1.22, 4.0, TRAILER_M / 2
+    bed, top, half = 1.22, 4.0, TRAILER_LENGTH_M / 2
     _bogie(parts, bed_m=bed)
     rail = fittings.aluminium()
-    skin = pw.paint_slot(0) if kind == "box" else _curtain()
-    parts.box((2.54, TRAILER_M, 0.14), (0, 0, bed + 0.03), chassis.chassis_paint(), bevel_m=0.02)
+    finish = pw.paint_slot(0) if kind == "box" else _curtain()
+    parts.box((2.54, TRAILER_LENGTH_M, 0.14), (0, 0, bed + 0.03), chassis.chassis_paint(), bevel_m=0.02)
     parts.box((2.50, 0.10, top - bed), (0, half - 0.05, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.02)
-    parts.box((2.50, TRAILER_M, 0.08), (0, 0, top), shading.plain("trailer roof", (0.42, 0.43, 0.43), 0.6), bevel_m=0.02)
+    parts.box((2.50, TRAILER_LENGTH_M, 0.08), (0, 0, top), shading.plain("trailer roof", (0.42, 0.43, 0.43), 0.6), bevel_m=0.02)
     for sign in (-1, 1):
         fittings.set_side(parts, sign)
         if kind == "box":
-            parts.box((0.06, TRAILER_M - 0.1, top - bed - 0.1), (1.23, 0, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.01)
+            parts.box((0.06, TRAILER_LENGTH_M - 0.1, top - bed - 0.1), (1.23, 0, (top + bed) / 2), pw.paint_slot(0), bevel_m=0.01)
         else:
-            _curtain_side(parts, bed + 0.10, top - 0.16, half, skin)
+            _curtain_side(parts, bed + 0.10, top - 0.16, half, finish)
             for k in range(18):
                 y = -half + 0.55 + 0.735 * k
                 parts.box((0.012, 0.05, 0.42), (1.268, y, bed + 0.14), wheels.shade(), bevel_m=0.0)
                 parts.box((0.02, 0.06, 0.05), (1.27, y, bed + 0.02), rail, bevel_m=0.005)
-        parts.box((0.05, TRAILER_M, 0.16), (1.25, 0, top - 0.05), rail, bevel_m=0.01)
-        parts.box((0.05, TRAILER_M, 0.10), (1.255, 0, bed + 0.02), rail, bevel_m=0.01)
+        parts.box((0.05, TRAILER_LENGTH_M, 0.16), (1.25, 0, top - 0.05), rail, bevel_m=0.01)
+        parts.box((0.05, TRAILER_LENGTH_M, 0.10), (1.255, 0, bed + 0.02), rail, bevel_m=0.01)
         for y in (-half + 0.05, half - 0.05):
             parts.box((0.10, 0.10, top - bed), (1.21, y, (top + bed) / 2), rail, bevel_m=0.02)
         parts.box((1.20, 0.06, top - bed - 0.16), (0.61, -half - 0.01, (top + bed) / 2 + 0.02), pw.paint_slot(0), bevel_m=0.012)
@@ -166,7 +166,7 @@ def _body_parts(kind: str) -> Parts:
     return parts
 
 
-def _curtain_side(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Material) -> None:
+def _curtain_side(parts: Parts, z0: float, z1: float, half: float, finish: bpy.types.Material) -> None:
     """Add a taut curtain along the right-hand side, with shallow folds between its straps."""
     steps = 120
     points, faces = [], []
@@ -179,7 +179,7 @@ def _curtain_side(parts: Parts, z0: float, z1: float, half: float, skin: bpy.typ
         for r in range(2):
             a = 3 * k + r
             faces.append((a, a + 3, a + 4, a + 1))
-    parts.add(points, faces, skin, smooth=True)
+    parts.add(points, faces, finish, smooth=True)
 
 
 def _curtain() -> bpy.types.Material:
@@ -195,9 +195,9 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
     model = f"{kind} trailer"
     body = bw.body_mesh(model, lambda: _body_parts(kind))
     extra_parts, letters = Parts(), []
-    _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))
+    _, plate_letters = bw.number_plates(plate, (90.0, 0.60), (-TRAILER_LENGTH_M / 2 - 0.045, 1.02))
     face = shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35)
-    extra_parts.box((0.52, 0.012, 0.111), (0, -TRAILER_M / 2 - 0.045, 1.02), face, bevel_m=0.003)
+    extra_parts.box((0.52, 0.012, 0.111), (0, -TRAILER_LENGTH_M / 2 - 0.045, 1.02), face, bevel_m=0.003)
     letters.append(plate_letters[1])
     tint = fittings.lettering_colour(colour)
     letters += bw.text_on_both_sides(lettering, 0.72, 0.0, 2.72, tint, x=1.268, width_m=11.0)
@@ -205,7 +205,7 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
         bw.text_line(
             lettering,
             0.22,
-            (0, -TRAILER_M / 2 - 0.05, 3.35),
+            (0, -TRAILER_LENGTH_M / 2 - 0.05, 3.35),
             "-Y",
             fittings.lettering_colour(front if kind == "curtain" else colour),
             width_m=2.0,
@@ -221,17 +221,17 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
     """Build a skeletal trailer that carries a container with its doors to the rear."""
     mesh = bw.body_mesh("skeletal trailer", _skeletal_parts)
     extra_parts, letters = Parts(), []
-    _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))
+    _, plate_letters = bw.number_plates(plate, (90.0, 0.60), (-TRAILER_LENGTH_M / 2 - 0.045, 1.02))
     extra_parts.box(
         (0.52, 0.012, 0.111),
-        (0, -TRAILER_M / 2 - 0.045, 1.02),
+        (0, -TRAILER_LENGTH_M / 2 - 0.045, 1.02),
         shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35),
         bevel_m=0.003,
     )
     letters.append(plate_letters[1])
     built = bw.finish("skeletal trailer", mesh, [], letters, extra_parts)
     load = container(colour, code, feet=feet, livery=livery)
-    transform = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
+    transform = Matrix.Translation((0, -TRAILER_LENGTH_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
     for obj in load.objects:
         obj.data.transform(transform)
         obj.parent = built.root
@@ -255,6 +255,6 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
 def _skeletal_parts() -> Parts:
     parts = Parts()
     _bogie(parts, bed_m=1.22)
-    for y in (-TRAILER_M / 2 + 0.35, -0.3, TRAILER_M / 2 - 0.5):
+    for y in (-TRAILER_LENGTH_M / 2 + 0.35, -0.3, TRAILER_LENGTH_M / 2 - 0.5):
         parts.box((2.44, 0.22, 0.16), (0, y, 1.15), chassis.chassis_paint())
     return parts

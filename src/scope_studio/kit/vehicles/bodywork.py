@@ -22,7 +22,7 @@ from scope_studio.kit.vehicles import wheels
 class Station:
     """A cross-section of a body at ``y``.
 
-    ``section`` contains the right-hand ``(x, z)`` points, from the middle of the floor to the middle of the roof. ``dy`` moves
+    ``section`` contains the right-hand ``(x, z)`` points, from the centre of the floor to the centre of the roof. ``dy`` moves
     individual points along y, which slants and curves the section.
     """
 
@@ -33,7 +33,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window between two stations and two rows of section points, on both sides or, with ``across``, across the middle.
+    """A window between two stations and two rows of section points, on both sides or, with ``across``, across the centre line.
 
     ``frame_m`` is the width of its black frame.
     """
@@ -178,18 +178,18 @@ class Surface:
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.tree = BVHTree.FromPolygons([v.co for v in mesh.vertices], [p.vertices for p in mesh.polygons])
 
-    def side(self, y: float, z: float) -> float:
+    def side_x(self, y: float, z: float) -> float:
         """Return the body's half-width at ``(y, z)`` on the right."""
         hit = self.tree.ray_cast(Vector((9.0, y, z)), Vector((-1, 0, 0)))[0]
         return hit.x if hit is not None else 0.0
 
-    def end(self, x: float, z: float, front: bool) -> float:
+    def end_y(self, x: float, z: float, front: bool) -> float:
         """Return the y coordinate of the body's front or rear at ``(x, z)``."""
         sign = 1.0 if front else -1.0
         hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
         return hit.y if hit is not None else 0.0
 
-    def top(self, x: float, y: float) -> float:
+    def top_z(self, x: float, y: float) -> float:
         """Return the height of the body at ``(x, y)``."""
         hit = self.tree.ray_cast(Vector((x, y, 20.0)), Vector((0, 0, -1)))[0]
         return hit.z if hit is not None else 0.0
@@ -241,7 +241,7 @@ def text_line(
         u, v = (x - (max(xs) + min(xs)) / 2) * squeeze, y - cap_m / 2
         px, py, pz = (centre[k] + right[k] * u + up[k] * v + normal[k] * lift for k in range(3))
         if onto is not None:
-            px = math.copysign(onto.side(py, pz) + 0.004 + lift, -1 if facing == "-X" else 1)
+            px = math.copysign(onto.side_x(py, pz) + 0.004 + lift, -1 if facing == "-X" else 1)
         points.append((px, py, pz))
     if onto is not None:
         centre = (sum(p[0] for p in points) / len(points), centre[1], centre[2])
@@ -288,7 +288,7 @@ def text_on_both_sides(
     ]
 
 
-def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
+def number_plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
     """Return UK number plates (white at the front, yellow at the rear) and their lettering.
 
     ``front`` and ``rear`` are the positions (y, z) of the faces of the plates.
@@ -337,7 +337,7 @@ def finish(
     return Built.of(name, objects, marks)
 
 
-def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
+def arch_cutters(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
     """Return the solids to subtract for wheel arches at the y coordinates ``axles``. They extend outwards from ``inner_x``."""
     cutters = Parts()
     for y in axles:

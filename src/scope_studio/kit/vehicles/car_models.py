@@ -36,7 +36,7 @@ class CarModel:
 
     ``stations``, ``panes``, ``creases`` and ``bulge`` are arguments of ``bodywork.shell``. ``axles`` contains y coordinates, and
     the wheels are at ``track_x`` on both sides. ``handles`` and ``mirror`` are positions (y, z) on the side, and
-    ``plate_z`` contains the heights of the front and the rear number plate. ``pillars`` lists the (y, width) of door pillars.
+    ``plate_z`` contains the heights of the front and rear number plates. ``pillars`` lists the (y, width) of door pillars.
     ``arch_trim`` adds black flares to the wheel arches. ``extra_cutters`` lists the (size, centre) of boxes to subtract from
     the body for a load bed.
     """

@@ -17,7 +17,7 @@ from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV,
 def _body(model: CarModel) -> Parts:
     """Return the parts that all cars of a model share: shell, wheels, interior and fittings."""
     radius = model.wheel_radius
-    cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
+    cutters = bw.arch_cutters(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
         cutters.box(size, centre, shading.plain("pickup bed liner", (0.055, 0.056, 0.058), 0.75), bevel_m=0.0)
     shell = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
@@ -34,7 +34,7 @@ def _body(model: CarModel) -> Parts:
             _arch_lip(parts, surface, y, radius, sign, flared=model.arch_trim)
     for sign in (-1, 1):
         for y, z in model.handles:
-            x = surface.side(y, z)
+            x = surface.side_x(y, z)
             parts.box((0.022, 0.20, 0.030), (sign * (x + 0.012), y, z), pw.paint_slot(), bevel_m=0.008)
             parts.box((0.006, 0.10, 0.045), (sign * (x + 0.001), y + 0.01, z - 0.004), pw.black_trim(), bevel_m=0.002)
         _mirror(parts, surface, *model.mirror, sign)
@@ -51,7 +51,7 @@ def _body(model: CarModel) -> Parts:
 def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: float, sign: int) -> None:
     """Add a black door pillar over the side glass."""
     heights = [belt_z + 0.05 + 0.055 * k for k in range(14)]
-    edge = [(surface.side(y, z) + 0.005, z) for z in heights]
+    edge = [(surface.side_x(y, z) + 0.005, z) for z in heights]
     edge = [e for e in edge if e[0] > 0.62]
     points = [(sign * x, y + s * width / 2 - 0.06 * (z - belt_z), z) for x, z in edge for s in (-1, 1)]
     faces = [(2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2)[::-sign] for k in range(len(edge) - 1)]
@@ -100,7 +100,7 @@ def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: 
     for k in range(25):
         a = -0.12 * math.pi + 1.24 * math.pi * k / 24
         py, pz = y + reach * math.cos(a), radius * (0.9 if flared else 0.86) + reach * math.sin(a)
-        x = surface.side(py, pz)
+        x = surface.side_x(py, pz)
         if pz > 0.2 and x > 0.5:
             path.append((sign * (x + 0.002 if flared else x - 0.006), py, pz))
     if flared:
@@ -111,7 +111,7 @@ def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: 
 
 def _mirror(parts: Parts, surface: bw.Surface, y: float, z: float, sign: int) -> None:
     """Add a door mirror."""
-    x = surface.side(y - 0.05, z - 0.03)
+    x = surface.side_x(y - 0.05, z - 0.03)
     parts.tube([(sign * (x - 0.03), y, z - 0.03), (sign * (x + 0.09), y + 0.01, z)], 0.022, pw.black_trim(), sides=6)
     outline = [
         (x + 0.05, z - 0.06),
@@ -144,9 +144,9 @@ def _car(
     """Build a car of the given model and paint colour, with number plates."""
     mesh = bw.body_mesh(model.name, lambda: _body(model))
     surface = bw.Surface(mesh)
-    front = max(surface.end(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008
-    rear = min(surface.end(x, model.plate_z[1], False) for x in (0.0, 0.24)) - 0.008
-    plate_parts, plate_letters = bw.plates(plate, (front, model.plate_z[0]), (rear, model.plate_z[1]))
+    front = max(surface.end_y(x, model.plate_z[0], True) for x in (0.0, 0.24)) + 0.008
+    rear = min(surface.end_y(x, model.plate_z[1], False) for x in (0.0, 0.24)) - 0.008
+    plate_parts, plate_letters = bw.number_plates(plate, (front, model.plate_z[0]), (rear, model.plate_z[1]))
     if fittings is not None:
         plate_parts.mesh(fittings.build("fittings"))
     return bw.finish(
@@ -188,7 +188,7 @@ def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = F
         tint = shared.lettering_colour(colour)
         for k, line in enumerate(lettering.split("\n")):
             letters += bw.text_on_both_sides(line, 0.22, -1.28, 1.72 - 0.34 * k, tint, width_m=2.2, onto=surface)
-    fittings = _light_bar(0.5, surface.top(0.0, 0.5), 1.1) if roof_beacon else None
+    fittings = _light_bar(0.5, surface.top_z(0.0, 0.5), 1.1) if roof_beacon else None
     return _car(VAN, colour, plate, letters=letters, fittings=fittings)
 
 
@@ -205,4 +205,4 @@ def _light_bar(y: float, z: float, width: float) -> Parts:
 def pickup(colour: str, *, plate: str, beacon: bool = False) -> Built:
     """Build a double-cab pickup with an open load bed, 5.2 m long. ``beacon`` adds an orange light bar on the roof."""
     surface = bw.Surface(bw.body_mesh(PICKUP.name, lambda: _body(PICKUP)))
-    return _car(PICKUP, colour, plate, fittings=_light_bar(-0.1, surface.top(0.0, -0.1), 1.0) if beacon else None)
+    return _car(PICKUP, colour, plate, fittings=_light_bar(-0.1, surface.top_z(0.0, -0.1), 1.0) if beacon else None)

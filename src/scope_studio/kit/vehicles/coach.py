@@ -93,7 +93,7 @@ def coach(colour: str, *, plate: str, lettering: str, destination: str) -> Built
 
     The destination is lit above the windscreen.
     """
-    extra_parts, letters = bw.plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
+    extra_parts, letters = bw.number_plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
     letters += bw.text_on_both_sides(lettering, 0.30, 0.2, 1.38, fittings.lettering_colour(colour), x=_COACH_HALF, width_m=4.4)
     letters.append(bw.text_line(destination, 0.20, (0, _COACH_FRONT - 0.116, 2.84), "+Y", "display", width_m=2.05))
     patches = [

@@ -13,15 +13,15 @@ from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
-WHEEL_M = 0.345
+WHEEL_RADIUS_M = 0.345
 """Radius of the wheels in metres."""
-REAR: Point = (0.0, -0.52, WHEEL_M)
+REAR_HUB: Point = (0.0, -0.52, WHEEL_RADIUS_M)
 """Position of the rear hub in metres."""
-FRONT: Point = (0.0, 0.54, WHEEL_M)
+FRONT_HUB: Point = (0.0, 0.54, WHEEL_RADIUS_M)
 """Position of the front hub in metres."""
-CRANK: Point = (0.0, -0.08, 0.29)
+CRANK_AXLE: Point = (0.0, -0.08, 0.29)
 """Position of the crank axle in metres."""
-CRANK_M = 0.165
+CRANK_LENGTH_M = 0.165
 """Length of a crank in metres."""
 SADDLE: Point = (0.0, -0.27, 0.96)
 """Position of the top of the saddle in metres."""
@@ -30,7 +30,7 @@ GRIP: Point = (0.27, 0.24, 1.05)
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _BicycleKind:
     """Parameters of a kind of bicycle. ``bar`` is the path of the right half of the handlebar, starting at the stem."""
 
     tyre_m: float
@@ -40,14 +40,14 @@ class _Kind:
 
 
 KINDS = {
-    "town": _Kind(0.019, ((0.06, 0.39, 1.03), (0.22, 0.35, 1.06), (0.29, 0.20, 1.045)), True),
-    "step-through": _Kind(0.019, ((0.06, 0.38, 1.06), (0.22, 0.34, 1.09), (0.29, 0.17, 1.07)), True, True),
-    "road": _Kind(
+    "town": _BicycleKind(0.019, ((0.06, 0.39, 1.03), (0.22, 0.35, 1.06), (0.29, 0.20, 1.045)), True),
+    "step-through": _BicycleKind(0.019, ((0.06, 0.38, 1.06), (0.22, 0.34, 1.09), (0.29, 0.17, 1.07)), True, True),
+    "road": _BicycleKind(
         0.013,
         ((0.18, 0.42, 0.98), (0.205, 0.50, 0.98), (0.21, 0.54, 0.93), (0.21, 0.50, 0.86), (0.21, 0.40, 0.855)),
         False,
     ),
-    "mountain": _Kind(0.028, ((0.10, 0.41, 1.01), (0.31, 0.37, 1.02)), False),
+    "mountain": _BicycleKind(0.028, ((0.10, 0.41, 1.01), (0.31, 0.37, 1.02)), False),
 }
 """Parameters of each kind of bicycle."""
 
@@ -69,9 +69,9 @@ def bicycle(
     """
     s = Solid(f"{colour} bicycle")
     model, frame_paint = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)
-    _wheel(s, REAR, model)
+    _wheel(s, REAR_HUB, model)
     if front_wheel:
-        _wheel(s, FRONT, model)
+        _wheel(s, FRONT_HUB, model)
     _frame(s, model, frame_paint)
     _bars(s, model)
     _drive(s, crank_deg)
@@ -81,14 +81,14 @@ def bicycle(
 
 
 def _ring(hub: Point, radius: float, start: float = 0.0, stop: float = 360.0, steps: int = 36) -> list[Point]:
-    """Return points of a circular arc around a hub, in the plane of the wheel."""
+    """Return the points of a circular arc around a hub, in the plane of the wheel."""
     count = steps if stop - start >= 360 else steps + 1
     angles = [math.radians(start + (stop - start) * k / steps) for k in range(count)]
     return [(0.0, hub[1] + radius * math.cos(a), hub[2] + radius * math.sin(a)) for a in angles]
 
 
-def _wheel(s: Solid, hub: Point, model: _Kind) -> None:
-    chrome, r = steel(), WHEEL_M
+def _wheel(s: Solid, hub: Point, model: _BicycleKind) -> None:
+    chrome, r = steel(), WHEEL_RADIUS_M
     s.tube(_ring(hub, r - model.tyre_m), model.tyre_m, rubber(), sides=8, closed=True)
     s.tube(_ring(hub, r * 0.89), 0.010, chrome, sides=6, closed=True)
     s.rod((-0.05, hub[1], r), (0.05, hub[1], r), 0.017, chrome)
@@ -106,21 +106,21 @@ def _wheel(s: Solid, hub: Point, model: _Kind) -> None:
             sides=4,
         )
     if model.mudguards:
-        guard = _ring(hub, 0.372, *((15, 200) if hub is REAR else (20, 150)), steps=16)
+        guard = _ring(hub, 0.372, *((15, 200) if hub is REAR_HUB else (20, 150)), steps=16)
         for dx in (-0.014, 0.0, 0.014):
             s.tube([(dx, y, z) for _, y, z in guard], 0.010, paint("black", dirt=0.1), sides=6)
 
 
-def _frame(s: Solid, model: _Kind, frame_paint: bpy.types.Material) -> None:
+def _frame(s: Solid, model: _BicycleKind, frame_paint: bpy.types.Material) -> None:
     seat, low, top = (0.0, -0.24, 0.80), (0.0, 0.40, 0.70), (0.0, 0.36, 0.86)
-    bars: list[tuple[Point, Point, float]] = [(CRANK, seat, 0.017), (CRANK, low, 0.020), (low, top, 0.023)]
+    bars: list[tuple[Point, Point, float]] = [(CRANK_AXLE, seat, 0.017), (CRANK_AXLE, low, 0.020), (low, top, 0.023)]
     bars.append(((0.0, -0.14, 0.50), (0.0, 0.385, 0.77), 0.017) if model.step_through else (seat, top, 0.017))
     for a, b, radius in bars:
         s.rod(a, b, radius, frame_paint, sides=12)
     for x in (-0.05, 0.05):
-        s.rod((x * 0.5, *CRANK[1:]), (x, *REAR[1:]), 0.011, frame_paint)
-        s.rod((x * 0.4, seat[1] + 0.02, seat[2] - 0.06), (x, *REAR[1:]), 0.009, frame_paint)
-        s.tube([(x * 0.9, low[1], low[2] - 0.01), (x, 0.47, 0.52), (x, *FRONT[1:])], 0.012, frame_paint)
+        s.rod((x * 0.5, *CRANK_AXLE[1:]), (x, *REAR_HUB[1:]), 0.011, frame_paint)
+        s.rod((x * 0.4, seat[1] + 0.02, seat[2] - 0.06), (x, *REAR_HUB[1:]), 0.009, frame_paint)
+        s.tube([(x * 0.9, low[1], low[2] - 0.01), (x, 0.47, 0.52), (x, *FRONT_HUB[1:])], 0.012, frame_paint)
     s.rod(seat, (0, -0.275, 0.94), 0.013, steel())
     saddle = [(-0.085, -0.40), (0.085, -0.40), (0.07, -0.27), (0.025, -0.13), (-0.025, -0.13), (-0.07, -0.27)]
     s.prism(saddle, (0.935, 0.985), paint("brown" if model.step_through else "black", dirt=0.1), "XY")
@@ -131,7 +131,7 @@ def _frame(s: Solid, model: _Kind, frame_paint: bpy.types.Material) -> None:
             s.rod((x * 0.6, -0.62, 0.76), (x * 0.5, -0.52, 0.345), 0.005, steel())
 
 
-def _bars(s: Solid, model: _Kind) -> None:
+def _bars(s: Solid, model: _BicycleKind) -> None:
     right = list(model.bar)
     path = [(-x, y, z) for x, y, z in right[::-1]] + right
     s.tube(path, 0.011, steel(), sides=10)
@@ -145,19 +145,19 @@ def _bars(s: Solid, model: _Kind) -> None:
 def _drive(s: Solid, crank_deg: float) -> None:
     """Add chain ring, chain, cranks and pedals."""
     black, chrome = paint("black", dirt=0.1), steel()
-    s.lathe([(0.02, -0.004), (0.085, -0.002), (0.085, 0.002)], chrome, (0.055, CRANK[1], CRANK[2]), "X", 28)
+    s.lathe([(0.02, -0.004), (0.085, -0.002), (0.085, 0.002)], chrome, (0.055, CRANK_AXLE[1], CRANK_AXLE[2]), "X", 28)
     for z, end in ((0.372, 0.385), (0.208, 0.305)):
-        s.tube([(0.055, CRANK[1], z), (0.055, REAR[1], end)], 0.005, black, sides=4)
+        s.tube([(0.055, CRANK_AXLE[1], z), (0.055, REAR_HUB[1], end)], 0.005, black, sides=4)
     for side in (1, -1):
         y, z = pedal(crank_deg, side)
-        s.rod((side * 0.07, *CRANK[1:]), (side * 0.085, y, z), 0.010, chrome)
+        s.rod((side * 0.07, *CRANK_AXLE[1:]), (side * 0.085, y, z), 0.010, chrome)
         s.box((0.09, 0.075, 0.022), (side * 0.14, y, z), black, 0.005)
 
 
 def pedal(crank_deg: float, side: int) -> tuple[float, float]:
     """Return the position (y, z) in metres of the right (``side`` +1) or left (-1) pedal."""
     a = math.radians(crank_deg) + (0.0 if side > 0 else math.pi)
-    return CRANK[1] + CRANK_M * math.sin(a), CRANK[2] + CRANK_M * math.cos(a)
+    return CRANK_AXLE[1] + CRANK_LENGTH_M * math.sin(a), CRANK_AXLE[2] + CRANK_LENGTH_M * math.cos(a)
 
 
 def _basket(s: Solid) -> None:

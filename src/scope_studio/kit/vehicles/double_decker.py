@@ -100,7 +100,7 @@ def double_decker(colour: str, *, plate: str, route: str, destination: str, oper
     A lit display at the front shows the route and destination. ``operator`` is the lettering above the lower windows, and
     ``poster`` is the text of an advertisement between the decks.
     """
-    extra_parts, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
+    extra_parts, letters = bw.number_plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
     letters.append(bw.text_line(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))
     letters.append(bw.text_line(route, 0.26, (0, REAR_M - 0.03, 2.66), "-Y", "white"))
     letters += bw.text_on_both_sides(operator, 0.15, 0.0, 1.22, fittings.lettering_colour(colour), x=HALF_M, width_m=3.2)

@@ -331,7 +331,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
 def _bucket(parts: Parts) -> None:
     """Add a digging bucket that hangs from the origin.
 
-    It opens towards -z. When the bucket points down, this is the direction of the cab.
+    It opens towards -z, which is towards the cab when the bucket points down.
     """
     wear, half = fittings.worn_steel(), 0.62
     spine: list[Point2D] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]

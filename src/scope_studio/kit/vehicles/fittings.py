@@ -29,7 +29,7 @@ def aluminium() -> bpy.types.Material:
 
 
 def seats_behind_glass(parts: Parts, places: list[Point2D], sill: float, face: float, axis: str) -> None:
-    """Add flat seat backs with head rests directly behind glass.
+    """Add flat seat backs with headrests directly behind glass.
 
     ``places`` are positions (horizontal, height) in the plane that is normal to ``axis`` at ``face``.
     """

@@ -60,7 +60,7 @@ def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -
     ``lettering`` is on both sides and on the doors.
     """
     body = bw.body_mesh("box lorry", _box_parts)
-    extra_parts, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
+    extra_parts, letters = bw.number_plates(plate, (3.86, 0.60), (-4.30, 0.98))
     tint = fittings.lettering_colour(box_colour)
     letters += bw.text_on_both_sides(lettering, 0.42, -1.2, 2.55, tint, x=1.242, width_m=5.0)
     letters.append(bw.text_line(lettering, 0.16, (0, -4.281, 3.30), "-Y", tint, width_m=0.30 * 7))
@@ -148,7 +148,7 @@ def _stone_load(parts: Parts, y0: float, y1: float, z: float) -> None:
 
 def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
     """Build a three-axle tipper loaded with crushed stone, 8 m long."""
-    extra_parts, letters = bw.plates(plate, (3.99, 0.60), (-3.97, 0.98))
+    extra_parts, letters = bw.number_plates(plate, (3.99, 0.60), (-3.97, 0.98))
     paints = [
         pw.paint("lorry cab", cab_colour, dirt_top_m=1.2),
         pw.paint("tipper body", body_colour, dirt_top_m=2.2, dirt=0.5),
@@ -222,7 +222,7 @@ def _tanker_parts() -> Parts:
 def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
     """Build a three-axle fuel tanker, 8.4 m long, with a silver tank and lettering on both sides."""
     body = bw.body_mesh("tanker", _tanker_parts)
-    extra_parts, letters = bw.plates(plate, (4.19, 0.60), (-4.22, 0.98))
+    extra_parts, letters = bw.number_plates(plate, (4.19, 0.60), (-4.22, 0.98))
     letters += bw.text_on_both_sides(
         lettering,
         0.40,

@@ -13,7 +13,7 @@ from scope_studio.kit.core.stage import Built
 def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
     """Build a motorcycle, 2.1 m long, that faces +y. It stands upright; to lean it, pass ``lean_deg`` to ``Stage.place``."""
     s = Solid(f"{colour} motorcycle")
-    skin, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
+    finish, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
     chrome, iron = (
         plain("motorcycle chrome", (0.62, 0.62, 0.63), 0.16, 1.0),
         plain("motorcycle alloy", (0.28, 0.285, 0.29), 0.4, 0.7),
@@ -54,7 +54,7 @@ def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
             (front - 0.28, 0.57),
         ],
         (-0.07, 0.07),
-        skin,
+        finish,
         "YZ",
     )
     s.tube([(-0.36, 0.22, 1.07), (-0.22, 0.34, 1.08), (0.0, 0.38, 1.03), (0.22, 0.34, 1.08), (0.36, 0.22, 1.07)], 0.014, black)
@@ -64,15 +64,15 @@ def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
         s.box((0.13, 0.02, 0.08), (x * 0.82, 0.29, 1.25), black, 0.02)
     s.lathe([(0.03, -0.08), (0.09, -0.04), (0.095, 0.05)], black, (0, 0.50, 0.90), "Y", 24)
     s.lathe([(0.088, 0.045), (0.075, 0.062), (0.03, 0.07)], lens("light grey"), (0, 0.50, 0.90), "Y", 24)
-    s.prism([(0.34, 0.82), (0.36, 0.92), (0.20, 1.01), (-0.10, 0.97), (-0.16, 0.84)], (-0.135, 0.135), skin, "YZ")
-    s.prism([(0.30, 0.84), (0.30, 0.90), (0.16, 0.97), (-0.06, 0.94), (-0.10, 0.86)], (-0.165, 0.165), skin, "YZ")
+    s.prism([(0.34, 0.82), (0.36, 0.92), (0.20, 1.01), (-0.10, 0.97), (-0.16, 0.84)], (-0.135, 0.135), finish, "YZ")
+    s.prism([(0.30, 0.84), (0.30, 0.90), (0.16, 0.97), (-0.06, 0.94), (-0.10, 0.86)], (-0.165, 0.165), finish, "YZ")
     s.prism(
         [(-0.12, 0.86), (-0.14, 0.90), (-0.40, 0.86), (-0.62, 0.93), (-0.86, 0.96), (-0.84, 0.90), (-0.45, 0.80), (-0.15, 0.80)],
         (-0.12, 0.12),
         rubber(),
         "YZ",
     )
-    s.prism([(-0.50, 0.80), (-0.90, 0.90), (-0.95, 0.86), (-0.55, 0.70)], (-0.08, 0.08), skin, "YZ")
+    s.prism([(-0.50, 0.80), (-0.90, 0.90), (-0.95, 0.86), (-0.55, 0.70)], (-0.08, 0.08), finish, "YZ")
     s.box((0.14, 0.05, 0.06), (0, -0.95, 0.87), lens("red"), 0.015)
     s.box((0.18, 0.012, 0.14), (0, -0.99, 0.68), sheet("yellow"), 0.002)
     s.rod((0, -0.93, 0.86), (0, -0.985, 0.70), 0.012, black)

@@ -181,7 +181,7 @@ def glass() -> bpy.types.Material:
 def clear_glass(tint: float = 0.55) -> bpy.types.Material:
     """Return the material of glass through which the interior is visible.
 
-    ``tint`` is its opacity. If it is greater than 0.5, renders of instance numbers treat the glass as opaque.
+    ``tint`` is its opacity. If it is greater than 0.5, instance masks treat the glass as opaque.
     """
     name = f"vehicle clear glass {tint:.2f}"
     return bpy.data.materials.get(name) or shading.Shader(name).surface(

@@ -31,7 +31,7 @@ SECTION = [
     (0.55, 3.22),
     (0.0, 3.24),
 ]
-"""Right half of the body's cross-section: (x, z) in metres, from the middle of the floor to the middle of the roof."""
+"""Right half of the body's cross-section: (x, z) in metres, from the centre of the floor to the centre of the roof."""
 
 
 def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[float, float, float]]:
@@ -110,15 +110,15 @@ def tram(
 ) -> Built:
     """Build a three-part low-floor tram, 19.6 m long, with two colours, a pantograph, and lettering on its ends and sides."""
     s = Solid(f"{colour} tram")
-    skin = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
+    finish = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
     band, dark = paint(second_colour, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
     half, joint = LENGTH_M / 2, 2.7
     for sign in (-1, 1):
         _hull(s, [(sign * (joint + 0.3), 1.0, False), (sign * (half - 1.9), 1.0, False), (sign * (half - 0.6), 0.93, True),
-                  (sign * half, 0.78, True)], skin)  # fmt: skip
+                  (sign * half, 0.78, True)], finish)  # fmt: skip
         _end(s, sign, colour, line, destination, number, lit)
         _bellows(s, sign * joint)
-    _hull(s, [(-joint + 0.3, 1.0, False), (joint - 0.3, 1.0, False)], skin)
+    _hull(s, [(-joint + 0.3, 1.0, False), (joint - 0.3, 1.0, False)], finish)
     black = plain("tram black", (0.010, 0.010, 0.011), 0.3)
     for side in (-1, 1):
         x = side * (HALF_WIDTH_M + 0.004)

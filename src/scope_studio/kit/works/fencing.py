@@ -10,7 +10,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.works.barriers import striped_plank
 
-FENCE_PANEL_M = (3.45, 2.0)
+FENCE_PANEL_SIZE_M = (3.45, 2.0)
 """Width and height of a temporary mesh fence panel in metres."""
 
 
@@ -36,7 +36,7 @@ def frame(s: Solid, width: float, low: float, high: float, cx: float = 0.0, radi
 def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
     """Build a temporary site fence panel on block feet. ``plate`` contains the lines of a small sign on it."""
     s = Solid("mesh fence panel")
-    width, height = FENCE_PANEL_M
+    width, height = FENCE_PANEL_SIZE_M
     frame(s, width - 0.04, 0.16, height)
     wire_mesh(s, width - 0.06, 0.16, height)
     for x in (-width / 2 + 0.02, width / 2 - 0.02):

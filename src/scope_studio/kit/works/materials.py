@@ -107,7 +107,7 @@ def pallet_of_kerbs() -> Built:
 def pipe_stack(colour: str = "orange", *, length: float = 6.0) -> Built:
     """Build a pyramid of ten drain pipes along y between timber stakes."""
     s = Solid("pipe stack")
-    r, skin = 0.16, paint(colour, dirt=0.30, roughness=0.35)
+    r, finish = 0.16, paint(colour, dirt=0.30, roughness=0.35)
     for row in range(4):
         for k in range(4 - row):
             x = (k - (3 - row) / 2) * 2.02 * r
@@ -125,7 +125,7 @@ def pipe_stack(colour: str = "orange", *, length: float = 6.0) -> Built:
                     (r * 0.95, b),
                     (r * 0.95, b - 0.30),
                 ],
-                skin,
+                finish,
                 (x, 0, z),
                 "Y",
                 28,
@@ -204,7 +204,7 @@ def cable_drum(diameter: float = 1.4) -> Built:
     return s.built()
 
 
-def shovel_standing() -> Built:
+def standing_shovel() -> Built:
     """Build a shovel that stands upright in the ground, leaning slightly."""
     s = Solid("shovel")
     with s.at(0, 0, 0, pitch=-9, roll=4):
@@ -233,13 +233,13 @@ def broom() -> Built:
 def fuel_can(colour: str = "red") -> Built:
     """Build a 20-litre fuel can with pressed sides and a triple handle."""
     s = Solid(f"{colour} fuel can")
-    skin = paint(colour, dirt=0.35)
-    s.box((0.345, 0.165, 0.44), (0, 0, 0.22), skin, 0.035)
+    finish = paint(colour, dirt=0.35)
+    s.box((0.345, 0.165, 0.44), (0, 0, 0.22), finish, 0.035)
     for side in (-1, 1):
         for a, b in (((-0.12, 0.09), (0.12, 0.35)), ((-0.12, 0.35), (0.12, 0.09))):
-            s.rod((a[0], side * 0.080, a[1]), (b[0], side * 0.080, b[1]), 0.010, skin)
+            s.rod((a[0], side * 0.080, a[1]), (b[0], side * 0.080, b[1]), 0.010, finish)
     for y in (-0.05, 0.0, 0.05):
-        s.tube([(-0.10, y, 0.43), (-0.08, y, 0.475), (0.04, y, 0.475), (0.06, y, 0.43)], 0.010, skin)
+        s.tube([(-0.10, y, 0.43), (-0.08, y, 0.475), (0.04, y, 0.475), (0.06, y, 0.43)], 0.010, finish)
     s.lathe([(0.034, 0.0), (0.034, 0.05), (0.02, 0.06)], paint("black"), (0.125, 0, 0.43), steps=16)
     return s.built()
 
@@ -261,12 +261,12 @@ def fire_extinguisher() -> Built:
 def toolbox(colour: str = "red") -> Built:
     """Build a cantilever steel toolbox, 0.5 m long, with a tube handle."""
     s = Solid(f"{colour} toolbox")
-    skin = paint(colour, dirt=0.35)
-    s.box((0.50, 0.22, 0.20), (0, 0, 0.10), skin, 0.010)
+    finish = paint(colour, dirt=0.35)
+    s.box((0.50, 0.22, 0.20), (0, 0, 0.10), finish, 0.010)
     s.prism(
         [(-0.11, 0.20), (0.11, 0.20), (0.10, 0.27), (0.04, 0.30), (-0.04, 0.30), (-0.10, 0.27)],
         (-0.25, 0.25),
-        skin,
+        finish,
         "YZ",
     )
     s.tube([(-0.16, 0, 0.30), (-0.15, 0, 0.36), (0.15, 0, 0.36), (0.16, 0, 0.30)], 0.011, steel())

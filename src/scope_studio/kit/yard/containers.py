@@ -46,7 +46,7 @@ def _ink(colour: str) -> bpy.types.Material:
     )
 
 
-def _corrugated_wall(s: Solid, length: float, x: float, z0: float, z1: float, skin: bpy.types.Material) -> None:
+def _corrugated_wall(s: Solid, length: float, x: float, z0: float, z1: float, finish: bpy.types.Material) -> None:
     """Add a side wall at ``x`` with trapezoidal corrugations, 36 mm deep, along y."""
     side = 1 if x > 0 else -1
     count = round((length - 0.24) / 0.278)
@@ -57,7 +57,7 @@ def _corrugated_wall(s: Solid, length: float, x: float, z0: float, z1: float, sk
         outer += [(0.0, y), (0.0, y + step * 0.26), (-0.036, y + step * 0.50), (-0.036, y + step * 0.76)]
     outer.append((0.0, length / 2 - 0.12))
     inner = [(u - 0.012, y) for u, y in outer[::-1]]
-    s.prism([(x + side * u, y) for u, y in [*outer, *inner]], (z0, z1), skin, "XY")
+    s.prism([(x + side * u, y) for u, y in [*outer, *inner]], (z0, z1), finish, "XY")
 
 
 def container(
@@ -78,22 +78,22 @@ def container(
         load: "cartons" or None.
     """
     s = Solid(f"{colour} container")
-    skin, ink, iron = container_paint(colour), _ink(colour), steel(dark=True)
+    finish, ink, iron = container_paint(colour), _ink(colour), steel(dark=True)
     length = LENGTH_M[feet]
     w, d, h = WIDTH_M / 2, length / 2, HEIGHT_M
     for x in (-w + 0.014, w - 0.014):
-        _corrugated_wall(s, length, x, 0.16, h - 0.10, skin)
+        _corrugated_wall(s, length, x, 0.16, h - 0.10, finish)
     for x in (-w + 0.06, w - 0.06):
         for y in (-d + 0.06, d - 0.06):
-            s.box((0.12, 0.12, h - 0.2), (x, y, h / 2), skin, 0.012)
+            s.box((0.12, 0.12, h - 0.2), (x, y, h / 2), finish, 0.012)
             for z in (0.06, h - 0.06):
-                s.box((0.17, 0.18, 0.118), (x * 0.985, y * 0.995, z), skin, 0.01)
+                s.box((0.17, 0.18, 0.118), (x * 0.985, y * 0.995, z), finish, 0.01)
                 s.box((0.176, 0.07, 0.05), (x * 0.985, y * 0.995, z), plain("casting hole", (0.008, 0.008, 0.008), 0.9), 0.01)
-        s.box((0.07, length - 0.2, 0.13), (x * 1.012, 0, 0.11), skin, 0.008)
-        s.box((0.06, length - 0.2, 0.07), (x * 1.015, 0, h - 0.05), skin, 0.008)
+        s.box((0.07, length - 0.2, 0.13), (x * 1.012, 0, 0.11), finish, 0.008)
+        s.box((0.06, length - 0.2, 0.07), (x * 1.015, 0, h - 0.05), finish, 0.008)
     for y in (-d + 0.05, d - 0.05):
-        s.box((WIDTH_M - 0.3, 0.09, 0.13), (0, y, 0.10), skin, 0.008)
-        s.box((WIDTH_M - 0.3, 0.09, 0.11), (0, y, h - 0.07), skin, 0.008)
+        s.box((WIDTH_M - 0.3, 0.09, 0.13), (0, y, 0.10), finish, 0.008)
+        s.box((WIDTH_M - 0.3, 0.09, 0.11), (0, y, h - 0.07), finish, 0.008)
     ribs = []
     count = 9
     for k in range(count):
@@ -101,7 +101,7 @@ def container(
         step = (WIDTH_M - 0.24) / count
         ribs += [(x, 0.0), (x + step * 0.3, 0.0), (x + step * 0.5, 0.036), (x + step * 0.8, 0.036)]
     ribs += [(w - 0.12, 0.0), (w - 0.12, 0.05), (-w + 0.12, 0.05)]
-    s.prism([(x, -d + 0.02 + y) for x, y in ribs], (0.14, h - 0.08), skin, "XY")
+    s.prism([(x, -d + 0.02 + y) for x, y in ribs], (0.14, h - 0.08), finish, "XY")
     roof = []
     bumps = round(length / 0.60)
     for k in range(bumps):
@@ -109,9 +109,9 @@ def container(
         step = (length - 0.2) / bumps
         roof += [(y, h - 0.03), (y + step * 0.35, h - 0.03), (y + step * 0.5, h - 0.012), (y + step * 0.85, h - 0.012)]
     roof += [(d - 0.10, h - 0.03), (d - 0.10, h - 0.06), (-d + 0.10, h - 0.06)]
-    s.prism(roof, (-w + 0.05, w - 0.05), skin, "YZ")
+    s.prism(roof, (-w + 0.05, w - 0.05), finish, "YZ")
     s.box((WIDTH_M - 0.16, length - 0.14, 0.05), (0, 0, 0.15), timber(fresh=False), 0.0)
-    _doors(s, w, d, h, skin, iron, ink, code, is_open=doors == "open")
+    _doors(s, w, d, h, finish, iron, ink, code, is_open=doors == "open")
     if load == "cartons":
         _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
@@ -129,7 +129,7 @@ def _doors(
     w: float,
     d: float,
     h: float,
-    skin: bpy.types.Material,
+    finish: bpy.types.Material,
     iron: bpy.types.Material,
     ink: bpy.types.Material,
     code: str,
@@ -142,9 +142,9 @@ def _doors(
         turn = side * (-252.0 if is_open else 0.0)
         with s.at(side * (w + 0.02 if is_open else w - 0.09), d - 0.035, 0.19 + height / 2, turn=turn):
             cx = -side * width / 2
-            s.box((width, 0.05, height), (cx, 0, 0), skin, 0.008)
+            s.box((width, 0.05, height), (cx, 0, 0), finish, 0.008)
             for k in range(3):
-                s.box((width - 0.10, 0.012, 0.42), (cx, 0.029, -height / 2 + 0.38 + 0.76 * k), skin, 0.012)
+                s.box((width - 0.10, 0.012, 0.42), (cx, 0.029, -height / 2 + 0.38 + 0.76 * k), finish, 0.012)
             for x in (cx - 0.30, cx + 0.30):
                 s.rod((x, 0.065, -height / 2 - 0.10), (x, 0.065, height / 2 + 0.10), 0.017, iron)
                 for z in (-height * 0.42, -height * 0.15, height * 0.18, height * 0.42):

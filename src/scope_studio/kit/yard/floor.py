@@ -15,7 +15,7 @@ from scope_studio.kit.core.stage import Built
 Rect = tuple[float, float, float, float]
 """Rectangle, given by its west, east, south and north edges in metres."""
 
-PAINT_M = 0.004
+MARKING_HEIGHT_M = 0.004
 """Height of markings above the floor, in metres."""
 
 
@@ -117,7 +117,7 @@ def floor(name: str, rect: Rect, material: bpy.types.Material, z: float = 0.0) -
     return Built.of(name, [from_data(name, points, [(0, 1, 2, 3)], material)])
 
 
-def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, z: float = PAINT_M) -> None:
+def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, z: float = MARKING_HEIGHT_M) -> None:
     """Add one painted shape, as a single face that points up."""
     area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(len(outline)))
     ring = list(outline) if area > 0 else list(outline)[::-1]
@@ -171,7 +171,7 @@ def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
     """Build lettering on the floor. It is upright for a viewer who looks towards +y."""
     s = Solid("painted words")
     for k, body in enumerate(lines):
-        s.text(body, cap, (0, (len(lines) / 2 - k - 0.5) * cap * 1.5, PAINT_M), paint(colour), facing="+Z", bold=True)
+        s.text(body, cap, (0, (len(lines) / 2 - k - 0.5) * cap * 1.5, MARKING_HEIGHT_M), paint(colour), facing="+Z", bold=True)
     return s.built()
 
 
@@ -179,10 +179,10 @@ def bay(number: str, *, width: float = 2.5, depth: float = 5.0, cap: float = 0.6
     """Build a parking bay open towards -y: a rectangle of floor, lines on three sides, and the number near the open end."""
     s = Solid(f"bay {number}")
     w, d = width / 2, depth / 2
-    flat(s, [(-w, -d), (w, -d), (w, d), (-w, d)], asphalt("bay asphalt", tone=0.82), PAINT_M / 2)
+    flat(s, [(-w, -d), (w, -d), (w, d), (-w, d)], asphalt("bay asphalt", tone=0.82), MARKING_HEIGHT_M / 2)
     ink = paint(colour)
     for x in (-w, w):
         line(s, (x, -d), (x, d), 0.10, ink)
     line(s, (-w, d), (w, d), 0.10, ink)
-    s.text(number, cap, (0, -d + 0.35 + cap / 2, PAINT_M), ink, facing="+Z")
+    s.text(number, cap, (0, -d + 0.35 + cap / 2, MARKING_HEIGHT_M), ink, facing="+Z")
     return s.built()

@@ -13,7 +13,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
 
-PALLET_M = 0.144
+PALLET_HEIGHT_M = 0.144
 """Height of a pallet in metres."""
 
 
@@ -35,7 +35,7 @@ def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
     s = Solid("pallet stack")
     rng = random.Random(f"stack {seed}")
     for k in range(count):
-        with s.at(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), PALLET_M * k, turn=rng.uniform(-2, 2)):
+        with s.at(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), PALLET_HEIGHT_M * k, turn=rng.uniform(-2, 2)):
             add_pallet(s, fresh=rng.random() < 0.25)
     return s.built()
 
@@ -48,7 +48,7 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
     s = Solid(f"pallet of {kind}")
     rng = random.Random(f"load {kind} {seed}")
     add_pallet(s)
-    top = PALLET_M
+    top = PALLET_HEIGHT_M
     if kind == "cartons":
         tones = [
             plain(f"stock carton {k}", c, 0.85)
@@ -77,13 +77,13 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
         for layer in range(4):
             for k in range(4):
                 x, y, z = -0.30 + 0.60 * (k % 2), -0.25 + 0.5 * (k // 2), top + 0.135 + 0.27 * layer
-                skin = paint(rng.choice(["blue", "blue", "green"]), dirt=0.2)
-                s.box((0.58, 0.48, 0.26), (x, y, z), skin, 0.02)
+                finish = paint(rng.choice(["blue", "blue", "green"]), dirt=0.2)
+                s.box((0.58, 0.48, 0.26), (x, y, z), finish, 0.02)
                 s.box((0.50, 0.485, 0.05), (x, y, z + 0.04), lens("black"), 0.0)
                 s.box((0.585, 0.12, 0.05), (x, y, z + 0.07), lens("black"), 0.0)
         top += 1.09
     if wrapped:
-        s.box((1.21, 1.0, top - PALLET_M + 0.01), (0, 0, (top + PALLET_M) / 2), _film(), 0.03)
+        s.box((1.21, 1.0, top - PALLET_HEIGHT_M + 0.01), (0, 0, (top + PALLET_HEIGHT_M) / 2), _film(), 0.03)
     if label:
         s.box((0.42, 0.006, 0.30), (0.15, 0.508, top - 0.38), sheet("white"), 0.0)
         s.text(label, 0.075, (0.15, 0.512, top - 0.38), sheet("black", dirt=0.05))
@@ -103,12 +103,12 @@ def _film() -> bpy.types.Material:
 def steel_drum(colour: str = "blue", *, label: bool = True) -> Built:
     """Build a 200-litre steel drum with rolling hoops, bungs and a hazard label."""
     s = Solid(f"{colour} drum")
-    skin = paint(colour, dirt=0.40)
+    finish = paint(colour, dirt=0.40)
     profile = [(0.286, 0.0), (0.292, 0.02), (0.285, 0.03)]
     for z in (0.30, 0.58):
         profile += [(0.285, z - 0.02), (0.295, z - 0.008), (0.295, z + 0.008), (0.285, z + 0.02)]
     profile += [(0.285, 0.85), (0.292, 0.862), (0.292, 0.88), (0.280, 0.88), (0.278, 0.868)]
-    s.lathe(profile, skin, steps=32)
+    s.lathe(profile, finish, steps=32)
     for x, y, r in ((0.16, 0.08, 0.035), (-0.17, -0.06, 0.022)):
         s.lathe([(r, 0.868), (r, 0.884)], steel(), (x, y, 0), steps=14)
     if label:
@@ -138,9 +138,11 @@ def gas_cage() -> Built:
             s.rod((-0.95, side, 0.06 + 0.1 * k), (0.95, side, 0.06 + 0.1 * k), 0.003, frame, sides=4)
     for k in range(8):
         x, y = -0.66 + 0.44 * (k % 4), -0.2 + 0.42 * (k // 4)
-        skin = paint(("dark red", "dark red", "green", "grey")[k % 4], dirt=0.3)
-        s.lathe([(0.11, 0.07), (0.115, 0.09), (0.115, 1.20), (0.09, 1.32), (0.035, 1.38), (0.03, 1.45)], skin, (x, y, 0), steps=20)
-        s.lathe([(0.055, 1.40), (0.055, 1.54)], skin, (x, y, 0), steps=14)
+        finish = paint(("dark red", "dark red", "green", "grey")[k % 4], dirt=0.3)
+        s.lathe(
+            [(0.11, 0.07), (0.115, 0.09), (0.115, 1.20), (0.09, 1.32), (0.035, 1.38), (0.03, 1.45)], finish, (x, y, 0), steps=20
+        )
+        s.lathe([(0.055, 1.40), (0.055, 1.54)], finish, (x, y, 0), steps=14)
     with s.at(0, 0.53, 1.45):
         board(s, 0.9, 0.46, "yellow", back=False)
         write(s, "DANGER", 0.10, 0, 0.10, "black")
@@ -200,7 +202,7 @@ def tank(label: str = "LOAD 7") -> Built:
 def wheelie_bin(colour: str = "green", *, is_open: bool = False, label: str | None = None) -> Built:
     """Build an 1100-litre wheeled bin with its lid shut or folded back."""
     s = Solid(f"{colour} wheelie bin")
-    skin = paint(colour, dirt=0.38, roughness=0.45)
+    finish = paint(colour, dirt=0.38, roughness=0.45)
     low, high = (
         [(-0.50, -0.36), (0.50, -0.36), (0.50, 0.36), (-0.50, 0.36)],
         [(-0.65, -0.50), (0.65, -0.50), (0.65, 0.50), (-0.65, 0.50)],
@@ -208,16 +210,16 @@ def wheelie_bin(colour: str = "green", *, is_open: bool = False, label: str | No
     points = [(x, y, 0.22) for x, y in low] + [(x, y, 1.16) for x, y in high]
     inner = [(x * 0.94, y * 0.94, 0.26) for x, y in low] + [(x * 0.95, y * 0.95, 1.16) for x, y in high]
     faces = [(3, 2, 1, 0), *((k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4))]
-    s.add(points, faces, skin)
+    s.add(points, faces, finish)
     s.add(
         [*inner, *points],
         [*(tuple(f[::-1]) for f in faces), *((4 + k, 4 + (k + 1) % 4, 12 + (k + 1) % 4, 12 + k) for k in range(4))],
-        skin,
+        finish,
     )
     for k in range(5):
-        s.box((0.05, 0.05, 0.7), (-0.44 + 0.22 * k, 0.452, 0.68), skin, 0.012)
+        s.box((0.05, 0.05, 0.7), (-0.44 + 0.22 * k, 0.452, 0.68), finish, 0.012)
     for sx in (-1, 1):
-        s.rod((sx * 0.64, 0, 0.95), (sx * 0.76, 0, 0.95), 0.03, skin)
+        s.rod((sx * 0.64, 0, 0.95), (sx * 0.76, 0, 0.95), 0.03, finish)
         for sy in (-1, 1):
             s.lathe([(0.10, -0.03), (0.10, 0.03)], rubber(), (sx * 0.42, sy * 0.30, 0.10), "X", 20)
             s.box((0.08, 0.10, 0.12), (sx * 0.42, sy * 0.30, 0.18), steel(), 0.01)
@@ -234,7 +236,7 @@ def wheelie_bin(colour: str = "green", *, is_open: bool = False, label: str | No
             (0.25, 0.05),
             (0.0, -0.04),
         ]
-        s.prism(arc, (-0.68, 0.68), skin, "YZ")
+        s.prism(arc, (-0.68, 0.68), finish, "YZ")
     if label:
         s.box((0.70, 0.006, 0.16), (0, 0.487, 0.80), sheet("white"), 0.0)
         s.text(label, 0.07, (0, 0.492, 0.80), sheet("black", dirt=0.05))
@@ -245,15 +247,15 @@ def carton(*, seed: int = 0, is_open: bool = False) -> Built:
     """Build a cardboard box, about 0.5 m wide, taped shut or with its flaps up."""
     s = Solid("cardboard box")
     rng = random.Random(f"carton {seed}")
-    skin = plain(f"loose carton {seed % 2}", ((0.36, 0.235, 0.125), (0.42, 0.29, 0.17))[seed % 2], 0.85)
+    finish = plain(f"loose carton {seed % 2}", ((0.36, 0.235, 0.125), (0.42, 0.29, 0.17))[seed % 2], 0.85)
     w, d, h = rng.uniform(0.40, 0.55), rng.uniform(0.34, 0.45), rng.uniform(0.28, 0.42)
-    s.box((w, d, h), (0, 0, h / 2), skin, 0.006)
+    s.box((w, d, h), (0, 0, h / 2), finish, 0.006)
     s.box((0.06, d + 0.003, h + 0.003), (0, 0, h / 2), plain("carton tape", (0.46, 0.34, 0.20), 0.35), 0.0)
     if is_open:
         s.box((w - 0.03, d - 0.03, 0.004), (0, 0, h + 0.001), lens("black"), 0.0)
         for side in (-1, 1):
             with s.at(0, side * d / 2, h, pitch=side * 35):
-                s.box((w, 0.006, 0.16), (0, 0, 0.08), skin, 0.0)
+                s.box((w, 0.006, 0.16), (0, 0, 0.08), finish, 0.0)
     return s.built()
 
 

@@ -46,7 +46,7 @@ def mast_light(
 
 
 def wall_pack(*, kind: str = "sodium", lit: bool = True) -> Built:
-    """Build a prismatic wall lamp, 0.4 m wide, with its back at y = 0 and its middle at z = 0."""
+    """Build a prismatic wall lamp, 0.4 m wide, with its back at y = 0 and its centre at z = 0."""
     s = Solid("wall lamp")
     s.box((0.40, 0.05, 0.26), (0, 0.025, 0), paint("dark grey", dirt=0.2), 0.01)
     s.prism([(0.04, 0.13), (0.24, 0.11), (0.26, 0.04), (0.04, 0.04)], (-0.20, 0.20), paint("dark grey", dirt=0.2), "YZ")
@@ -68,7 +68,7 @@ def strip(length: float = 1.5, *, kind: str = "led", strength: float = 5.0) -> B
 
 
 def floodlight() -> Built:
-    """Build a floodlight on a short arm, tilted down. The wall is the plane y = 0, and the middle of the lamp is at z = 0."""
+    """Build a floodlight on a short arm, tilted down. The wall is the plane y = 0, and the lamp is centred on z = 0."""
     s = Solid("floodlight")
     s.tube([(0, 0, 0.10), (0, 0.45, 0.16), (0, 0.62, 0.06)], 0.025, steel(), sides=8)
     with s.at(0, 0.70, -0.04, pitch=-38):

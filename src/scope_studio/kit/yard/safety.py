@@ -12,20 +12,20 @@ from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, 
 from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.faces import INK, board, disc, flat, stroke, write
+from scope_studio.kit.signs.faces import INK_BY_BACKGROUND, board, disc, flat, stroke, write
 from scope_studio.kit.signs.stands import add_posts
 
-FENCE_M = 3.0
+FENCE_PANEL_LENGTH_M = 3.0
 """Length of a chain-link panel in metres."""
 
 
 def yard_bollard(colour: str = "yellow") -> Built:
     """Build a bollard, 1.0 m high: a steel tube set in concrete, with a black band and dirt near the ground."""
     s = Solid("bollard")
-    skin = paint(colour, dirt=0.45)
-    s.lathe([(0.084, -0.02), (0.084, 0.62)], skin, steps=24)
+    finish = paint(colour, dirt=0.45)
+    s.lathe([(0.084, -0.02), (0.084, 0.62)], finish, steps=24)
     s.lathe([(0.085, 0.62), (0.085, 0.78)], sheet("black", dirt=0.2), steps=24)
-    s.lathe([(0.084, 0.78), (0.084, 0.97), (0.06, 1.02), (0.01, 1.035)], skin, steps=24)
+    s.lathe([(0.084, 0.78), (0.084, 0.97), (0.06, 1.02), (0.01, 1.035)], finish, steps=24)
     s.lathe([(0.16, 0.0), (0.15, 0.012)], concrete(light=False), steps=20)
     return s.built()
 
@@ -49,11 +49,11 @@ def bay_plate(number: str, *, background: str = "blue") -> Built:
     for turn in (0, 180):
         with s.at(0, 0, 0.66, turn=turn), s.at(0, 0.028, 0):
             board(s, 0.46, 0.30, background, back=False)
-            write(s, number, 0.19, 0, 0, INK.get(background, "black"))
+            write(s, number, 0.19, 0, 0, INK_BY_BACKGROUND.get(background, "black"))
     return s.built()
 
 
-def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = False) -> Built:
+def chain_link(length: float = FENCE_PANEL_LENGTH_M, height: float = 2.4, *, hole: bool = False) -> Built:
     """Build a chain-link panel along x with a post at each end and three barbed strands on top.
 
     With ``hole``, the mesh is cut and bent open.
@@ -147,8 +147,8 @@ def hydrant() -> Built:
 def spill_kit() -> Built:
     """Build a spill kit: a yellow, lettered chest on wheels with a black lid."""
     s = Solid("spill kit")
-    skin = paint("yellow", dirt=0.25)
-    s.box((0.95, 0.60, 0.80), (0, 0, 0.48), skin, 0.04)
+    finish = paint("yellow", dirt=0.25)
+    s.box((0.95, 0.60, 0.80), (0, 0, 0.48), finish, 0.04)
     s.box((0.99, 0.64, 0.10), (0, 0, 0.92), paint("black", dirt=0.2), 0.035)
     for x in (-0.36, 0.36):
         s.lathe([(0.09, -0.03), (0.09, 0.03)], rubber(), (x, 0.22, 0.09), "X", 16)
@@ -181,7 +181,7 @@ def notice(
 ) -> Built:  # fmt: skip
     """Build a rectangular notice on a wall or on posts.
 
-    A notice on a wall has its back at y = 0 and its middle at z = 0. A notice on posts has its lower edge at ``post_height``.
+    A notice on a wall has its back at y = 0 and its centre at z = 0. A notice on posts has its lower edge at ``post_height``.
 
     Args:
         header: Colour of a band at the top: "red", "yellow", "blue" or "green".
@@ -209,7 +209,7 @@ def notice(
                 _symbol(s, symbol, (v0 + v1) / 2, (v1 - v0) * 0.42)
         for i, line in enumerate(lines):
             v = height / 2 - head - text_h / 2 + ((len(lines) - 1) / 2 - i) * 1.65 * cap
-            write(s, line, cap, 0, v, INK.get(background, "black"))
+            write(s, line, cap, 0, v, INK_BY_BACKGROUND.get(background, "black"))
     if post_height is not None:
         add_posts(s, width * 0.3 if width > 0.8 else 0.0, post_height + height - 0.05, 0.035, -0.075)
     return s.built()
@@ -283,15 +283,15 @@ def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
 
 
 def sliding_gate(length: float = 8.0, height: float = 2.2) -> Built:
-    """Build a barred steel sliding gate along x on a low track, with a sign in its middle."""
+    """Build a barred steel sliding gate along x on a low track, with a sign at its centre."""
     s = Solid("sliding gate")
-    skin, half = paint("dark green", dirt=0.35), length / 2
-    s.box((length, 0.14, 0.14), (0, 0, 0.17), skin, 0.01)
-    s.box((length, 0.08, 0.08), (0, 0, height), skin, 0.01)
+    finish, half = paint("dark green", dirt=0.35), length / 2
+    s.box((length, 0.14, 0.14), (0, 0, 0.17), finish, 0.01)
+    s.box((length, 0.08, 0.08), (0, 0, height), finish, 0.01)
     for k in range(round(length / 0.14) + 1):
         x = -half + length * k / round(length / 0.14)
-        s.box((0.025, 0.025, height - 0.2), (x, 0, height / 2 + 0.08), skin, 0.0)
-        s.lathe([(0.012, height), (0.002, height + 0.14)], skin, (x, 0, 0), steps=6)
+        s.box((0.025, 0.025, height - 0.2), (x, 0, height / 2 + 0.08), finish, 0.0)
+        s.lathe([(0.012, height), (0.002, height + 0.14)], finish, (x, 0, 0), steps=6)
     for x in (-half * 0.7, half * 0.7):
         s.lathe([(0.10, -0.03), (0.10, 0.03)], steel(dark=True), (x, 0, 0.10), "Y", 18)
     s.box((length + 0.5, 0.06, 0.03), (0, 0, 0.015), steel(), 0.0)

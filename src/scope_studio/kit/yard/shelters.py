@@ -12,16 +12,16 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.light.glow import glowing_face, lit_lens
 from scope_studio.kit.signs.faces import board, write
 
-GATEHOUSE_M = (3.0, 2.4, 2.7)
+GATEHOUSE_SIZE_M = (3.0, 2.4, 2.7)
 """Width, depth and height of the gatehouse in metres."""
 
 
 def gatehouse(name: str = "SECURITY") -> Built:
     """Build a guard's cabin with windows on all sides. Its lit room has a desk, screens and a key cabinet."""
     s = Solid("gatehouse")
-    width, depth, height = GATEHOUSE_M
+    width, depth, height = GATEHOUSE_SIZE_M
     w, d = width / 2, depth / 2
-    skin, trim, clear = paint("light grey", dirt=0.28), paint("blue", dirt=0.25), pane(0.14)
+    finish, trim, clear = paint("light grey", dirt=0.28), paint("blue", dirt=0.25), pane(0.14)
     s.box((width + 0.5, depth + 0.5, 0.18), (0, 0, 0.09), concrete(light=False), 0.03)
     s.box((width, depth, 0.06), (0, 0, 0.21), plain("cabin floor", (0.10, 0.095, 0.09), 0.8), 0.0)
     for x in (-w, w):
@@ -29,8 +29,8 @@ def gatehouse(name: str = "SECURITY") -> Built:
             s.box((0.12, 0.12, height), (x * 0.97, y * 0.97, 0.18 + height / 2), trim, 0.01)
     for turn, along, reach in ((0, width, d), (180, width, d), (90, depth, w), (-90, depth, w)):
         with s.at(turn=turn):
-            s.box((along, 0.08, 0.95), (0, reach - 0.04, 0.18 + 0.475), skin, 0.0)
-            s.box((along, 0.10, 0.28), (0, reach - 0.04, height + 0.02), skin, 0.0)
+            s.box((along, 0.08, 0.95), (0, reach - 0.04, 0.18 + 0.475), finish, 0.0)
+            s.box((along, 0.10, 0.28), (0, reach - 0.04, height + 0.02), finish, 0.0)
             s.box((along - 0.2, 0.012, 1.46), (0, reach - 0.05, 1.88), clear, 0.0)
             s.box((along, 0.12, 0.05), (0, reach - 0.03, 1.14), trim, 0.004)
             for x in (-along / 6, along / 6) if along > 2.6 else (0.0,):
@@ -144,8 +144,8 @@ def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
     """Build a drinks machine, 0.95 x 0.8 x 1.85 m, with a lit window with bottles, a keypad, and a lit panel with its name."""
     s = Solid("vending machine")
     rng = random.Random("vending")
-    skin = paint(colour, dirt=0.15)
-    s.box((0.95, 0.80, 1.83), (0, 0, 0.935), skin, 0.02)
+    finish = paint(colour, dirt=0.15)
+    s.box((0.95, 0.80, 1.83), (0, 0, 0.935), finish, 0.02)
     s.box((0.90, 0.02, 0.30), (0, 0.402, 1.64), glowing_face("white", 1.6), 0.004)
     s.text(name, 0.17, (0, 0.414, 1.64), paint(colour, dirt=0.0))
     s.box((0.60, 0.02, 1.05), (0.12, 0.40, 0.92), glowing_face("white", 1.1), 0.0)

@@ -88,7 +88,7 @@ def _gate(stage: Stage) -> None:
 def _fences(stage: Stage) -> None:
     """Place the fences. Each run of panels is one instance, and the damaged panel in the west is a separate instance."""
     prototypes = Prototypes()
-    step = yard_safety.FENCE_M
+    step = yard_safety.FENCE_PANEL_LENGTH_M
 
     def run(name: str, x0: float, y0: float, dx: float, dy: float, count: int, bearing: float, skip: tuple[int, ...] = ()) -> None:
         parts = []
@@ -183,7 +183,7 @@ def _bay_furniture(stage: Stage) -> None:
     prototypes = Prototypes()
     for row, y, bearing in ((ground.ROW_A, -11.75, 180.0), (ground.ROW_B, -29.25, 0.0), (ground.VISITORS, -44.3, 0.0)):
         for x, number in row:
-            background = "green" if number in ground.CHARGING else "yellow" if row is ground.VISITORS else "blue"
+            background = "green" if number in ground.CHARGING_BAYS else "yellow" if row is ground.VISITORS else "blue"
             stage.place(
                 yard_safety.bay_plate(number, background=background),
                 "bay number",

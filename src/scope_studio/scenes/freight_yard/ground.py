@@ -12,22 +12,22 @@ WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
 IN_X, OUT_X = -1.2, 7.2
 """x coordinates of the lanes into and out of the yard. Traffic drives on the left."""
 
-BAY_M = 2.6
+BAY_WIDTH_M = 2.6
 """Width of a bay in metres."""
-ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""Bays of the northern row: x coordinate of the middle in metres, and number. Cars face north."""
-ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
-"""Bays of the southern row: x coordinate of the middle in metres, and number. Cars face south."""
+ROW_A = [(-45.4 + BAY_WIDTH_M * k, str(12 + k)) for k in range(12)]
+"""Bays of the northern row: x coordinate of the centre in metres, and number. Cars face north."""
+ROW_B = [(-45.4 + BAY_WIDTH_M * k, str(24 + k)) for k in range(12)]
+"""Bays of the southern row: x coordinate of the centre in metres, and number. Cars face south."""
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 """y coordinates of the two rows."""
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
-"""Bays for visitors: x coordinate of the middle in metres, and number. Cars face south."""
+"""Bays for visitors: x coordinate of the centre in metres, and number. Cars face south."""
 VISITORS_Y = -41.5
 """y coordinate of the row for visitors."""
 TRAILER_BAYS = [(3.5 + 4.2 * k, str(61 + k)) for k in range(5)]
-"""Trailer bays along the west fence: y coordinate of the middle in metres, and number."""
+"""Trailer bays along the west fence: y coordinate of the centre in metres, and number."""
 TRAILER_X = -48.5
-"""x coordinate of the middle of the trailer bays."""
+"""x coordinate of the centre of the trailer bays."""
 
 MASTS = (
     (-17.0, -10.6, 0.0, "sodium", 2, True, "L1"),
@@ -132,12 +132,12 @@ def _lanes() -> yard_floor.Built:
 
 
 def _bays(stage: Stage) -> None:
-    occupied = {number for _, number in [*ROW_A, *ROW_B, *VISITORS]} & set(OCCUPIED)
+    occupied = {number for _, number in [*ROW_A, *ROW_B, *VISITORS]} & set(CAR_COLOURS)
     for row, y, bearing in ((ROW_A, ROW_A_Y, 0.0), (ROW_B, ROW_B_Y, 180.0), (VISITORS, VISITORS_Y, 180.0)):
         for x, number in row:
-            kind = "visitor bay" if row is VISITORS else "charging bay" if number in CHARGING else "car bay"
+            kind = "visitor bay" if row is VISITORS else "charging bay" if number in CHARGING_BAYS else "car bay"
             stage.place(
-                yard_floor.bay(number, width=BAY_M - 0.05, colour="white"),
+                yard_floor.bay(number, width=BAY_WIDTH_M - 0.05, colour="white"),
                 "parking space", f"parking bay {number}", (x, y, 0), bearing,
                 number=number, state="occupied" if number in occupied else "empty", kind=kind,
             )  # fmt: skip
@@ -145,13 +145,13 @@ def _bays(stage: Stage) -> None:
         stage.place(
             yard_floor.bay(number, width=3.9, depth=15.0, cap=1.0, colour="yellow"),
             "parking space", f"trailer bay {number}", (TRAILER_X, y, 0), 270,
-            number=number, state="occupied" if number in OCCUPIED else "empty", kind="trailer bay",
+            number=number, state="occupied" if number in CAR_COLOURS else "empty", kind="trailer bay",
         )  # fmt: skip
 
 
-CHARGING = ("21", "22", "23")
+CHARGING_BAYS = ("21", "22", "23")
 """Numbers of the bays with a charging point."""
-OCCUPIED = {
+CAR_COLOURS = {
     "12": "dark blue", "13": "silver", "15": "red", "16": "white", "18": "grey", "20": "black", "22": "white", "23": "light blue",
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",
     "39": "beige", "61": "", "63": "", "64": "",

@@ -17,7 +17,7 @@ from scope_studio.kit.yard import floor as yard_floor
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
 """A carriageway that is not built. It only defines the terrain: a level strip with hills on both sides."""
 STREET_Y = -58.0
-"""y coordinate of the middle of the road outside."""
+"""y coordinate of the centre line of the road outside."""
 
 
 def build(stage: Stage) -> None:

@@ -9,7 +9,7 @@ from scope_studio.kit.signs import road_signs
 from scope_studio.kit.yard import safety as yard_safety
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, OFFICE_X, OFFICE_Y, RECEIVING_X
 
-Row = tuple[Built, str, float, float, float, dict[str, str]]
+NoticeSpec = tuple[Built, str, float, float, float, dict[str, str]]
 """A notice: built object, name, x, y, a number, and attributes. The number is the bearing, or z for a notice on a wall."""
 
 
@@ -21,7 +21,7 @@ def build(stage: Stage) -> None:
 
 def _on_posts(stage: Stage) -> None:
     notice = yard_safety.notice
-    rows: list[Row] = [
+    rows: list[NoticeSpec] = [
         (
             notice(["FORK LIFT", "TRUCKS"], header="yellow", background="yellow", cap=0.13, symbol="flt", post_height=1.5),
             "fork lift warning sign",
@@ -222,7 +222,7 @@ def _on_posts(stage: Stage) -> None:
         stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **attributes)
     for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 8.2, 12.8, 0)):
         stage.place(
-            road_signs.round_limit(limit, diameter=0.60, post_height=1.7),
+            road_signs.speed_limit_sign(limit, diameter=0.60, post_height=1.7),
             "speed sign",
             f"{limit} mph speed limit sign",
             (x, y, 0),
@@ -247,7 +247,7 @@ def _on_posts(stage: Stage) -> None:
 def _on_walls(stage: Stage) -> None:
     notice = yard_safety.notice
     letters = warehouse.letters
-    rows: list[Row] = [
+    rows: list[NoticeSpec] = [
         (
             letters("GOODS IN", 0.42),
             "lit goods in sign",

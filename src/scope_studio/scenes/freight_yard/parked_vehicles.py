@@ -33,7 +33,7 @@ def build(stage: Stage) -> None:
     _forklifts(stage)
 
 
-def _combination(
+def _articulated_lorry(
     stage: Stage,
     tractor: Built,
     trailer: Built,
@@ -43,10 +43,10 @@ def _combination(
     trailer_attributes: dict[str, object],
 ) -> None:
     """Place a tractor unit and its trailer facing south, with the trailer's rear at ``rear_y``."""
-    nose_y = rear_y - artics.TRAILER_M
-    kingpin_y = nose_y + artics.KINGPIN_M
+    nose_y = rear_y - artics.TRAILER_LENGTH_M
+    kingpin_y = nose_y + artics.KINGPIN_SETBACK_M
     name = str(trailer_attributes.pop("name"))
-    stage.place(trailer, "trailer", name, (x, rear_y - artics.TRAILER_M / 2, 0), 180, facing="south", **trailer_attributes)
+    stage.place(trailer, "trailer", name, (x, rear_y - artics.TRAILER_LENGTH_M / 2, 0), 180, facing="south", **trailer_attributes)
     stage.place(
         tractor,
         "lorry",
@@ -60,7 +60,7 @@ def _combination(
 
 
 def _docked_lorries(stage: Stage) -> None:
-    _combination(
+    _articulated_lorry(
         stage,
         artics.tractor("blue", plate="KX20 HGF", name="NORTHGATE", lit=True),
         artics.trailer("blue", lettering="NORTHGATE FREIGHT", plate="KX20 HGF", front="blue"),
@@ -82,7 +82,7 @@ def _docked_lorries(stage: Stage) -> None:
         box,
         "trailer",
         "white refrigerated trailer",
-        (DOCK_X[3], DOCKED_REAR_Y - artics.TRAILER_M / 2, 0),
+        (DOCK_X[3], DOCKED_REAR_Y - artics.TRAILER_LENGTH_M / 2, 0),
         180,
         colour="white",
         kind="refrigerated",
@@ -107,7 +107,7 @@ def _docked_lorries(stage: Stage) -> None:
         dock="7",
         lettering="draycott",
     )
-    _combination(
+    _articulated_lorry(
         stage,
         artics.tractor("green", plate="FJ21 OAK", name="HALDEN"),
         artics.trailer("green", lettering="HALDEN HAULAGE", plate="FJ21 OAK"),
@@ -246,7 +246,7 @@ def _cars(stage: Stage) -> None:
             if number not in PARKED_CARS:
                 continue
             body, plate = PARKED_CARS[number]
-            colour = ground.OCCUPIED[number]
+            colour = ground.CAR_COLOURS[number]
             car_bearing = bearing + (180 if number in ("16", "28", "33") else 0) + (1.8 if k % 2 else -1.2)
             facing = "north" if abs(car_bearing % 360) < 20 or car_bearing % 360 > 340 else "south"
             attributes = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}

@@ -9,8 +9,8 @@ from scope_studio.kit.yard import lamps as yard_lamps
 
 FRONT_Y = 30.0
 """y coordinate of the front of the warehouse."""
-MIDDLE_X = -1.0
-"""x coordinate of the middle of the front."""
+FRONT_CENTRE_X = -1.0
+"""x coordinate of the centre of the front."""
 WIDTH_M, HEIGHT_M = 58.0, 7.4
 """Width and height of the warehouse in metres."""
 DOCK_X = [-24.0 + 5.4 * k for k in range(8)]
@@ -32,17 +32,17 @@ def build(stage: Stage) -> None:
     _office(stage)
 
 
-def _front_x(x: float) -> float:
+def _local_x(x: float) -> float:
     """Convert a world x coordinate to the warehouse's local x coordinate."""
-    return MIDDLE_X - x
+    return FRONT_CENTRE_X - x
 
 
 def _warehouse(stage: Stage) -> None:
     half = docks.DOCK_WIDTH_M / 2
     openings = [
-        (_front_x(x) - half, _front_x(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_HEIGHT_M) for x in DOCK_X
+        (_local_x(x) - half, _local_x(x) + half, docks.DOCK_SILL_M, docks.DOCK_SILL_M + docks.DOCK_HEIGHT_M) for x in DOCK_X
     ]
-    openings.append((_front_x(RECEIVING_X) - 2.3, _front_x(RECEIVING_X) + 2.3, 0.0, 4.6))
+    openings.append((_local_x(RECEIVING_X) - 2.3, _local_x(RECEIVING_X) + 2.3, 0.0, 4.6))
     shell = warehouse.shell(
         width=WIDTH_M,
         depth=34.0,
@@ -50,13 +50,13 @@ def _warehouse(stage: Stage) -> None:
         openings=openings,
         colour=(0.36, 0.38, 0.40),
         band=(0.02, 0.09, 0.28),
-        ramp_to=_front_x(17.6),
+        ramp_to=_local_x(17.6),
     )
     main = stage.place(
         shell,
         "warehouse",
         "grey warehouse",
-        (MIDDLE_X, FRONT_Y, 0),
+        (FRONT_CENTRE_X, FRONT_Y, 0),
         180,
         colour="grey",
         material="metal cladding",

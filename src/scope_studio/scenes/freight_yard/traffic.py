@@ -14,7 +14,7 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.parked_vehicles import driver
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
+"""Number of the first actor in instance masks. All static instances have smaller numbers."""
 
 
 def _forklift_with_load(_phase: float) -> Built:
@@ -103,7 +103,7 @@ def build(stage: Stage) -> None:
             ],
             44.0,
             {"colour": "red", "state": "moving"},
-            stride_m=wildlife.TROT_M,
+            stride_m=wildlife.TROT_STRIDE_M,
         ),
     ]
     for actor in stage.actors:

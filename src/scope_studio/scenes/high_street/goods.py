@@ -10,9 +10,9 @@ from scope_studio.kit.furniture import cafe, shop_displays, shop_goods
 from scope_studio.kit.works import equipment, materials
 from scope_studio.scenes.high_street.shops import plots
 
-SHELF_M = SILL_M - 0.012  # height of the display shelf in a shop window
+SHELF_HEIGHT_M = SILL_M - 0.012  # height of the display shelf in a shop window
 
-Item = tuple[Callable[[], Built], str, str, dict[str, str]]
+WindowItem = tuple[Callable[[], Built], str, str, dict[str, str]]
 """An item in a shop window: function that builds it, category, name and attributes."""
 
 
@@ -28,7 +28,14 @@ def build(stage: Stage, shops: dict[int, str]) -> None:
 
 
 def _row(
-    stage: Stage, number: int, parent: str, xs: Sequence[float], items: Sequence[Item], *, y: float = -0.30, z: float = SHELF_M
+    stage: Stage,
+    number: int,
+    parent: str,
+    xs: Sequence[float],
+    items: Sequence[WindowItem],
+    *,
+    y: float = -0.30,
+    z: float = SHELF_HEIGHT_M,
 ) -> None:
     """Place goods in a row on the display shelf of a shop's window. Identical goods are linked copies."""
     plot = plots()[number]
@@ -51,7 +58,10 @@ def _row(
 
 def _windows(stage: Stage, shops: dict[int, str]) -> None:
     goods = shop_goods
-    loaves: list[Item] = [(lambda: goods.loaf(1), "loaf", "loaf of bread", {}), (lambda: goods.loaf(2), "loaf", "crusty loaf", {})]
+    loaves: list[WindowItem] = [
+        (lambda: goods.loaf(1), "loaf", "loaf of bread", {}),
+        (lambda: goods.loaf(2), "loaf", "crusty loaf", {}),
+    ]
     _row(stage, 9, shops[9], (-2.7, -2.3, -1.9, -1.5, -1.1), loaves)
     _row(stage, 9, shops[9], (2.7, 2.15, 1.6, 1.05), [
         (lambda: goods.cake("pink"), "cake", "pink cake", {"colour": "pink"}), (lambda: goods.cake("white"), "cake",
@@ -72,13 +82,13 @@ def _windows(stage: Stage, shops: dict[int, str]) -> None:
         (lambda: goods.mannequin("yellow"), "mannequin", "mannequin in a yellow dress", {"colour": "yellow"}),
         (lambda: goods.mannequin("grey", dress=False), "mannequin", "mannequin in a grey coat", {"colour": "grey"}),
         (lambda: goods.mannequin("green", dress=False), "mannequin", "mannequin in a green coat", {"colour": "green"}),
-    ], y=-0.5, z=SHELF_M - 0.05)  # fmt: skip
+    ], y=-0.5, z=SHELF_HEIGHT_M - 0.05)  # fmt: skip
     _row(stage, 20, shops[20], (-2.8, -1.5, 1.5, 2.8), [
         (lambda: goods.mannequin("red"), "mannequin", "mannequin in a red dress", {"colour": "red"}),
         (lambda: goods.mannequin("navy", dress=False), "mannequin", "mannequin in a navy coat", {"colour": "navy"}),
         (lambda: goods.mannequin("purple"), "mannequin", "mannequin in a purple dress", {"colour": "purple"}),
         (lambda: goods.mannequin("black", dress=False), "mannequin", "mannequin in a black coat", {"colour": "black"}),
-    ], y=-0.5, z=SHELF_M - 0.05)  # fmt: skip
+    ], y=-0.5, z=SHELF_HEIGHT_M - 0.05)  # fmt: skip
     _row(stage, 12, shops[12], (-2.7, -2.2, -1.7, -1.2, 1.1, 1.7, 2.3, 2.8), [
         (lambda c=c: goods.teapot(c), "teapot", f"{c} teapot", {"colour": c}) for c in ("blue", "white", "red", "yellow", "green")
     ])  # fmt: skip
@@ -197,7 +207,9 @@ def _cafe(stage: Stage, shop: str) -> None:
             )  # fmt: skip
         if k < 2:
             cup = cafe.cup("white")
-            stage.place(cup, "cup", "white cup", plot.at(x + 0.12, 1.15, cafe.TABLE_M), 40.0 * k, parent=shop, colour="white")
+            stage.place(
+                cup, "cup", "white cup", plot.at(x + 0.12, 1.15, cafe.TABLE_HEIGHT_M), 40.0 * k, parent=shop, colour="white"
+            )
 
 
 def _hardware(stage: Stage, shop: str) -> None:

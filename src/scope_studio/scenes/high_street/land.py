@@ -6,7 +6,7 @@ import math
 import random
 
 from scope_studio.kit.buildings import shopfronts
-from scope_studio.kit.buildings.terraces import DEPTH_M, Terrace, terrace
+from scope_studio.kit.buildings.terraces import DEPTH_M, TerracedBuilding, terraced_building
 from scope_studio.kit.buildings.wet_masonry import roofing, trim, wall
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.solid import Solid
@@ -17,10 +17,10 @@ from scope_studio.kit.ground import wet_street
 from scope_studio.kit.ground.markings import Stencil
 from scope_studio.kit.nature import vegetation
 from scope_studio.scenes.high_street.plan import (
+    CROSS_STREET_KERBS,
     EAST_FRONT,
     EAST_KERB,
     FAR_FRONT,
-    JUNCTION,
     ROW_END,
     WEST_FRONT,
     WEST_KERB,
@@ -35,7 +35,7 @@ END_X = 84.0
 def build(stage: Stage) -> None:
     """Place the ground, houses and trees."""
     stage.put(wet_street.carriageway(260.0, _gutters()), (0, 0, 0))
-    for colour, bars in _paint().items():
+    for colour, bars in _painted_rectangles().items():
         stage.put(wet_street.markings(bars, colour), (0, 0, 0))
     for outline in _blocks():
         stage.put(wet_street.footway(outline), (0, 0, 0))
@@ -46,9 +46,9 @@ def build(stage: Stage) -> None:
     _background(stage)
 
 
-def _paint() -> dict[str, list[Stencil]]:
+def _painted_rectangles() -> dict[str, list[Stencil]]:
     """Return the painted rectangles on the roads, by colour."""
-    near, far = JUNCTION
+    near, far = CROSS_STREET_KERBS
     white: list[Stencil] = []
     y = -46.0
     while y < 46:
@@ -60,12 +60,12 @@ def _paint() -> dict[str, list[Stencil]]:
         white.append(Stencil(x, x + 0.55, *ZEBRA))
         x += 1.10
     for y0, y1 in ((-41.5, 3.0), (24.0, 44.0)):
-        white += [Stencil(EAST_KERB - 2.15, EAST_KERB - 2.07, y, y + 0.9) for y in _steps(y0, y1, 1.8)]
-        white += [Stencil(EAST_KERB - 2.15, EAST_KERB, y, y + 0.08) for y in _steps(y0, y1 + 5.0, 6.2)]
+        white += [Stencil(EAST_KERB - 2.15, EAST_KERB - 2.07, y, y + 0.9) for y in _positions(y0, y1, 1.8)]
+        white += [Stencil(EAST_KERB - 2.15, EAST_KERB, y, y + 0.08) for y in _positions(y0, y1 + 5.0, 6.2)]
     white.append(Stencil(0.1, EAST_KERB, -ROW_END + 0.2, -ROW_END + 0.5))
-    white += [Stencil(x, x + 0.6, near - 0.3, near - 0.1) for x in _steps(WEST_KERB, 0.0, 0.9)]
-    for y in (sum(JUNCTION) / 2, -sum(JUNCTION) / 2):
-        white += [Stencil(x, x + 2.0, y - 0.05, y + 0.05) for x in _steps(-80.0, 80.0, 5.0)]
+    white += [Stencil(x, x + 0.6, near - 0.3, near - 0.1) for x in _positions(WEST_KERB, 0.0, 0.9)]
+    for y in (sum(CROSS_STREET_KERBS) / 2, -sum(CROSS_STREET_KERBS) / 2):
+        white += [Stencil(x, x + 2.0, y - 0.05, y + 0.05) for x in _positions(-80.0, 80.0, 5.0)]
     yellow = []
     for offset in (0.25, 0.45):
         yellow += [
@@ -78,14 +78,14 @@ def _paint() -> dict[str, list[Stencil]]:
     return {"white": white, "yellow": yellow}
 
 
-def _steps(start: float, stop: float, step: float) -> list[float]:
+def _positions(start: float, stop: float, step: float) -> list[float]:
     """Return evenly spaced positions from ``start`` to ``stop``, without ``stop``."""
     return [start + step * k for k in range(max(0, int((stop - start) / step)))]
 
 
 def _gutters() -> tuple[Stencil, ...]:
     """Return the strips along which puddles are larger."""
-    near, far = JUNCTION
+    near, far = CROSS_STREET_KERBS
     return (
         Stencil(WEST_KERB - 0.2, WEST_KERB + 1.1, -50, 50),
         Stencil(EAST_KERB - 0.9, EAST_KERB + 0.2, -50, 50),
@@ -98,15 +98,25 @@ def _gutters() -> tuple[Stencil, ...]:
 
 def _blocks() -> list[list[tuple[float, float]]]:
     """Return the outlines of the footways between the roads."""
-    near, far = JUNCTION
+    near, far = CROSS_STREET_KERBS
     radius, out = 3.2, 130.0
-    west = [(-out, -near), *_corner(WEST_KERB, -near, radius, 270), *_corner(WEST_KERB, near, radius, 0), (-out, near)]
-    east = [(out, near), *_corner(EAST_KERB, near, radius, 90), *_corner(EAST_KERB, -near, radius, 180), (out, -near)]
+    west = [
+        (-out, -near),
+        *_rounded_corner(WEST_KERB, -near, radius, 270),
+        *_rounded_corner(WEST_KERB, near, radius, 0),
+        (-out, near),
+    ]
+    east = [
+        (out, near),
+        *_rounded_corner(EAST_KERB, near, radius, 90),
+        *_rounded_corner(EAST_KERB, -near, radius, 180),
+        (out, -near),
+    ]
     north = [(-out, far), (out, far), (out, far + 60), (-out, far + 60)]
     return [west, east, north, [(-x, -y) for x, y in north]]
 
 
-def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
+def _rounded_corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
     """Return an anticlockwise quarter circle, from ``start_deg``, that rounds the corner (x, y) of a convex outline."""
     cx = x - radius if start_deg in (270, 0) else x + radius
     cy = y + radius if start_deg in (270, 180) else y - radius
@@ -141,33 +151,33 @@ def _zigzags(stage: Stage) -> None:
 
 
 HOUSES = (
-    Terrace(6.2, ("brick", "red"), 2, 2, shop=False, seed=31, lit=frozenset({(1, 0)})),
-    Terrace(5.8, ("render", "cream"), 2, 2, "clay", shop=False, seed=32),
-    Terrace(6.6, ("brick", "buff"), 2, 2, shop=False, seed=33, bars=2, lit=frozenset({(0, 0)})),
-    Terrace(6.0, ("render", "white"), 3, 2, shop=False, seed=34, lit=frozenset({(1, 1)})),
-    Terrace(6.4, ("brick", "dark red"), 3, 2, shop=False, seed=35),
-    Terrace(6.0, ("stone", "grey"), 2, 2, shop=False, seed=36, bars=2),
+    TerracedBuilding(6.2, ("brick", "red"), 2, 2, shop=False, seed=31, lit=frozenset({(1, 0)})),
+    TerracedBuilding(5.8, ("render", "cream"), 2, 2, "clay", shop=False, seed=32),
+    TerracedBuilding(6.6, ("brick", "buff"), 2, 2, shop=False, seed=33, bars=2, lit=frozenset({(0, 0)})),
+    TerracedBuilding(6.0, ("render", "white"), 3, 2, shop=False, seed=34, lit=frozenset({(1, 1)})),
+    TerracedBuilding(6.4, ("brick", "dark red"), 3, 2, shop=False, seed=35),
+    TerracedBuilding(6.0, ("stone", "grey"), 2, 2, shop=False, seed=36, bars=2),
 )
 DOORS = ("green", "blue", "black", "dark green", "navy", "white")
 
 
 def _cross_streets(stage: Stage) -> None:
     """Place terraced houses along Church Road and Mill Lane, as linked copies of six prototypes."""
-    row = _Row(stage)
+    rows = _HouseRows(stage)
     for sign in (1, -1):
         far_bearing, near_bearing = (180.0, 0.0) if sign > 0 else (0.0, 180.0)
         for side, start in ((-1, WEST_FRONT - DEPTH_M - 0.02), (1, EAST_FRONT + DEPTH_M + 0.02)):
-            row.run(start, side, END_X - 6, sign * ROW_END, near_bearing, seed=int(side * 3 + sign))
+            rows.place_row(start, side, END_X - 6, sign * ROW_END, near_bearing, seed=int(side * 3 + sign))
         gap = 7.0 if sign > 0 else 0.0
         for side in (-1, 1):
-            row.run(1.0 + side * gap, side, END_X - 6, sign * FAR_FRONT, far_bearing, seed=int(side * 5 + sign * 7))
+            rows.place_row(1.0 + side * gap, side, END_X - 6, sign * FAR_FRONT, far_bearing, seed=int(side * 5 + sign * 7))
         for side in (-1, 1):
             for k in range(3):
-                row.house(Plot(side * END_X, sign * (46.0 + 6.2 * k + 2.0), -side * 90.0))
+                rows.place_house(Plot(side * END_X, sign * (46.0 + 6.2 * k + 2.0), -side * 90.0))
 
 
-class _Row:
-    """A builder of rows of houses. It builds each prototype once and places linked copies of it afterwards."""
+class _HouseRows:
+    """Places rows of houses. Each prototype is built once; later houses are linked copies of it."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -175,7 +185,7 @@ class _Row:
         self._doors: dict[str, Built] = {}
         self._count = 0
 
-    def run(self, start: float, side: int, stop: float, y: float, bearing: float, *, seed: int) -> None:
+    def place_row(self, start: float, side: int, stop: float, y: float, bearing: float, *, seed: int) -> None:
         """Place a row of houses that starts at x = ``start`` and continues in the direction ``side`` until ``stop``."""
         order = random.Random(f"row {seed}")
         x, last = start, -1
@@ -183,14 +193,18 @@ class _Row:
             index = order.choice([k for k in range(len(HOUSES)) if k != last])
             last = index
             width = HOUSES[index].width_m
-            self.house(Plot(x + side * width / 2, y, bearing), index)
+            self.place_house(Plot(x + side * width / 2, y, bearing), index)
             x += side * width
 
-    def house(self, plot: Plot, index: int | None = None) -> None:
+    def place_house(self, plot: Plot, index: int | None = None) -> None:
         """Place a house on a plot. ``index`` selects it from ``HOUSES``; by default, the houses are used in order."""
         index = self._count % len(HOUSES) if index is None else index
         spec = HOUSES[index]
-        built = self._prototypes[index].copy() if index in self._prototypes else self._prototypes.setdefault(index, terrace(spec))
+        built = (
+            self._prototypes[index].copy()
+            if index in self._prototypes
+            else self._prototypes.setdefault(index, terraced_building(spec))
+        )
         material = {"render": "painted render"}.get(spec.wall[0], spec.wall[0])
         house_id = self._stage.place(
             built, "building", f"{spec.wall[1]} {spec.wall[0]} house", plot.at(0, 0), plot.bearing_deg,
@@ -210,10 +224,20 @@ class _Row:
 
 def _town_hall(stage: Stage) -> None:
     """Place the town hall, with its clock tower, at the northern end of the street."""
-    spec = Terrace(14.0, ("stone", "honey"), 3, 5, parapet=True, bars=2, shop=False, seed=41, lit=frozenset({(1, 2), (0, 0)}))
+    spec = TerracedBuilding(
+        14.0, ("stone", "honey"), 3, 5, parapet=True, bars=2, shop=False, seed=41, lit=frozenset({(1, 2), (0, 0)})
+    )
     plot = Plot(1.0, FAR_FRONT - 0.3, 180.0)
     hall = stage.place(
-        terrace(spec), "building", "town hall", plot.at(0, 0), 180, colour="honey", material="stone", storeys=3, kind="town hall"
+        terraced_building(spec),
+        "building",
+        "town hall",
+        plot.at(0, 0),
+        180,
+        colour="honey",
+        material="stone",
+        storeys=3,
+        kind="town hall",
     )
     s = Solid("clock tower")
     stone, cut = wall("stone", "honey"), trim()

@@ -9,7 +9,7 @@ from scope_studio.kit.people import characters, prams, stances, umbrellas
 from scope_studio.scenes.high_street.plan import Plot
 from scope_studio.scenes.high_street.shops import plots
 
-UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = (
+UMBRELLA_CARRIERS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = (
     ("red", None, -5.6, -31.5, 10, 21, True), ("black", None, 7.7, -30.0, 182, 22, True), ("yellow", None, -5.0, 1.5, 172, 23,
     True),
     ("blue", None, 7.9, -15.5, 5, 24, True), ("green", "white", 7.2, 12.0, 250, 25, False), ("black", None, -5.2, 17.4, 4, 26,
@@ -34,7 +34,7 @@ PEDESTRIANS: tuple[tuple[float, float, float, str, int, str | None, str], ...] =
 def build(stage: Stage) -> None:
     """Place people, dogs and pigeons."""
     _pedestrians(stage)
-    _pairs(stage)
+    _companions(stage)
     _sitting_people(stage)
     _people_indoors(stage)
     _pigeons(stage)
@@ -58,7 +58,7 @@ def _umbrella(stage: Stage, person: str, colour: str, second: str | None, plot: 
 
 
 def _pedestrians(stage: Stage) -> None:
-    for colour, second, x, y, bearing, seed, walking in UMBRELLAS:
+    for colour, second, x, y, bearing, seed, walking in UMBRELLA_CARRIERS:
         plot = Plot(x, y, bearing)
         stance = stances.with_umbrella((seed * 0.37) % 1.0 if walking else None, seed=seed)
         person = stage.place(
@@ -88,7 +88,7 @@ def _pedestrians(stage: Stage) -> None:
     )
 
 
-def _pairs(stage: Stage) -> None:
+def _companions(stage: Stage) -> None:
     plot = Plot(-5.2, -16.6, 6.0)
     person = characters.pedestrian(stance=stances.pushing(0.15), seed=8, top="green")
     stage.place(

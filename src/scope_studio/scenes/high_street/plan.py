@@ -13,12 +13,12 @@ WEST_FRONT, EAST_FRONT = -7.4, 9.6
 """x coordinates of the fronts of the two rows of shops."""
 ROW_END = 48.0
 """The rows of shops extend from y = -ROW_END to ROW_END."""
-JUNCTION = (52.0, 59.0)
-"""Distances from y = 0 to the near and the far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
+CROSS_STREET_KERBS = (52.0, 59.0)
+"""Distances from y = 0 to the near and far kerbs of the cross streets (Church Road in the north, Mill Lane in the south)."""
 FAR_FRONT = 63.0
 """Distance from y = 0 to the fronts of the houses on the far side of the cross streets."""
 BAY_X = 4.28
-"""x coordinate of the middle of the parking bays."""
+"""x coordinate of the centre line of the parking bays."""
 NORTHBOUND_X, SOUTHBOUND_X = -1.6, 1.55
 """x coordinates of the centre lines of the two lanes."""
 ZEBRA = (11.6, 15.2)
@@ -27,7 +27,7 @@ ZEBRA = (11.6, 15.2)
 
 @dataclass(frozen=True)
 class Plot:
-    """Position of a building: the middle of its front at pavement height, and the bearing that it faces."""
+    """Position of a building or an object: the centre of its front at pavement height, and the bearing that it faces."""
 
     x: float
     y: float
@@ -35,6 +35,6 @@ class Plot:
     z: float = KERB_M
 
     def at(self, x: float, y: float, z: float = 0.0) -> tuple[float, float, float]:
-        """Return the world position of a point given in the building's local coordinates."""
+        """Return the world position of a point given in local coordinates."""
         a = math.radians(self.bearing_deg)
         return (self.x + x * math.cos(a) + y * math.sin(a), self.y - x * math.sin(a) + y * math.cos(a), self.z + z)

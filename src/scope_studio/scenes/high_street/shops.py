@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from scope_studio.kit.buildings import shopfronts
-from scope_studio.kit.buildings.terraces import Terrace, terrace
+from scope_studio.kit.buildings.terraces import TerracedBuilding, terraced_building
 from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.furniture import shop_displays
 from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT, Plot
@@ -117,7 +117,7 @@ def plots() -> dict[int, Plot]:
 
 
 def door_x(shop: Shop) -> float:
-    """Return the x coordinate of the middle of the door, in the coordinates of the shop front."""
+    """Return the x coordinate of the centre of the door, in the coordinates of the shop front."""
     return shop.door_side * (shop.width_m - 2.0)
 
 
@@ -132,7 +132,7 @@ def build(stage: Stage) -> dict[int, str]:
 
 
 def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
-    spec = Terrace(
+    spec = TerracedBuilding(
         shop.width_m,
         shop.wall,
         shop.storeys,
@@ -148,7 +148,7 @@ def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
     colour, material = shop.wall[1].replace("pale ", ""), {"render": "painted render"}.get(shop.wall[0], shop.wall[0])
     storeys = {2: "two-storey", 3: "three-storey"}[shop.storeys]
     building = stage.place(
-        terrace(spec), "building", f"{shop.wall[1]} {shop.wall[0]} building", position, bearing,
+        terraced_building(spec), "building", f"{shop.wall[1]} {shop.wall[0]} building", position, bearing,
         colour=colour, material=material, storeys=shop.storeys, roof=shop.roof, number=str(shop.number),
     )  # fmt: skip
     if not shop.noun:
@@ -164,7 +164,7 @@ def _house(stage: Stage, shop: Shop, plot: Plot) -> str:
 
 def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
     position, bearing = plot.at(0, 0), plot.bearing_deg
-    front = shopfronts.Front(shop.width_m, shop.colour, door_x(shop), shop.room, shop.lamps, shop.tiles)
+    front = shopfronts.ShopFront(shop.width_m, shop.colour, door_x(shop), shop.room, shop.lamps, shop.tiles)
     traits = {"state": "open" if shop.open else "closed", **shop.traits}
     name = shop.sign.title().replace("'S", "'s")
     shop_id = stage.place(

@@ -16,10 +16,10 @@ from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
+"""Number of the first actor in instance masks. All static instances have smaller numbers."""
 PERIOD_S = 40.0
 """Period of all paths in seconds. All actors share it, so that their relative positions repeat."""
-PARKED = (
+PARKED_VEHICLES = (
     (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
     (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
     (cars.suv, "grey", "PD70 KUS", "SUV", 33.2), (cars.hatchback, "dark red", "FN15 ZLR", "hatchback", 45.6),
@@ -33,7 +33,7 @@ def build(stage: Stage) -> None:
 
 
 def _vehicles(stage: Stage) -> None:
-    for make, colour, plate, noun, y in PARKED:
+    for make, colour, plate, noun, y in PARKED_VEHICLES:
         built = make(colour, plate=plate)
         stage.place(
             built,
@@ -176,7 +176,7 @@ def _detach(built: Built) -> bpy.types.Object:
     return obj
 
 
-def _height(x: float, y: float) -> float:
+def _ground_height(x: float, y: float) -> float:
     """Return the height of the ground at a point on a footway or on the zebra crossing."""
     on_road = -3.2 < x < 5.4
     return 0.0 if on_road and ZEBRA[0] - 1 < y < ZEBRA[1] + 1 else KERB_M
@@ -191,10 +191,10 @@ def _closed_path(corners: list[tuple[float, float]], period_s: float) -> list[tu
         ring += [(k, y0 + (y1 - y0) * (k - x0) / (x1 - x0)) for k in cuts]
     ring.append(corners[0])
     total = sum(math.dist(a, b) for a, b in itertools.pairwise(ring))
-    waypoints, walked = [(0.0, *ring[0], _height(*ring[0]))], 0.0
+    waypoints, walked = [(0.0, *ring[0], _ground_height(*ring[0]))], 0.0
     for a, b in itertools.pairwise(ring):
         walked += math.dist(a, b)
-        waypoints.append((period_s * walked / total, *b, _height(*b)))
+        waypoints.append((period_s * walked / total, *b, _ground_height(*b)))
     return waypoints
 
 

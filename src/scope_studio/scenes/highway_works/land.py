@@ -36,21 +36,21 @@ ROAD = highway.Carriageway(
 COMPOUND = (-44.4, -22.6, -24.4, 4.0)
 """Positions in metres of the west, east, south and north fences of the site compound."""
 BRIDGE_Y = 85.0
-"""y coordinate of the middle of the bridge."""
-DECK_M = 6.9
+"""y coordinate of the centre line of the bridge."""
+DECK_HEIGHT_M = 6.9
 """Height in metres of the road on the bridge."""
 
 
 def build(stage: Stage) -> None:
     """Place the road, land, bridge and buildings."""
     height = terrain.hills(ROAD)
-    bare = [
+    bare_areas = [
         (COMPOUND[0] - 2, COMPOUND[1] + 1.5, COMPOUND[2] - 2, COMPOUND[3] + 1),
         (-38.0, -27.0, 2.0, 17.0),
         (-38.0, -15.0, 12.0, 21.0),
         (-24.0, -15.0, 18.0, 56.0),
     ]
-    stage.put(terrain.terrain(ROAD, bare), (0, 0, 0))
+    stage.put(terrain.terrain(ROAD, bare_areas), (0, 0, 0))
     stage.put(highway.carriageways(ROAD), (0, 0, 0))
     _bridge(stage)
     _yard()
@@ -59,12 +59,12 @@ def build(stage: Stage) -> None:
 
 def _bridge(stage: Stage) -> None:
     bridge = structures.overbridge(
-        span_m=44.0, deck_m=DECK_M, number="B17  42/6", banner=("HARROWFIELD SUMMER FAIR", "SATURDAY 14 JUNE  10 AM TO 4 PM")
+        span_m=44.0, deck_m=DECK_HEIGHT_M, number="B17  42/6", banner=("HARROWFIELD SUMMER FAIR", "SATURDAY 14 JUNE  10 AM TO 4 PM")
     )
     stage.place(bridge, "bridge", "concrete overbridge", (0, BRIDGE_Y, 0), material="concrete", colour="grey")
     grass = bpy.data.materials["land"]
     for side in (-1, 1):
-        bank = structures.approach(length_m=125, width_m=9, height_m=DECK_M - 0.04, side=side, grass=grass)
+        bank = structures.approach(length_m=125, width_m=9, height_m=DECK_HEIGHT_M - 0.04, side=side, grass=grass)
         stage.put(bank, (side * 27.5, BRIDGE_Y, 0))
 
 

@@ -8,7 +8,7 @@ from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.furniture import roadside
 from scope_studio.kit.signs import gantry, message_sign, road_signs
 from scope_studio.kit.signs.faces import Panel
-from scope_studio.kit.signs.gantry import Signal
+from scope_studio.kit.signs.gantry import LaneSignal
 
 SOUTH, NORTH = 180.0, 0.0
 """Bearings that the fronts of signs face. Signs for northbound drivers face south."""
@@ -33,7 +33,7 @@ def _gantries(stage: Stage) -> None:
             (5.6, Panel(("Airport", "Port Ellis"), 3.7, 2.1, "blue", 0.34)),
         ],
         5.8,
-        signals=[(1.45, Signal("50"))],
+        signals=[(1.45, LaneSignal("50"))],
         facing="-Y",
     )
     stage.place(
@@ -46,7 +46,7 @@ def _gantries(stage: Stage) -> None:
             (5.9, Panel(("B17", "Linton"), 3.0, 2.0, "blue", 0.36)),
         ],
         5.8,
-        signals=[(-6.1, Signal("60"))],
+        signals=[(-6.1, LaneSignal("60"))],
         facing="+Y",
     )
     stage.place(
@@ -200,10 +200,20 @@ def _works_signs(stage: Stage) -> None:
 
 def _small_signs(stage: Stage) -> None:
     for x, y, bearing in ((-16.9, -66.0, SOUTH), (-16.7, 20.5, SOUTH), (16.8, 70.0, NORTH), (16.8, -4.0, NORTH)):
-        _sign(stage, road_signs.round_limit("50"), "50 speed limit sign", x, y, bearing, "50", "red and white", kind="speed limit")
+        _sign(
+            stage,
+            road_signs.speed_limit_sign("50"),
+            "50 speed limit sign",
+            x,
+            y,
+            bearing,
+            "50",
+            "red and white",
+            kind="speed limit",
+        )
     _sign(
         stage,
-        road_signs.round_limit("10", diameter=0.6, post_height=1.5),
+        road_signs.speed_limit_sign("10", diameter=0.6, post_height=1.5),
         "10 speed limit sign",
         -29.3,
         5.2,

@@ -10,11 +10,11 @@ from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import excavator, machines
 from scope_studio.kit.works import barriers, equipment, fencing, materials, site_units
-from scope_studio.kit.works.fencing import FENCE_PANEL_M
+from scope_studio.kit.works.fencing import FENCE_PANEL_SIZE_M
 from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
-"""x coordinate of the middle of the compound's gate."""
+"""x coordinate of the centre of the compound's gate."""
 LINE_X = -9.3
 """x coordinate of the line of cones and barriers between the works and the traffic."""
 
@@ -148,7 +148,7 @@ def _crew(stage: Stage) -> None:
 def _fence(stage: Stage) -> None:
     """Place mesh panels around the compound, with a gap for the gate in the north side."""
     prototypes = Prototypes()
-    width = FENCE_PANEL_M[0] + 0.06
+    width = FENCE_PANEL_SIZE_M[0] + 0.06
     west, east, south, north = COMPOUND
 
     def panel(x: float, y: float, bearing: float, plate: tuple[str, ...] = ()) -> None:
@@ -284,4 +284,4 @@ def _materials(stage: Stage) -> None:
     stage.place(materials.sand_pile(1.9), "sand pile", "pile of sand", (-26.6, -3.8, -0.03), 0, material="sand")
     stage.place(materials.gravel_pile(2.6), "gravel pile", "pile of gravel", (-21.4, 28.0, -0.03), 40, material="gravel")
     stage.place(materials.gravel_pile(1.7), "gravel pile", "pile of gravel", (-21.9, 38.6, -0.03), 110, material="gravel")
-    stage.place(materials.shovel_standing(), "shovel", "shovel", (-26.0, -3.6, 0.55), 30)
+    stage.place(materials.standing_shovel(), "shovel", "shovel", (-26.0, -3.6, 0.55), 30)

@@ -10,14 +10,14 @@ from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import cars, coach, lorries
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances in metres between the lane centres and the middle of the road. In each direction, one lane has only moving vehicles."""
+"""Distances in metres of the lane centres from the centre line of the road. One lane in each direction has only moving vehicles."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
+"""Number of the first actor in instance masks. All static instances have smaller numbers."""
 
-Car = Callable[..., Built]
+CarBuilder = Callable[..., Built]
 
-CARS: list[tuple[Car, str, str, float, float]] = [
+CARS: list[tuple[CarBuilder, str, str, float, float]] = [
     # Northbound: lane 3, and lane 1 before the taper. Only the moving car uses lane 2.
     (cars.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
     (cars.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
@@ -36,7 +36,7 @@ CARS: list[tuple[Car, str, str, float, float]] = [
     (cars.suv, "silver", "BX67 VMJ", LANE_2, -88.0),
     (cars.suv, "brown", "GM19 YEU", LANE_2, 104.0),
 ]
-NOUNS: dict[Car, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", cars.suv: "SUV"}
+CAR_NOUNS: dict[CarBuilder, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", cars.suv: "SUV"}
 
 
 def build(stage: Stage) -> None:
@@ -58,7 +58,7 @@ def _lane_attributes(x: float) -> tuple[float, dict[str, str | int]]:
 def _cars(stage: Stage) -> None:
     for make, colour, plate, x, y in CARS:
         bearing, attributes = _lane_attributes(x)
-        noun = NOUNS[make]
+        noun = CAR_NOUNS[make]
         stage.place(
             make(colour, plate=plate),
             "car",
@@ -154,7 +154,7 @@ def _yard(stage: Stage) -> None:
         (cars.suv, "red", "AF19 UZN", 13.0),
     ]
     for make, colour, plate, y in bays:
-        noun = NOUNS[make]
+        noun = CAR_NOUNS[make]
         stage.place(
             make(colour, plate=plate),
             "car",

@@ -12,7 +12,7 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import roadside
 from scope_studio.kit.ground import paving
 
-ROAD_M = -0.10
+ROAD_Z_M = -0.10
 """Height in metres of the carriageways. The square and the pavements are at z = 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
 """West, east, south and north edges of the square in metres."""
@@ -50,9 +50,9 @@ def _surfaces(stage: Stage) -> None:
     ]
     stage.put(paving.floor("pavements", pavements, 0.0, flags), (0, 0, 0))
     streets = [(-120.0, 120.0, STREET[0], STREET[1])]
-    stage.put(paving.floor("street", streets, ROAD_M, setts), (0, 0, 0))
+    stage.put(paving.floor("street", streets, ROAD_Z_M, setts), (0, 0, 0))
     lanes = [(*APPROACH, STREET[1], 40.0), (-43.8, -36.0, -90.0, STREET[0]), (38.0, 45.8, -90.0, STREET[0])]
-    stage.put(paving.floor("lanes", lanes, ROAD_M, approach_setts), (0, 0, 0))
+    stage.put(paving.floor("lanes", lanes, ROAD_Z_M, approach_setts), (0, 0, 0))
     east = SQUARE[1]
     lines = [
         ((-120.0, STREET[1] + 0.08), (east - 0.08, STREET[1] + 0.08)),
@@ -76,7 +76,7 @@ def _tracks(stage: Stage) -> None:
     for y in TRACKS:
         for side in (-1, 1):
             built = rail if first else rail.copy()
-            stage.put(built, (0, y + side * 0.75, ROAD_M), 0 if side > 0 else 180)
+            stage.put(built, (0, y + side * 0.75, ROAD_Z_M), 0 if side > 0 else 180)
             first = False
 
 
@@ -87,7 +87,7 @@ def _manhole_covers(stage: Stage) -> None:
     for k, (x, y) in enumerate(
         ((-22.0, -12.2), (2.0, -12.2), (24.0, -4.0), (24.0, 9.0), (32.0, 2.0), (-6.0, -25.1), (16.0, -25.1))
     ):
-        stage.place(grate if k == 0 else grate.copy(), "drain", "drain grate", (x, y, ROAD_M), 0, material="iron")
+        stage.place(grate if k == 0 else grate.copy(), "drain", "drain grate", (x, y, ROAD_Z_M), 0, material="iron")
 
 
 def _hills() -> None:

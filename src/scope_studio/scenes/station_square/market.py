@@ -12,13 +12,13 @@ from scope_studio.kit.furniture import cafe, produce, stalls
 FRONT_BEARING_DEG = 150.0
 """Bearing in degrees that the fronts of the stalls face."""
 
-Goods = tuple[str, str | None]
+CrateSpec = tuple[str, str | None]
 """Contents of a crate, and the text of its price card, with lines separated by newlines."""
 
-Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
+StallSpec = tuple[str, tuple[str, ...], tuple[float, float], list[CrateSpec]]
 """A stall: name board, canvas colours, position and goods."""
 
-STALLS: list[Stall] = [
+STALLS: list[StallSpec] = [
     (
         "MARLOWE FISH",
         ("blue", "white"),
@@ -111,13 +111,13 @@ TERRACE_COLUMNS = (-32.2, -28.9)
 """x coordinates of the columns of café tables."""
 
 
-def at_front(place: tuple[float, float], right: float, out: float, bearing: float = FRONT_BEARING_DEG) -> tuple[float, float]:
-    """Convert a position relative to a front to world coordinates.
+def at_front(place: tuple[float, float], right_m: float, out_m: float, bearing: float = FRONT_BEARING_DEG) -> tuple[float, float]:
+    """Convert a position relative to the front of a stall to world coordinates.
 
-    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
+    ``right_m`` is the distance along the front, to the right as seen by a viewer, and ``out_m`` the distance in front of it (m).
     """
     b = math.radians(bearing)
-    return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
+    return place[0] - right_m * math.cos(b) + out_m * math.sin(b), place[1] + right_m * math.sin(b) + out_m * math.cos(b)
 
 
 def build(stage: Stage) -> None:
@@ -162,7 +162,7 @@ def build(stage: Stage) -> None:
 
 
 def _stall(
-    stage: Stage, prototypes: Prototypes, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
+    stage: Stage, prototypes: Prototypes, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[CrateSpec]
 ) -> None:
     canvas_colour, second_colour = canvas
     striped = canvas_colour != second_colour
@@ -182,7 +182,7 @@ def _stall(
         row, column = divmod(k, 5)
         right, out = -1.17 + 0.585 * column, 0.70 - 0.42 * row
         x, y = at_front(place, right, out)
-        z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
+        z = stalls.COUNTER_HEIGHT_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
         built = prototypes.get(
             f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: produce.produce_crate(kind, seed=k % 2, colour=colour)
@@ -285,7 +285,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
                 area="terrace",
             )
             for seat in range(3):
-                position, bearing = seat_place(column, row, seat)
+                position, bearing = seat_position(column, row, seat)
                 tint = "dark green" if column == 0 else "red"
                 stage.place(
                     prototypes.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
@@ -303,7 +303,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
                     prototypes.get("cup", cafe.cup),
                     "cup",
                     "white coffee cup",
-                    (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_M),
+                    (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_HEIGHT_M),
                     rng.uniform(0, 360),
                     parent=table,
                     colour="white",
@@ -328,7 +328,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
     )
 
 
-def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
+def seat_position(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
     """Return the position of a chair of the terrace, and the bearing that a person on it faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
     bearing = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)

@@ -11,7 +11,7 @@ from scope_studio.kit.people import characters, luggage, poses, prams, seated, s
 from scope_studio.kit.people.poses import Pose, walking
 from scope_studio.scenes.station_square import traffic
 from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
-from scope_studio.scenes.station_square.market import FRONT_BEARING_DEG, STALLS, at_front, seat_place
+from scope_studio.scenes.station_square.market import FRONT_BEARING_DEG, STALLS, at_front, seat_position
 
 CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
 """Position in metres of the right hand of a walking person who pulls a suitcase."""
@@ -26,7 +26,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
 ]  # fmt: skip
 """Customers: index of the stall, position in front of the stall (right, out), coat, pose, held object."""
 
-STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
+PEDESTRIANS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
     (6.0, 21.2, 320, "beige", "walk", "bag", "walking to the station"),
     (13.8, 8.4, 20, "dark red", "walk", None, "walking to the station"),
@@ -64,7 +64,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
 def build(stage: Stage) -> None:
     """Place the people and add the actors with their paths."""
     _market(stage)
-    _strollers(stage)
+    _pedestrians(stage)
     _sitting_people(stage)
     _companions(stage)
     stage.actors = [*traffic.actors(), *_walkers()]
@@ -107,8 +107,8 @@ def _market(stage: Stage) -> None:
         _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=holding, role="customer")
 
 
-def _strollers(stage: Stage) -> None:
-    for k, (x, y, bearing, top, pose, holding, activity) in enumerate(STROLLERS):
+def _pedestrians(stage: Stage) -> None:
+    for k, (x, y, bearing, top, pose, holding, activity) in enumerate(PEDESTRIANS):
         z = PLATFORM_TOP_M if "tram" in activity else 0.0
         name = f"person in {top}" if "white" not in top else "person in a white top"
         _person(stage, (x, y, z), bearing, name, top, 380 + k, pose=pose, holding=holding, activity=activity)
@@ -117,7 +117,7 @@ def _strollers(stage: Stage) -> None:
 def _sitting_people(stage: Stage) -> None:
     stance = {"cup": seated.with_cup, "table": seated.at_table, "phone": seated.with_phone}
     for k, (column, row, seat, top, activity) in enumerate(SITTERS):
-        (x, y), bearing = seat_place(column, row, seat)
+        (x, y), bearing = seat_position(column, row, seat)
         _person(
             stage,
             (x, y, 0),
@@ -192,7 +192,7 @@ def _with_case(phase: float) -> Built:
 
 
 def _walkers() -> list[ActorPath]:
-    """Return the walking actors: a traveller from the station, a person who walks to the trains, and a dog without an owner."""
+    """Return the walking actors: a traveller from the station, a person who walks to the station, and a dog without an owner."""
     traveller_path = [
         (0.4, 31.5),
         (0.3, 24.0),

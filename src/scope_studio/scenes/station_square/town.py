@@ -99,14 +99,14 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
     )
 
 
-def _at_front(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """Convert a position relative to a front to world coordinates.
+def _at_front(place: tuple[float, float, float], right_m: float, out_m: float) -> tuple[float, float]:
+    """Convert a position relative to the front of a building to world coordinates.
 
-    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
+    ``right_m`` is the distance along the front, to the right as seen by a viewer, and ``out_m`` the distance in front of it (m).
     """
     x, y, bearing = place
     b = math.radians(bearing)
-    return x - right * math.cos(b) + out * math.sin(b), y + right * math.sin(b) + out * math.cos(b)
+    return x - right_m * math.cos(b) + out_m * math.sin(b), y + right_m * math.sin(b) + out_m * math.cos(b)
 
 
 def shop(

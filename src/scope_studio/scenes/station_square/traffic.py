@@ -11,17 +11,17 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
 from scope_studio.kit.people import characters, stances
 from scope_studio.kit.vehicles import cars, cycles, tram
-from scope_studio.scenes.station_square.ground import ROAD_M, TRACKS
+from scope_studio.scenes.station_square.ground import ROAD_Z_M, TRACKS
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer. All static instances have smaller numbers."""
+"""Number of the first actor in instance masks. All static instances have smaller numbers."""
 TAXI_ROOF_M = 1.445
 """Height in metres of a taxi's roof."""
 
 TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"), ("black", "VE22 HGS", 6.9, "lit")]
 """Taxis on the rank: colour, number plate, y coordinate, state of the roof sign."""
 
-PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
+PARKED_CARS: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
     (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
     (cars.suv, "SUV", "white", "TY21 NEB", 31.4, 16.4, 180.0),
     (cars.hatchback, "hatchback", "blue", "PD17 WKU", 24.6, -24.3, 270.0),
@@ -54,7 +54,7 @@ def _tram(stage: Stage) -> None:
         car,
         "tram",
         "red and cream tram",
-        (-25.4, TRACKS[0], ROAD_M),
+        (-25.4, TRACKS[0], ROAD_Z_M),
         90,
         colour="red and cream",
         state="standing",
@@ -80,7 +80,7 @@ def _taxis(stage: Stage) -> None:
             cars.saloon(colour, plate=plate),
             "taxi",
             f"{colour} taxi",
-            (25.2, y, ROAD_M),
+            (25.2, y, ROAD_Z_M),
             0,
             colour=colour,
             plate=plate,
@@ -93,7 +93,7 @@ def _taxis(stage: Stage) -> None:
             taxi_sign(sign == "lit"),
             "taxi sign",
             "taxi roof sign",
-            (25.2, y - 0.25, ROAD_M + TAXI_ROOF_M),
+            (25.2, y - 0.25, ROAD_Z_M + TAXI_ROOF_M),
             0,
             parent=cab,
             state=sign,
@@ -101,12 +101,12 @@ def _taxis(stage: Stage) -> None:
 
 
 def _parked(stage: Stage) -> None:
-    for make, noun, colour, plate, x, y, bearing in PARKED:
+    for make, noun, colour, plate, x, y, bearing in PARKED_CARS:
         stage.place(
             make(colour, plate=plate),
             "car",
             f"{colour} {noun}",
-            (x, y, ROAD_M),
+            (x, y, ROAD_Z_M),
             bearing,
             colour=colour,
             kind=noun.lower(),
@@ -119,7 +119,7 @@ def _parked(stage: Stage) -> None:
             make(colour, plate=plate),
             "car",
             f"{colour} {noun}",
-            (x, -24.3, ROAD_M),
+            (x, -24.3, ROAD_Z_M),
             270,
             colour=colour,
             kind=noun.lower(),
@@ -133,7 +133,7 @@ def _parked(stage: Stage) -> None:
         van,
         "van",
         "blue delivery van",
-        (31.3, 7.2, ROAD_M),
+        (31.3, 7.2, ROAD_Z_M),
         180,
         colour="blue",
         plate="WJ69 FDC",
@@ -149,19 +149,19 @@ def _bend(centre: tuple[float, float], radius: float, start: float, stop: float,
     return [(centre[0] + radius * math.sin(a), centre[1] + radius * math.cos(a)) for a in angles]
 
 
-def _ground(x: float, y: float) -> float:
+def _ground_height(x: float, y: float) -> float:
     """Return the height of the ground. Carriageways are lower than the paving."""
-    return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
+    return ROAD_Z_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
 
 
 def timed_path(
     corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0
 ) -> list[tuple[float, float, float, float]]:
     """Return the waypoints (t_s, x, y, z) of a path on the ground through ``corners``, at constant speed."""
-    waypoints, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
+    waypoints, t = [(start_s, *corners[0], _ground_height(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps
-        waypoints.append((t, x1, y1, _ground(x1, y1)))
+        waypoints.append((t, x1, y1, _ground_height(x1, y1)))
     return waypoints
 
 

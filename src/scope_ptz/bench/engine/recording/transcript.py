@@ -1,6 +1,6 @@
 """Convert a planner's state to chat messages and back. The log shows these messages, and any chat model can plan from them.
 
-The texts are the same as in the chat planner. For planners that do not use the texts, the metadata contains exact values, such as
+The wording is the same as in the chat planner. For planners that do not use the text, the metadata contains exact values, such as
 poses and results.
 """
 

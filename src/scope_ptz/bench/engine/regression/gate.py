@@ -90,7 +90,7 @@ def compare_evaluations(evaluation: Evaluation, baseline: Evaluation, alpha: flo
             f"The logs contain different tasks ({_tasks(evaluation)}; baseline {_tasks(baseline)}), so they cannot be compared. "
             "Run both on the same split of the same dataset."
         )
-    before, now = _shares(baseline.trials), _shares(evaluation.trials)
+    before, now = _correct_fractions(baseline.trials), _correct_fractions(evaluation.trials)
     both = sorted(before.keys() & now.keys())
     if not both:
         raise InputError(
@@ -113,7 +113,7 @@ def _tasks(evaluation: Evaluation) -> str:
     return f"{card.dataset} {card.split}, digest {card.dataset_digest}"
 
 
-def _shares(trials: Sequence[Trial]) -> dict[str, float]:
+def _correct_fractions(trials: Sequence[Trial]) -> dict[str, float]:
     """Return the fraction of correct runs of each task. Runs with infrastructure failures or missing verdicts are excluded."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:

@@ -31,6 +31,6 @@ def card_contradictions(models: Sequence[tuple[str, str]], card: RunCard) -> Ite
     """
     for index, (role, model) in enumerate((("planner", card.planner), ("perception", card.perception))):
         role_names = [names[index] for names in models if names[index]]
-        others = [name for name in role_names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
-        if others:
-            yield f"the {role} is {model.name} on the card, but {others[0]} in {len(others)} traces"
+        contradicting_names = [name for name in role_names if (name in (*DETERMINISTIC, NOISY_SOURCE)) is not model.deterministic]
+        if contradicting_names:
+            yield f"the {role} is {model.name} on the card, but {contradicting_names[0]} in {len(contradicting_names)} traces"

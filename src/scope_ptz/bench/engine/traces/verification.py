@@ -33,7 +33,7 @@ CONCURRENCY = 2
 """Number of runs that are verified concurrently. Each run renders frames in worker threads."""
 MAX_DIFFERENCES_LISTED = 3
 """Maximum number of differences to list per run."""
-PictureOf = Callable[[str], bytes | None]
+ReadPicture = Callable[[str], bytes | None]
 """Function that returns the JPEG data of a stored picture by its name in the trace, or None if it was not stored."""
 
 
@@ -51,7 +51,7 @@ class RunToVerify:
     entry: Entry
     epoch: int
     stored_run: StoredRun
-    picture: PictureOf | None = None
+    picture: ReadPicture | None = None
 
     @property
     def name(self) -> str:
@@ -116,7 +116,7 @@ async def verify_run(run: RunToVerify, context: VerificationContext) -> RunVerif
         return await _verify(run, trace, perception, context)
     except (PackError, UnknownNameError) as error:
         return RunVerification(run.name, "not-verifiable", (f"the scene cannot be opened: {str(error).rstrip('.')}",))
-    except Exception as error:  # a forged trace can provoke any failure
+    except Exception as error:  # a forged trace can cause any failure
         detail = str(error).rstrip(".") or type(error).__name__
         return RunVerification(run.name, "differs", (f"the calls cannot be repeated: {detail}",))
 
@@ -147,7 +147,7 @@ async def _verify(run: RunToVerify, trace: Trace, perception: Perception | None,
         await camera.go_to_preset(entry.facts.preset)
     store = PictureStore() if with_frames else None
     resimulation = await resimulate(trace, camera, perception, store or NoImages(), snapshots=started.frame is not None)
-    differences = [*_place_differences(stored_run, scene), *resimulation.differences]
+    differences = [*_preset_viewpoint_differences(stored_run, scene), *resimulation.differences]
     frames = 0
     if store is not None and run.picture is not None:
         await store.encode_pending()
@@ -158,14 +158,14 @@ async def _verify(run: RunToVerify, trace: Trace, perception: Perception | None,
     return RunVerification(run.name, status, tuple(differences[:MAX_DIFFERENCES_LISTED]), frames, replies=perception is not None)
 
 
-def _place_differences(stored_run: StoredRun, scene: Any) -> Iterator[str]:
+def _preset_viewpoint_differences(stored_run: StoredRun, scene: Any) -> Iterator[str]:
     presets = {preset.name: preset.viewpoint for preset in scene.file.presets}
     if (dict(stored_run.presets), stored_run.home) != (presets, presets[scene.file.home_preset]):
         yield "the stored viewpoints of the presets differ from those of the scene"
 
 
 async def _frame_differences(
-    picture: PictureOf, trace: Trace, resimulation: Resimulation, urls: Mapping[str, str]
+    picture: ReadPicture, trace: Trace, resimulation: Resimulation, urls: Mapping[str, str]
 ) -> tuple[list[str], int]:
     """Return the differences between stored and rendered frames, and the number of compared frames."""
     differences, compared = list[str](), set[str]()
@@ -181,7 +181,7 @@ async def _frame_differences(
         else:
             difference = await to_thread.run_sync(compare_frames, stored, jpeg_of(urls[new_name]))
             if difference is None:
-                differences.append(f"the picture {name} {where} is damaged or has another size")
+                differences.append(f"the picture {name} {where} is damaged or has a different size")
             elif not difference.accepted:
                 differences.append(f"the picture {name} {where} does not show the view: {difference}")
     return differences, len(compared)

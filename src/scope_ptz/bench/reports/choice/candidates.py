@@ -77,6 +77,6 @@ def create_candidate(run: ReportRun, all_runs: Sequence[ReportRun]) -> Candidate
 
 def _inference_s(trials: Sequence[Trial]) -> float | None:
     """Return the slower of the median planner step and the median perception call, in seconds."""
-    step = median([t.timings.planner_s / t.steps for t in trials if t.steps and t.timings.planner_s > 0])
-    call = median([look.eyes_s for t in trials for look in t.looks])
-    return None if step is None or call is None else max(step, call)
+    step_s = median([t.timings.planner_s / t.steps for t in trials if t.steps and t.timings.planner_s > 0])
+    call_s = median([call.eyes_s for t in trials for call in t.looks])
+    return None if step_s is None or call_s is None else max(step_s, call_s)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from scope_ptz.bench.reports.chart_style import GREY, INK, canvas, create_chart, run_colours, wrap_label
 from scope_ptz.bench.reports.choice.candidates import REAL_TIME_S, Candidate
-from scope_ptz.bench.reports.choice.label_places import place_labels
+from scope_ptz.bench.reports.choice.label_placement import place_labels
 from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
 
@@ -48,12 +48,12 @@ def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] 
     with canvas(1040, max(500, 200 + 18 * lines)) as (figure, axes):
         _draw_baselines(axes, baselines)
         _draw_steps(axes, [c for _, c in complete])
-        keys = []
+        handles = []
         for _, c in complete:
             colour, marker = colour_of_run[c.run.label], MARKERS[perception.index(c.run.perception_name) % len(MARKERS)]
             _draw_interval(axes, c, colour)
             _draw_marker(axes, [_position(c)], _area(c.memory_gb or 0.0), colour, marker, c)
-            keys.append(_draw_marker(axes, [], 90.0, colour, marker, c))
+            handles.append(_draw_marker(axes, [], 90.0, colour, marker, c))
         has_bar = min(c.latency_s or 0.0 for _, c in complete) <= NEAR_REAL_TIME_S
         if has_bar:
             axes.axvline(REAL_TIME_S, color=INK, lw=1.3, ls=(0, (6, 3)))
@@ -61,7 +61,7 @@ def front_chart(candidates: Sequence[Candidate], baselines: Sequence[ReportRun] 
                 "2 Hz (0.5 s)", (REAL_TIME_S, 0.01), (4, 0), xycoords=("data", "axes fraction"), textcoords="offset points"
             )
         _style(axes)
-        _legends(figure, keys, labels)
+        _legends(figure, handles, labels)
 
         def place() -> None:
             figure.canvas.draw()  # Finalises the layout, on which the label positions depend.
@@ -137,10 +137,10 @@ def _style(axes: Axes) -> None:
     axes.set_ylabel("Macro accuracy (%), 95% interval")
 
 
-def _legends(figure: Any, keys: Sequence[Any], labels: Sequence[str]) -> None:
+def _legends(figure: Any, handles: Sequence[Any], labels: Sequence[str]) -> None:
     from matplotlib.lines import Line2D
 
-    figure.legend(keys, labels, loc="outside right upper", fontsize=9.5, labelspacing=0.55, handletextpad=0.4)
+    figure.legend(handles, labels, loc="outside right upper", fontsize=9.5, labelspacing=0.55, handletextpad=0.4)
     sizes = [
         Line2D([], [], ls="", marker="o", mfc="none", mec=INK, ms=sqrt(_area(size))) for size in SIZE_EXAMPLES_GB
     ]  # fmt: skip

@@ -71,7 +71,7 @@ def choice_section(
         rows += [_row(create_candidate(run, all_runs), None, choose, None, corrected) for run in runs]
     charts = (front_chart(pairs, [run for run in baselines if run.built_in]),) if any(c.is_complete for c in pairs) else ()
     table = ReportTable("choice", "Accuracy, latency and memory of each pair", COLUMNS, tuple(rows), NOTES, groups)
-    return Section("choice", "Which pair to choose", _answers(pairs, best), charts, (table,))
+    return Section("choice", "Which pair to choose", _recommendations(pairs, best), charts, (table,))
 
 
 def _choice(candidate: Candidate, reasons: Mapping[str, Sequence[str]]) -> str:
@@ -109,7 +109,7 @@ def _inference(candidate: Candidate) -> CellValue:
 
 
 def isolation_title(run: ReportRun) -> str:
-    """Return a text that states how a run's agent was isolated from the answers."""
+    """Describe how a run's agent was isolated from the answers."""
     if run.kind == "person":
         return "a person"
     return run.evaluation.card.isolation or "built in"
@@ -144,7 +144,7 @@ def _omit_implied(reasons: Sequence[str]) -> list[str]:
     return [reason for reason in reasons if not weaker or not reason.startswith(weaker)]
 
 
-def _answers(pairs: Sequence[Candidate], best: Leaders | None) -> tuple[str, ...]:
+def _recommendations(pairs: Sequence[Candidate], best: Leaders | None) -> tuple[str, ...]:
     """Return sentences that recommend pairs."""
     if best is None:
         return ("These runs include no pair of models, so nothing is ranked.",)

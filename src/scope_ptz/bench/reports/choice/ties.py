@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from scope_ptz.bench.reports.paired_comparison import PairedComparison, are_differences_shown, compare
+from scope_ptz.bench.reports.paired_comparison import PairedComparison, are_differences_significant, compare
 from scope_ptz.bench.reports.report_runs import ReportRun
 
 ROUNDING = 1e-9
@@ -23,23 +23,23 @@ class Distinctions:
 
     Attributes:
         comparisons: The comparisons.
-        different: For each comparison that shows a difference, the labels of the two runs.
+        distinct_labels: The labels of the two runs in each comparison with a significant difference.
     """
 
     comparisons: tuple[PairedComparison, ...]
-    different: frozenset[frozenset[str]]
+    distinct_labels: frozenset[frozenset[str]]
 
     def are_distinct(self, first: ReportRun, second: ReportRun) -> bool:
-        """Return whether the comparison between two runs shows a difference."""
-        return frozenset({first.label, second.label}) in self.different
+        """Return whether two runs differ significantly."""
+        return frozenset({first.label, second.label}) in self.distinct_labels
 
 
 def compare_all(runs: Sequence[ReportRun]) -> Distinctions:
     """Compare every pair of runs on their shared tasks."""
     comparisons = [c for first, two in combinations(runs, 2) if (c := compare(first, two)) is not None]
-    shown = are_differences_shown(comparisons)
-    different = frozenset(frozenset({c.first, c.second}) for c, is_shown in zip(comparisons, shown, strict=True) if is_shown)
-    return Distinctions(tuple(comparisons), different)
+    significant = are_differences_significant(comparisons)
+    labels = frozenset(frozenset({c.first, c.second}) for c, differs in zip(comparisons, significant, strict=True) if differs)
+    return Distinctions(tuple(comparisons), labels)
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,9 +43,9 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
     """
     scored_runs = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in scored_runs if r.ranked], [r for r in scored_runs if not r.ranked]
-    tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True, best=best)]
+    tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, mark_best=True, best=best)]
     if others:
-        tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
+        tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, mark_best=False))
     tables.append(_outcome_table(scored_runs))
     if any(t.judgements for run in scored_runs for t in run.scored_trials):
         tables.append(_judge_table(scored_runs))
@@ -62,7 +62,7 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
             + (
                 " Runs on a different selection of its tasks have hollow markers and are below the others. Their labels state "
                 "the number of shared tasks."
-                if any(run.other_tasks for run in scored_runs)
+                if any(run.task_difference for run in scored_runs)
                 else ""
             )
         )
@@ -77,10 +77,10 @@ def accuracy_section(runs: Sequence[ReportRun], best: Leaders | None = None) -> 
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
 
-def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool, best: Leaders | None = None) -> ReportTable:
+def category_table(key: str, title: str, runs: Sequence[ReportRun], *, mark_best: bool, best: Leaders | None = None) -> ReportTable:
     """Return a table with one row per run, grouped by perception model.
 
-    With ``rank``, the highest value for each perception model is bold, and the highest value on the same tasks is underlined.
+    With ``mark_best``, the highest value for each perception model is bold, and the highest value on the same tasks is underlined.
     Values that are all equal have no marks. Macro averages that are not distinguishable from the highest have a note.
     """
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
@@ -93,13 +93,13 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
         group = f"{run.perception_name} ({' '.join(run.task_set)})"
         if group != previous:
             groups[number], previous = group, group
-        cells = [_mark_best(value, index, run, values_by_run) if rank else value for index, value in enumerate(values)]
+        cells = [_mark_best(value, index, run, values_by_run) if mark_best else value for index, value in enumerate(values)]
         cells[0] = _note_partial_macro(cells[0], run)
         if best is not None and run in best.close:
             cells[0] = _add_note(cells[0], "not distinguishable from the highest")
         rows.append((run.label, *cells, len(run.tasks)))
     notes = (INTERVALS_NOTE, MARKS_NOTE)
-    return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS_NOTE,), groups)
+    return ReportTable(key, title, tuple(columns), tuple(rows), notes if mark_best else (INTERVALS_NOTE,), groups)
 
 
 def _category_share(run: ReportRun, name: str) -> IntervalEstimate | None:

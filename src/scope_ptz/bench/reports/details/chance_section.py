@@ -69,13 +69,13 @@ def consistent_outcomes(trials: Sequence[Trial]) -> list[bool]:
     """Return the pair-consistent outcome of each trial. Pairs are formed within each repeat."""
     outcomes = [False] * len(trials)
     for epoch in dict.fromkeys(trial.epoch for trial in trials):
-        places = [i for i, trial in enumerate(trials) if trial.epoch == epoch]
-        rows = [trials[i] for i in places]
+        positions = [i for i, trial in enumerate(trials) if trial.epoch == epoch]
+        rows = [trials[i] for i in positions]
         consistent = pair_consistent(
             [t.headline == "correct" for t in rows], [t.task.id for t in rows], [t.task.pair for t in rows]
         )
-        for place, value in zip(places, consistent, strict=True):
-            outcomes[place] = value
+        for position, value in zip(positions, consistent, strict=True):
+            outcomes[position] = value
     return outcomes
 
 

@@ -164,7 +164,7 @@ def _pooling_note(role: str) -> str:
 
 def _model_table(
     key: str, title: str, pairs: Sequence[TimedPair], name: Callable[[ReportRun], str], stage: str,
-    single: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
+    detail_columns: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
 ) -> ReportTable:  # fmt: skip
     """Return a table with one row per model.
 
@@ -174,7 +174,7 @@ def _model_table(
         pairs: The runs of the model pairs, with the runs from which their latencies are taken.
         name: Function that returns the name of the model in a run.
         stage: The stage to which the model belongs.
-        single: The columns for individual steps or calls.
+        detail_columns: The columns for individual steps or calls.
         cells: Function that returns the cells in these columns.
         notes: The notes below the table.
     """
@@ -185,7 +185,7 @@ def _model_table(
         Column("pairs_all", "All pairs", "count"),
         Column("trial_median", "Seconds per trial, median", "seconds"),
         Column("trial_p95", "Seconds per trial, p95", "seconds"),
-        *single,
+        *detail_columns,
         Column("calls", "Tool calls, mean over all pairs", "number"),
     )
     rows = []

@@ -184,7 +184,7 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
         Column("difference", "Current minus full (points)", "points"),
     )
     rows = [_scope_row(run) for run in runs]
-    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.other_tasks]
+    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.task_difference]
     if len(ranked) > 1:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))

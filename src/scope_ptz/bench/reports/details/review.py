@@ -141,7 +141,7 @@ def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
     )
 
 
-def conduct_section(runs: Sequence[ReportRun]) -> Section:
+def incidents_section(runs: Sequence[ReportRun]) -> Section:
     """Return the section on collateral changes, invalid calls, perception failures and server failures."""
     columns = (
         Column("run", "Run"),
@@ -156,7 +156,7 @@ def conduct_section(runs: Sequence[ReportRun]) -> Section:
         "Collateral change: the camera ended at another pose although neither the instruction nor the answer required a move. It "
         "does not affect accuracy.",
     )
-    rows = tuple(_conduct_row(run) for run in runs if run.evaluation.trials)
+    rows = tuple(_incidents_row(run) for run in runs if run.evaluation.trials)
     return Section(
         "conduct",
         "Side effects and incidents",
@@ -166,7 +166,7 @@ def conduct_section(runs: Sequence[ReportRun]) -> Section:
     )
 
 
-def _conduct_row(run: ReportRun) -> tuple[CellValue, ...]:
+def _incidents_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = [t for t in run.evaluation.trials if t.headline != "infrastructure"]
     events = sum((Counter(t.server_events) for t in run.evaluation.trials), Counter[str]())
     failures = ", ".join(f"{kind} {number}" for kind, number in sorted(events.items())) or "none"

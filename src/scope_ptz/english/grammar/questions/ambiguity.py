@@ -1,4 +1,4 @@
-"""Choose the reading of an ambiguous text that has the lowest cost. The cost does not depend on the scene."""
+"""Choose the cheapest reading of ambiguous text. The cost does not depend on the scene."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _TEXT_AND_PROPERTY_NOUNS = frozenset(
         "colors",
     ]
 )
-"""Nouns for texts and properties, which are not things."""
+"""Nouns for text and properties, which are not things."""
 
 
 def cheapest(readings: Sequence[Any]) -> Any:

@@ -1,4 +1,4 @@
-"""A parser for context-free grammars that finds every reading of an ambiguous text.
+"""A parser for context-free grammars that finds every reading of ambiguous text.
 
 Grammars use a subset of Lark's notation. A rule is ``name: alternative | alternative``. Names in capitals are token types, which
 ``%declare`` lists, and other names are rules. ``?``, ``*``, ``+`` and parentheses have their usual meaning. ``->`` names an
@@ -21,7 +21,7 @@ from scope_ptz.english.grammar.questions.expressions import (
     Rule,
     Series,
     Terminal,
-    Text,
+    TokenSequence,
 )
 from scope_ptz.english.grammar.questions.typed_tokens import Token
 
@@ -45,7 +45,7 @@ class ChartParser:
         bodies = dict(_RULE.findall("\n".join(lines)))
         self._rules = {name: Rule(name) for name in bodies}
         for name, body in bodies.items():
-            self._rules[name].alternatives += _RuleReader(name, body, self._rules, types).alternatives()
+            self._rules[name].alternatives += _RuleParser(name, body, self._rules, types).alternatives()
 
     def readings(self, tokens: Sequence[Token], start: str, build: Build) -> list[Any]:
         """Return every reading of the complete token list; an empty list if it does not match the rule.
@@ -55,17 +55,17 @@ class ChartParser:
             start: The name of the rule to match.
             build: A function that returns the meaning of a match. Meanings that readings share are built once.
         """
-        text, rule = Text(tokens, build), self._rules[start]
+        text, rule = TokenSequence(tokens, build), self._rules[start]
         if len(tokens) not in rule.ends(text, 0):
             return []
         return [reading for (reading,) in rule.parts(text, 0, len(tokens))]
 
     def matches(self, tokens: Sequence[Token], start: str) -> bool:
         """Return whether the complete token list matches a rule."""
-        return len(tokens) in self._rules[start].ends(Text(tokens), 0)
+        return len(tokens) in self._rules[start].ends(TokenSequence(tokens), 0)
 
 
-class _RuleReader:
+class _RuleParser:
     """A parser for the body of a rule."""
 
     def __init__(self, name: str, body: str, rules: Mapping[str, Rule], types: frozenset[str]) -> None:
@@ -92,7 +92,7 @@ class _RuleReader:
         parts: list[Expression] = []
         while (symbol := self._symbols[self._position]) not in {"", "|", ")", "->"}:
             self._position += 1
-            part = self._group() if symbol == "(" else self._named(symbol)
+            part = self._group() if symbol == "(" else self._named_expression(symbol)
             if self._symbols[self._position] in {"?", "*", "+"}:
                 part = _quantify(part, self._next_symbol())
             parts.append(part)
@@ -109,7 +109,7 @@ class _RuleReader:
             raise self._error(symbol)
         return Choice(options)
 
-    def _named(self, name: str) -> Expression:
+    def _named_expression(self, name: str) -> Expression:
         if name in self._types:
             return Terminal(name)
         if name not in self._rules:

@@ -24,8 +24,8 @@ Build = Callable[[str, list[Any]], Any]
 """A function that returns the meaning of a match from the name of the rule's alternative and the meanings of its parts."""
 
 
-class Text:
-    """The tokens of a text, with cached results of parsing.
+class TokenSequence:
+    """A list of tokens with cached parsing results.
 
     Args:
         tokens: The tokens to parse.
@@ -51,11 +51,11 @@ class Expression:
         """Return whether a match can begin where the next token has this type."""
         return kind in self.first or EMPTY in self.first
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         """Return the ends of all matches that begin at ``start``."""
         raise NotImplementedError
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         """Yield the parts of each match from ``start`` to ``end``."""
         raise NotImplementedError
 
@@ -65,10 +65,10 @@ class Nothing(Expression):
 
     first = frozenset({EMPTY})
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:  # noqa: ARG002
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:  # noqa: ARG002
         return frozenset({start})
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:  # noqa: ARG002
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:  # noqa: ARG002
         if start == end:
             yield ()
 
@@ -83,10 +83,10 @@ class Terminal(Expression):
     def first(self) -> frozenset[str]:
         return frozenset({self.kind})
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         return frozenset({start + 1}) if text.kinds[start] == self.kind else frozenset()
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         if end == start + 1 and text.kinds[start] == self.kind:
             yield (text.tokens[start],)
 
@@ -102,13 +102,13 @@ class Series(Expression):
         first = self.head.first
         return (first - {EMPTY}) | self.tail.first if EMPTY in first else first
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         middles = self.head.ends(text, start)
         return frozenset(
             end for middle in middles if self.tail.may_begin(text.kinds[middle]) for end in self.tail.ends(text, middle)
         )
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         for middle in self.head.ends(text, start):
             if middle <= end and self.tail.may_begin(text.kinds[middle]) and end in self.tail.ends(text, middle):
                 tails = list(self.tail.parts(text, middle, end))
@@ -126,11 +126,11 @@ class Choice(Expression):
     def first(self) -> frozenset[str]:
         return frozenset[str]().union(*(option.first for option in self.options))
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         kind = text.kinds[start]
         return frozenset[int]().union(*(option.ends(text, start) for option in self.options if option.may_begin(kind)))
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         for option in self.options:
             if option.may_begin(text.kinds[start]):
                 yield from option.parts(text, start, end)
@@ -146,7 +146,7 @@ class Repetition(Expression):
     def first(self) -> frozenset[str]:
         return self.body.first
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         found: set[int] = set()
         open_ends = {start}
         while open_ends:
@@ -156,7 +156,7 @@ class Repetition(Expression):
             open_ends |= new
         return frozenset(found)
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         if not self.body.may_begin(text.kinds[start]):
             return
         for middle in self.body.ends(text, start):
@@ -183,7 +183,7 @@ class Rule(Expression):
     def first(self) -> frozenset[str]:
         return frozenset[str]().union(*(body.first for _, body in self.alternatives))
 
-    def ends(self, text: Text, start: int) -> frozenset[int]:
+    def ends(self, text: TokenSequence, start: int) -> frozenset[int]:
         key = (self, start)
         if key not in text.ends:
             kind = text.kinds[start]
@@ -192,7 +192,7 @@ class Rule(Expression):
             )
         return text.ends[key]
 
-    def parts(self, text: Text, start: int, end: int) -> Iterator[Parts]:
+    def parts(self, text: TokenSequence, start: int, end: int) -> Iterator[Parts]:
         key = (self, start, end)
         if key not in text.readings:
             text.readings[key] = [

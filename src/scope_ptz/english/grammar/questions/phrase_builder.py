@@ -19,7 +19,7 @@ def tokens_of(children: Children, *kinds: str) -> list[Token]:
     return [c for c in children if isinstance(c, Token) and c.type in kinds]
 
 
-def of_kind(children: Children, kind: type[Any]) -> list[Any]:
+def instances_of(children: Children, kind: type[Any]) -> list[Any]:
     """Return the children that are instances of a class."""
     return [c for c in children if isinstance(c, kind)]
 
@@ -66,7 +66,9 @@ _ADJECTIVES = english.COLOURS | {
 }
 """Words that can follow an article without a noun: "the red or the blue car"."""
 
-_DEFINITE = frozenset({"the", "these", "those", "its", "their", "his", "her", "your", "my", "both", "all of the", "all the"})
+_DEFINITE_DETERMINERS = frozenset(
+    {"the", "these", "those", "its", "their", "his", "her", "your", "my", "both", "all of the", "all the"}
+)
 
 
 class _Predicate(tuple[tree.Test, ...]):
@@ -114,7 +116,7 @@ class NounPhrases:
         The last noun ("red or blue cars") and its modifiers ("cars and vans on the left") apply to all items. If every item has an
         own article, the modifiers belong to the last item: "the van or the worker with a broom".
         """
-        phrases: list[tree.Phrase] = of_kind(children, tree.Phrase)
+        phrases: list[tree.Phrase] = instances_of(children, tree.Phrase)
         last = phrases[-1]
         spans = nouns_in(last.words)
         if not spans and len(phrases) == 2 and nouns_in(phrases[0].words) and not last.tests and tokens_of(children, "AND"):
@@ -139,12 +141,12 @@ class NounPhrases:
         return Rank((key, int(ordinal) if ordinal else None, english.cardinal(amount) if amount else None))
 
     def np(self, children: Children) -> tree.Phrase:
-        (core,) = of_kind(children, Core)
+        (core,) = instances_of(children, Core)
         return self._phrase(children, core)
 
     def np_of(self, children: Children) -> tree.Phrase:
         """Build "the largest of the vehicles" or "the nearest"."""
-        described = of_kind(children, tree.Description)
+        described = instances_of(children, tree.Description)
         if not described:
             return self._phrase(children, Core(("thing",)))
         first = described[0].phrases[0]
@@ -152,7 +154,7 @@ class NounPhrases:
 
     def np_owned(self, children: Children) -> tree.Phrase:
         """Build "the worker's helmet" as the helmet on the worker."""
-        (owner,), (core,) = of_kind(children, tree.Phrase), of_kind(children, Core)
+        (owner,), (core,) = instances_of(children, tree.Phrase), instances_of(children, Core)
         rest = [x for x in children if x is not owner and x is not core]
         return self._phrase([*rest, tree.Relation("on", tree.Description((owner,)))], core)
 
@@ -165,7 +167,7 @@ class NounPhrases:
         ordinal: int | None = None
         number = value_of(children, "NUM")
         amount = english.cardinal(number) if number else None
-        for key, nth, ranked_amount in of_kind(children, Rank):
+        for key, nth, ranked_amount in instances_of(children, Rank):
             order = tree.Order(key) if key else None
             ordinal = nth
             amount = ranked_amount or amount
@@ -173,7 +175,7 @@ class NounPhrases:
             order = test
             tests.remove(test)
         leading = tokens_of(children, "DET", "A", "THAT")[:1]
-        article: Any = "the" if leading and (leading[0].type == "THAT" or leading[0] in _DEFINITE) else ""
+        article: Any = "the" if leading and (leading[0].type == "THAT" or leading[0] in _DEFINITE_DETERMINERS) else ""
         article = "a" if leading and leading[0].type == "A" else article
         return tree.Phrase(tuple(core), tuple(tests), order, ordinal, amount, article)
 
@@ -182,7 +184,7 @@ class NounPhrases:
         return tree.Not(tree.Is(words)) if tokens_of(children, "NOT") else tree.Is(words)
 
     def adjective(self, children: Children) -> tree.Test:
-        words = tree.Is((*(str(t) for t in tokens_of(children, "NUM")), *of_kind(children, Core)[0]))
+        words = tree.Is((*(str(t) for t in tokens_of(children, "NUM")), *instances_of(children, Core)[0]))
         return tree.Not(words) if tokens_of(children, "NOT") else words
 
     def not_test(self, children: Children) -> tree.Not:
@@ -238,7 +240,7 @@ class NounPhrases:
         return tree.Faces(cast(tree.Side, str(tokens_of(children, "SIDE")[0])))
 
     def says(self, children: Children) -> tree.Says:
-        literal = value_of(children, "TEXT") or " ".join(x for core in of_kind(children, Core) for x in core)
+        literal = value_of(children, "TEXT") or " ".join(x for core in instances_of(children, Core) for x in core)
         return tree.Says(tuple(english.letters(literal).split()))
 
     def ordered(self, children: Children) -> tree.Order:

@@ -12,7 +12,7 @@ from scope_ptz.english.grammar.questions.phrase_builder import (
     Core,
     NounPhrases,
     descriptions,
-    of_kind,
+    instances_of,
     tests_of,
     tokens_of,
     value_of,
@@ -21,13 +21,13 @@ from scope_ptz.english.grammar.questions.typed_tokens import Token
 
 EVERYTHING = tree.Description((tree.Phrase(("thing",)),))
 
-_THE_VIEW = frozenset(
+_VIEW_WORDS = frozenset(
     ["scene", "view", "picture", "image", "frame", "photo", "surroundings", "everything", "it", "this", "area", "situation"]
 )
 
 
 def _text_owner(what: tree.Description) -> tree.Description | None:
-    """Return the thing that a text is on ("the words on the van": the van); None if the question names only "the text"."""
+    """Return the thing that the text is on ("the words on the van": the van); None if the question names only "the text"."""
     phrase = what.phrases[0]
     if phrase.words[-1] not in _TEXT_NOUNS:
         return what
@@ -114,11 +114,11 @@ class QuestionBuilder(NounPhrases):
         return Subject((descriptions(children)[0], "none"))
 
     def yesno(self, children: Children) -> tree.YesNo:
-        ((subject, scope),) = of_kind(children, Subject)
+        ((subject, scope),) = instances_of(children, Subject)
         return tree.YesNo(subject, tests_of(children), scope)
 
     def yesno_has(self, children: Children) -> tree.YesNo:
-        ((subject, scope),) = of_kind(children, Subject)
+        ((subject, scope),) = instances_of(children, Subject)
         has = tree.Has(descriptions(children)[0])
         return tree.YesNo(subject, (tree.Not(has) if tokens_of(children, "NONE") else has,), scope)
 
@@ -157,9 +157,9 @@ class QuestionBuilder(NounPhrases):
         return tree.Ask((str(value_of(children, "W")),), descriptions(children)[0])
 
     def ask_attribute(self, children: Children) -> tree.Ask | tree.Read:
-        if of_kind(children, Core)[0][-1] in _TEXT_NOUNS:
+        if instances_of(children, Core)[0][-1] in _TEXT_NOUNS:
             return tree.Read(descriptions(children)[0])
-        return tree.Ask(tuple(of_kind(children, Core)[0]), descriptions(children)[0])
+        return tree.Ask(tuple(instances_of(children, Core)[0]), descriptions(children)[0])
 
     def ask_of(self, children: Children) -> tree.Ask:
         attribute, what = descriptions(children)
@@ -248,12 +248,12 @@ class QuestionBuilder(NounPhrases):
 
     def compare_count(self, children: Children) -> tree.CompareCount:
         first, second = descriptions(children)
-        return tree.CompareCount(self._sense(children), first, second)
+        return tree.CompareCount(self._more_or_fewer(children), first, second)
 
     def more_or_less(self, children: Children) -> tree.CompareCount:
         """Build "are there more vans than cars, fewer, or just as many?"."""
         first, second = descriptions(children)
-        return tree.CompareCount(self._sense(children[:3]), first, second, which=True)
+        return tree.CompareCount(self._more_or_fewer(children[:3]), first, second, which=True)
 
     def compare_numbers(self, children: Children) -> tree.CompareCount:
         first, second = descriptions(children)
@@ -266,9 +266,9 @@ class QuestionBuilder(NounPhrases):
     def more_of(self, children: Children) -> tree.CompareCount:
         options = descriptions(children)[0].phrases
         first, second = tree.Description(options[:1]), tree.Description(options[1:])
-        return tree.CompareCount(self._sense(children), first, second, which=True)
+        return tree.CompareCount(self._more_or_fewer(children), first, second, which=True)
 
-    def _sense(self, children: Children) -> Any:
+    def _more_or_fewer(self, children: Children) -> Any:
         return "same" if tokens_of(children, "SAMEAS") else "fewer" if tokens_of(children, "FEWER") else "more"
 
     def common(self, children: Children) -> tree.MostCommon:
@@ -278,7 +278,7 @@ class QuestionBuilder(NounPhrases):
 
     def describe(self, children: Children) -> tree.Describe:
         described = descriptions(children)
-        if described and described[0].phrases[0].words[-1] not in _THE_VIEW:
+        if described and described[0].phrases[0].words[-1] not in _VIEW_WORDS:
             return tree.Describe(tests_of(children), described[0])
         return tree.Describe(tests_of(children) or (described[0].phrases[0].tests if described else ()))
 

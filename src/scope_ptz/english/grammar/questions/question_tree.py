@@ -26,7 +26,7 @@ class Phrase:
     amount: int | None = None
     """The number of things ("the two nearest cones")."""
     article: Literal["the", "a", ""] = ""
-    """Whether the phrase begins with a definite or an indefinite article."""
+    """The type of article with which the phrase begins: "the" for definite, "a" for indefinite, "" for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,7 +240,7 @@ class Quarter:
 
 @dataclass(frozen=True, slots=True)
 class InOrder:
-    """Ask for the order of several things by place or distance, or of several kinds by their numbers."""
+    """Ask for the order of several things by place or distance, or of several kinds by how many things they have."""
 
     key: OrderKey | Literal["most", "fewest"]
     options: Description
@@ -302,7 +302,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class CompareCount:
-    """Ask whether there are more, fewer or as many things of one kind as of another. With ``which``, ask which kind has more."""
+    """Compare the numbers of two kinds: "are there more cars than vans?". With ``which``, ask which kind has more things."""
 
     sense: Literal["more", "fewer", "same"]
     first: Description

@@ -1,4 +1,4 @@
-"""Test whether a text is a noun phrase, without building its meaning."""
+"""Test whether text is a noun phrase, without building its meaning."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from importlib.resources import files
 from scope_ptz.english.grammar.questions.chart_parser import ChartParser
 from scope_ptz.english.grammar.questions.typed_tokens import Token, tokenise
 
-_NOUNS_TOO = frozenset({"face", "faces", "point", "points", "stand", "stands", "show", "hold"})
-"""Nouns that the grammar otherwise reads as verbs: "the man's face", "the taxi stand"."""
+_NOUNS_OR_VERBS = frozenset({"face", "faces", "point", "points", "stand", "stands", "show", "hold"})
+"""Words that the grammar reads as verbs, although they may be nouns: "the man's face", "the taxi stand"."""
 
 MAX_TOKENS = 40
 """Maximum number of tokens. Longer input is rejected, because it is slow to parse and unlikely to be about a picture."""
@@ -27,18 +27,18 @@ _PARTICIPLE_PHRASE = re.compile(
 )
 """The pattern for a noun phrase with a participle: "man pushing the trolley", "bicycle tied to the fence"."""
 
-_CLIMBED = (
+_CLIMBABLE = (
     "ladder|road|street|hill|steps|stairs|ramp|tree|pole|mast|bank|slope|lane|path|drive|slipway|cliff|rope|escalator|scaffolding"
 )
-_PLACED = re.compile(
+_PREPOSITION_PHRASE = re.compile(
     r"(?P<noun>.+?) (?:"
     r"(?:outside|off|aboard|atop|opposite|amid|within|through|throughout|astride|away from|out of|in between) (?P<object>.+)"
-    rf"|(?:up|down|halfway up) (?:a|an|the|that) (?:\w+ )?(?:{_CLIMBED}))",
+    rf"|(?:up|down|halfway up) (?:a|an|the|that) (?:\w+ )?(?:{_CLIMBABLE}))",
     re.IGNORECASE,
 )
 """The pattern for a noun phrase with a preposition that the grammar lacks: "dog off its lead", "men up a ladder"."""
 
-_ACTIVE = re.compile(
+_RELATIVE_CLAUSE = re.compile(
     r"(?P<noun>.+?) (?:who|that|which) (?:look|seem|appear|need|want|keep|move|drive|walk|stand|sit)s?(?: \w+){0,3}", re.I
 )
 """The pattern for a noun phrase with a relative clause that the grammar lacks: "person who looks lost"."""
@@ -51,19 +51,19 @@ def parser() -> ChartParser:
 
 
 def is_short_enough(tokens: Sequence[Token]) -> bool:
-    """Return whether tokens can be parsed quickly."""
+    """Return whether tokens are few and simple enough to be parsed quickly."""
     return 0 < len(tokens) <= MAX_TOKENS and sum(token.type in _CONNECTIVES for token in tokens) <= MAX_CONNECTIVES
 
 
 def is_description(text: str) -> bool:
-    """Return whether a text is a noun phrase that ``parse_description`` can parse completely."""
+    """Return whether text is a noun phrase that ``parse_description`` can parse completely."""
     tokens = tokenise(text)
     return is_short_enough(tokens) and parser().matches(tokens, "description")
 
 
 @lru_cache(maxsize=4096)
 def looks_like_description(text: str) -> bool:
-    """Return whether a text looks like a noun phrase, even if ``parse_description`` only splits it into words.
+    """Return whether text looks like a noun phrase, even if ``parse_description`` only splits it into words.
 
     Examples are phrases with a participle and its object, such as "man pushing the trolley", and with a preposition and a pronoun,
     such as "the vehicles on it".
@@ -74,13 +74,13 @@ def looks_like_description(text: str) -> bool:
     if 0 < len(tokens) <= MAX_TOKENS:  # the number of readings does not matter here
         if parser().matches(tokens, "description"):
             return True
-        if any(token in _NOUNS_TOO for token in tokens):
-            nouns = [Token("W", token) if token in _NOUNS_TOO else token for token in tokens]
+        if any(token in _NOUNS_OR_VERBS for token in tokens):
+            nouns = [Token("W", token) if token in _NOUNS_OR_VERBS else token for token in tokens]
             if parser().matches(nouns, "description"):
                 return True
-    if (active := _ACTIVE.fullmatch(text)) is not None and is_description(active["noun"]):
+    if (active := _RELATIVE_CLAUSE.fullmatch(text)) is not None and is_description(active["noun"]):
         return True
-    for pattern in (_PARTICIPLE_PHRASE, _PLACED):
+    for pattern in (_PARTICIPLE_PHRASE, _PREPOSITION_PHRASE):
         match = pattern.fullmatch(text)
         if match is not None and is_description(match["noun"]):
             return not match["object"] or looks_like_description(match["object"])

@@ -34,7 +34,7 @@ _FRAME_FILLERS = frozenset({
 })  # fmt: skip
 _PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "worksite"])
 _FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
-_TEXT_ENDS = frozenset({"visible", "there", "?"})  # words that end the literal after "says"
+_LITERAL_TERMINATORS = frozenset({"visible", "there", "?"})  # words that end the literal after "says"
 _PARTICLES = frozenset(
     ["on", "off", "up", "down", "in", "out"]
 )  # adverbs, not prepositions, at the end of a text ("is the light on")
@@ -96,7 +96,7 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
     kind, value = _phrases()[0][tuple(words[i : i + size])]
     raw = " ".join(words[i : i + size])
     before = tokens[-1].type if tokens else ""
-    if _is_ordinal_part(words, i, kind, before):
+    if _is_ordinal(words, i, kind, before):
         tokens.append(Token("ORD", str(english.ordinal(raw))))
     elif (kind == "METRES" and before != "NUM") or (kind == "LIST" and before in {"W", "TEXTNOUN"}):
         tokens += [Token("W", word) for word in words[i : i + size]]  # "the meter", "the price list"
@@ -115,7 +115,7 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
     return i
 
 
-def _is_ordinal_part(words: list[str], i: int, kind: str, before: str) -> bool:
+def _is_ordinal(words: list[str], i: int, kind: str, before: str) -> bool:
     """Return whether a word such as "third" is an ordinal ("the third window"), not a part ("the left third of the picture")."""
     after = words[i + 1] if i + 1 < len(words) else ""
     is_noun_next = after[:1].isalnum() and after not in {"of", "is", "are", "and", "or"}
@@ -151,7 +151,7 @@ def _literal(words: list[str], start: int) -> tuple[str, int]:
     if start < len(words) and words[start][0] in "\"'":
         return words[start].strip("\"'"), start + 1
     end = start
-    while end < len(words) and words[end] not in _TEXT_ENDS:
+    while end < len(words) and words[end] not in _LITERAL_TERMINATORS:
         end += 1
     while end > start + 1 and tuple(words[end - 2 : end]) in {("on", "it"), ("on", "them")}:
         end -= 2
@@ -169,7 +169,7 @@ def _without_frame_phrases(words: list[str]) -> list[str]:
                 end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _ends_phrase(words, end))
             ):
                 end += 1
-            if _ends_in_place(words, end) or (
+            if _ends_with_place(words, end) or (
                 end < len(words) and words[end] in _FRAME_WORDS and _ends_phrase(words, end) and end > i + 1
             ):
                 i = end + 1
@@ -179,7 +179,7 @@ def _without_frame_phrases(words: list[str]) -> list[str]:
     return result
 
 
-def _ends_in_place(words: list[str], index: int) -> bool:
+def _ends_with_place(words: list[str], index: int) -> bool:
     """Return whether the text ends at this index with a word such as "site" ("on site", but not "on the site office")."""
     return index < len(words) and words[index] in _PLACE_WORDS and words[index + 1 :] in ([], ["?"])
 

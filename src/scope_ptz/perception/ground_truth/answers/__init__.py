@@ -84,7 +84,7 @@ def answer(view: View, question: tree.Question | None) -> TruthAnswer:
 
 
 def _answer_about_text(view: View, question: tree.Read | tree.TextExists | tree.Price | tree.Time) -> TruthAnswer:
-    """Return the answer to a question about a text, or about a fact that only texts state."""
+    """Return the answer to a question about text, or about a fact that only text states."""
     match question:
         case tree.Read():
             return answer_read(view, question)

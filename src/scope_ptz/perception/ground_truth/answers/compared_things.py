@@ -46,10 +46,10 @@ def answer_which(view: View, question: tree.Which) -> TruthAnswer:
         )
     things: list[Thing] = []
     for phrase in options:
-        best = [t for t in find(view, tree.Description((phrase,))) if t not in things]
-        if not best:
+        matches = [t for t in find(view, tree.Description((phrase,))) if t not in things]
+        if not matches:
             return unknown_answer(f"I cannot tell: {none_in_view(view, tree.Description((phrase,)))}")
-        things.append(best[0])
+        things.append(matches[0])
     ranked = sorted(zip(things, options, strict=True), key=lambda pair: rank_key(question.key)(pair[0]))
     (first, phrase), (second, other) = ranked[:2]
     if _are_equal(question.key, first, second):
@@ -60,8 +60,8 @@ def answer_which(view: View, question: tree.Which) -> TruthAnswer:
     if question.key in {"nearest", "furthest"}:
         near, far = distance_words(first.distance_m), distance_words(second.distance_m)
         detail = f": it is about {near} away, {_definite_phrase(view, other)} about {far}" if near != far else ""
-    rank = COMPARATIVES if len(ranked) == 2 else FIRST_OF_SEVERAL
-    return known_answer(f"{_definite_phrase(view, phrase)} is {rank[question.key]}{detail}")
+    words = COMPARATIVES if len(ranked) == 2 else FIRST_OF_SEVERAL
+    return known_answer(f"{_definite_phrase(view, phrase)} is {words[question.key]}{detail}")
 
 
 def _definite_phrase(view: View, phrase: tree.Phrase) -> str:
@@ -86,12 +86,12 @@ def answer_compare(view: View, question: tree.Compare) -> TruthAnswer:
     )
     if question.key in {"nearest", "furthest"}:
         statement += f" (about {distance_words(first.distance_m)} against {distance_words(second.distance_m)})"
-    ahead = key(first) < key(second) and not _are_equal(question.key, first, second)
-    return known_answer(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
+    ranks_first = key(first) < key(second) and not _are_equal(question.key, first, second)
+    return known_answer(f"yes, {statement.format('')}" if ranks_first else f"no, {statement.format('not ')}")
 
 
 def answer_how_far(view: View, question: tree.HowFar) -> TruthAnswer:
-    """Answer how far a thing is from the camera, or from another thing, in metres."""
+    """Answer how far a thing is from the camera, or from something else, in metres."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
             return unknown_answer(f"I cannot tell: {none_in_view(view, description)}")
@@ -99,9 +99,9 @@ def answer_how_far(view: View, question: tree.HowFar) -> TruthAnswer:
     if question.other is None:
         if len(first) > 1 and not any(p.order for p in question.what.phrases):
             low, high = (limit(t.distance_m for t in first) for limit in (min, max))
-            many = noun_phrase(view, question.what, many=True)
+            plural_noun = noun_phrase(view, question.what, plural=True)
             return known_answer(
-                f"there are {len(first)} {many}, from about {distance_words(low)} to about {distance_words(high)} away"
+                f"there are {len(first)} {plural_noun}, from about {distance_words(low)} to about {distance_words(high)} away"
             )
         return known_answer(f"the {coloured_name(first[0])} is about {distance_words(first[0].distance_m)} away")
     second = [t for t in find(view, question.other) if t is not first[0]]
@@ -118,13 +118,13 @@ def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer
     if not question.second.phrases:
         return unknown_answer("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
-        return _most_of(view, question)
+        return _answer_most_numerous(view, question)
     a, b = len(find(view, question.first)), len(find(view, question.second))
-    first, second = noun_phrase(view, question.first, many=True), noun_phrase(view, question.second, many=True)
+    first, second = noun_phrase(view, question.first, plural=True), noun_phrase(view, question.second, plural=True)
     counts = f"{english.counted(a, noun_phrase(view, question.first))} and {english.counted(b, noun_phrase(view, question.second))}"
     if question.which:
-        ahead = (a > b) == (question.sense == "more")
-        verdict = "there are equally many" if a == b else f"there are {question.sense} {first if ahead else second}"
+        is_first = (a > b) == (question.sense == "more")
+        verdict = "there are equally many" if a == b else f"there are {question.sense} {first if is_first else second}"
         return known_answer(f"{verdict}: {counts}")
     yes = {"more": a > b, "fewer": a < b, "same": a == b}[question.sense]
     comparative = {"more": "more", "fewer": "fewer"}.get(question.sense)
@@ -135,23 +135,23 @@ def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer
 def answer_difference(view: View, question: tree.Difference) -> TruthAnswer:
     """Answer how many more things of one kind there are than of another."""
     first, second = (len(find(view, what)) for what in (question.first, question.second))
-    more, fewer = (question.first, question.second)
-    a, b = english.counted(first, noun_phrase(view, more)), english.counted(second, noun_phrase(view, fewer))
+    a = english.counted(first, noun_phrase(view, question.first))
+    b = english.counted(second, noun_phrase(view, question.second))
     if first == second:
         return known_answer(f"there are equally many: {a} and {b}, so the difference is 0")
     number, sense = abs(first - second), "more" if first > second else "fewer"
-    kind = noun_phrase(view, more, many=number != 1)
+    kind = noun_phrase(view, question.first, plural=number != 1)
     return known_answer(
-        f"there {is_or_are(number)} {number} {sense} {kind} than {noun_phrase(view, fewer, many=True)}: {a} and {b}"
+        f"there {is_or_are(number)} {number} {sense} {kind} than {noun_phrase(view, question.second, plural=True)}: {a} and {b}"
     )
 
 
-def _most_of(view: View, question: tree.CompareCount) -> TruthAnswer:
+def _answer_most_numerous(view: View, question: tree.CompareCount) -> TruthAnswer:
     """Answer "which are there most of: cars, vans or lorries?"."""
     kinds = [tree.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
     counts = [len(find(view, kind)) for kind in kinds]
-    best = (min if question.sense == "fewer" else max)(counts)
-    first = [noun_phrase(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
+    target = (min if question.sense == "fewer" else max)(counts)
+    first = [noun_phrase(view, kind, plural=True) for kind, count in zip(kinds, counts, strict=True) if count == target]
     listed = english.listing([english.counted(count, noun_phrase(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
     sense = "fewest" if question.sense == "fewer" else "most"
     verdict = f"there are {sense} {first[0]}" if len(first) == 1 else f"there are equally many {english.listing(first)}"
@@ -188,4 +188,4 @@ def answer_most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"
     if len(best) > 1:
         return known_answer(f"{english.listing(best)} are equally common ({target} each)")
-    return known_answer(f"the {kind} is {best[0]}: {target} of {len(matches)} {noun_phrase(view, question.what, many=True)}")
+    return known_answer(f"the {kind} is {best[0]}: {target} of {len(matches)} {noun_phrase(view, question.what, plural=True)}")

@@ -73,28 +73,30 @@ def _owner_of_part(view: View, what: tree.Description) -> Thing | None:
 
 def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -> str:
     """Describe the matching things: "there are 2 cars: a red car on the left and a white car in the middle"."""
-    worn = not find_excluding_wearers(view, what)
+    are_wearers = not find_excluding_wearers(view, what)
     if len(matches) == 1:
         return (
             f"there is {english.article(noun_phrase(view, what))} on {names_with_positions(matches)}"
-            if worn
+            if are_wearers
             else f"there is {names_with_positions(matches)}"
         )
-    statement = f"there are {len(matches)} {noun_phrase(view, what, many=True)}"
-    return f"{statement}{', on' if worn else ':'} {names_with_positions(matches)}" if len(matches) <= MAX_LISTED else statement
+    statement = f"there are {len(matches)} {noun_phrase(view, what, plural=True)}"
+    return (
+        f"{statement}{', on' if are_wearers else ':'} {names_with_positions(matches)}" if len(matches) <= MAX_LISTED else statement
+    )
 
 
 def answer_count(view: View, question: tree.Count) -> TruthAnswer:
     """Answer how many things match the description and the tests."""
     if background := unmodelled_background(view, question.what):
         return unknown_answer(f"I cannot tell: the scene says nothing about the {background}")
-    asked = add_tests(question.what, question.tests)
-    total = len(find(view, asked))
-    if not total and (place := unmodelled_place(view, asked)):
+    description = add_tests(question.what, question.tests)
+    total = len(find(view, description))
+    if not total and (place := unmodelled_place(view, description)):
         return unknown_answer(f"I cannot tell: the scene says nothing about the {place}")
     if len(question.what.phrases) > 1:
         return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
-    statement = f"{total or 'no'} {noun_phrase(view, question.what, many=total != 1)}"
+    statement = f"{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"
     if question.tests:
         return known_answer(f"{statement} {predicate_words(view, question.tests, total)}")
     return known_answer(f"there {is_or_are(total)} {statement} in view")
@@ -104,4 +106,4 @@ def _counts_per_phrase(view: View, question: tree.Count) -> str:
     """Return the count for each noun phrase in a description: "4 cars and 1 van"."""
     parts = [tree.Description((p,)) for p in question.what.phrases]
     counts = [(len(find(view, add_tests(p, question.tests))), p) for p in parts]
-    return english.listing([f"{n} {noun_phrase(view, p, many=n != 1)}" for n, p in counts])
+    return english.listing([f"{n} {noun_phrase(view, p, plural=n != 1)}" for n, p in counts])

@@ -18,7 +18,7 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
     """Answer with the text on a thing, its number plate, or all text in view."""
     if question.what is None:
         return _quote_texts(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
-    things = find(view.for_reading(), question.what)
+    things = find(view.with_cut_off_texts(), question.what)
     if not things and _PLATE_WORDS.issuperset(phrase.words for phrase in question.what.phrases):
         # "the number plate" names no vehicle, so the plates of all vehicles are read
         return answer_read(view, tree.Read(None, plate=True))
@@ -92,7 +92,7 @@ def answer_text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
         texts: Sequence[TextSighting] = view.texts
         where, place = "in view", ""
     else:
-        things = find(view.for_reading(), question.what)
+        things = find(view.with_cut_off_texts(), question.what)
         if not things:
             return unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")
         texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]

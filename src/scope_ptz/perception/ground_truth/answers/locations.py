@@ -34,7 +34,7 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_LOCATED = 3
 """Maximum number of things to locate individually. If there are more, they are counted by region of the frame."""
-_BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
+_NOT_REFERENCES = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
 def answer_where(view: View, question: tree.Where) -> TruthAnswer:
@@ -55,7 +55,7 @@ def answer_where(view: View, question: tree.Where) -> TruthAnswer:
         places = english.listing(
             [f"{english.article(coloured_name(t))} {position_words(t)} about {distance_words(t.distance_m)} away" for t in matches]
         )
-    return known_answer(f"there are {len(matches)} {noun_phrase(view, question.what, many=True)}: {places}")
+    return known_answer(f"there are {len(matches)} {noun_phrase(view, question.what, plural=True)}: {places}")
 
 
 def neighbour_words(view: View, thing: Thing) -> str:
@@ -63,7 +63,7 @@ def neighbour_words(view: View, thing: Thing) -> str:
     others = [
         t
         for t in view.top_level()
-        if t is not thing and t.name != thing.name and not t.concepts & _BACKDROP and thing.parent != t.id
+        if t is not thing and t.name != thing.name and not t.concepts & _NOT_REFERENCES and thing.parent != t.id
     ]
     nearby_things = [t for t in others if thing.gap_m(t) <= NEAR_M]
     if nearby_things:
@@ -93,17 +93,17 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
         return known_answer(none_in_view(view, missing))
     description = add_tests(question.what, question.tests)
     matches = find(view, description)
-    bearer = _text_bearer(question)
-    bearers = [] if bearer is None else find(view.for_reading(), bearer)
-    if bearers and (not matches or any("sign" in thing.concepts and thing.texts for thing in bearers)):
-        return answer_read(view, tree.Read(bearer))
+    thing_with_text = _thing_with_text(question)
+    things_with_text = [] if thing_with_text is None else find(view.with_cut_off_texts(), thing_with_text)
+    if things_with_text and (not matches or any("sign" in thing.concepts and thing.texts for thing in things_with_text)):
+        return answer_read(view, tree.Read(thing_with_text))
     if not matches:
         return _answer_no_match(view, question, description)
     return answer_matches(view, question.tests, _sort_by_nearness(view, question.tests, matches))
 
 
-def _text_bearer(question: tree.What) -> tree.Description | None:
-    """Return the thing, such as a sign, that "what is on the sign?" refers to; None for other questions."""
+def _thing_with_text(question: tree.What) -> tree.Description | None:
+    """Return the description of the thing whose text "what is on the sign?" asks for; None for other questions."""
     match question:
         case tree.What(
             what=tree.Description(phrases=(tree.Phrase(words=("thing",)),)), tests=(tree.Relation(kind="on", other=other),)
@@ -171,7 +171,7 @@ def answer_present(view: View, question: tree.Present) -> TruthAnswer:
 
 def _kind_with_article(view: View, kind: tree.Description) -> str:
     """Return a kind of thing in the words of the question: "a clock", "some clocks"."""
-    return f"some {noun_phrase(view, kind, many=True)}" if is_plural(kind) else english.article(noun_phrase(view, kind))
+    return f"some {noun_phrase(view, kind, plural=True)}" if is_plural(kind) else english.article(noun_phrase(view, kind))
 
 
 def answer_kind_of(view: View, question: tree.KindOf) -> TruthAnswer:
@@ -189,8 +189,8 @@ def answer_identify(view: View, question: tree.Identify) -> TruthAnswer:
     """Answer what a thing is. If the words name a fact ("the speed limit"), answer with that fact."""
     phrase = question.what.phrases[0]
     fact = answer_fact_in_view(view, phrase.words)
-    carried = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
-    if fact.known and carried and phrase.order is None:
+    has_only_on_tests = all(isinstance(t, tree.Relation) and t.kind == "on" for t in phrase.tests)
+    if fact.known and has_only_on_tests and phrase.order is None:
         return fact
     matches = find(view, question.what)
     if not matches:

@@ -46,7 +46,7 @@ def answer_quarter(view: View, question: tree.Quarter) -> TruthAnswer:
     if len(things) == 1:
         return known_answer(f"the {coloured_name(things[0])} is in the {_quarter_of(things[0])} quarter")
     places = english.listing([f"one in the {_quarter_of(thing)} quarter" for thing in things])
-    return known_answer(f"there are {len(things)} {noun_phrase(view, question.what, many=True)}: {places}")
+    return known_answer(f"there are {len(things)} {noun_phrase(view, question.what, plural=True)}: {places}")
 
 
 def _quarter_of(thing: Thing) -> str:

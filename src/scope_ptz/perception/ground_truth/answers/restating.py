@@ -9,7 +9,7 @@ from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.numerals import ORDINALS
-from scope_ptz.perception.ground_truth.relations import BACKDROP
+from scope_ptz.perception.ground_truth.relations import BACKGROUND_CONCEPTS
 from scope_ptz.perception.ground_truth.thing_search import split_after_noun
 from scope_ptz.perception.ground_truth.view import View
 
@@ -60,18 +60,18 @@ def _head_words(words: Sequence[str]) -> Sequence[str]:
     return words[:end]
 
 
-def noun_phrase(view: View, description: tree.Description, many: bool = False) -> str:
+def noun_phrase(view: View, description: tree.Description, plural: bool = False) -> str:
     """Return a description in words, without articles: "red cars behind the barrier"."""
     several = len(description.phrases) > 1
     return english.listing(
-        [_phrase_words(view, p, many or (several and is_plural(tree.Description((p,))))) for p in description.phrases]
+        [_phrase_words(view, p, plural or (several and is_plural(tree.Description((p,))))) for p in description.phrases]
     )
 
 
-def definite_phrase(view: View, description: tree.Description, many: bool = False) -> str:
+def definite_phrase(view: View, description: tree.Description, plural: bool = False) -> str:
     """Return a description with definite articles: "the red car", "the van and the lorry"."""
     if len(description.phrases) == 1:
-        words = noun_phrase(view, description, many)
+        words = noun_phrase(view, description, plural)
         return words if words.split()[-1].isdigit() and not description.phrases[0].tests else f"the {words}"  # "dock 6"
     return english.listing([f"the {_phrase_words(view, p, is_plural(tree.Description((p,))))}" for p in description.phrases])
 
@@ -91,14 +91,14 @@ def definite_as_asked(view: View, description: tree.Description) -> str:
     return definite_phrase(view, description, is_plural(description))
 
 
-def _phrase_words(view: View, phrase: tree.Phrase, many: bool) -> str:
+def _phrase_words(view: View, phrase: tree.Phrase, plural: bool) -> str:
     head, after = split_after_noun(view, phrase.words)
     if len(head) > 1 and head[0] in _PRONOUNS and head[0] != "traffic":  # "anyone buying bread"
         head, after = head[:1], (*head[1:], *after)
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
         return " ".join([*_ranked_words(view, phrase, " ".join(core)), *after, *_test_words(view, phrase)])
-    shown = english.plural(" ".join(core)) if many and not (after and english.is_plural(after[-1])) else " ".join(core)
+    shown = english.plural(" ".join(core)) if plural and not (after and english.is_plural(after[-1])) else " ".join(core)
     return " ".join([shown, *after, *_test_words(view, phrase)])
 
 
@@ -107,14 +107,16 @@ def _test_words(view: View, phrase: tree.Phrase) -> list[str]:
 
 
 def _ranked_words(view: View, phrase: tree.Phrase, core: str) -> list[str]:
-    nth = "" if phrase.ordinal is None else "last" if phrase.ordinal == -1 else _ordinal_word(phrase.ordinal)
+    ordinal = "" if phrase.ordinal is None else "last" if phrase.ordinal == -1 else _ordinal_word(phrase.ordinal)
     if phrase.order is None:
-        return [nth, core]
+        return [ordinal, core]
     if phrase.order.reference is not None:
-        return [x for x in (nth, core, SUPERLATIVES[phrase.order.key], "to", definite_as_asked(view, phrase.order.reference)) if x]
-    if nth and phrase.order.key in _FROM_SIDE:
-        return [nth, core, _FROM_SIDE[phrase.order.key]]
-    return [x for x in (nth, SUPERLATIVES[phrase.order.key], core) if x]
+        return [
+            x for x in (ordinal, core, SUPERLATIVES[phrase.order.key], "to", definite_as_asked(view, phrase.order.reference)) if x
+        ]
+    if ordinal and phrase.order.key in _FROM_SIDE:
+        return [ordinal, core, _FROM_SIDE[phrase.order.key]]
+    return [x for x in (ordinal, SUPERLATIVES[phrase.order.key], core) if x]
 
 
 def _ordinal_word(number: int) -> str:
@@ -126,8 +128,8 @@ def words_after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
         case tree.Has(what=what, worn=worn):
-            carried = any(p.words[-1] in _PRONOUNS for p in what.phrases)
-            return f"{'wearing' if worn else 'carrying' if carried else 'with'} {_item_phrases(what)}"
+            has_pronoun = any(p.words[-1] in _PRONOUNS for p in what.phrases)
+            return f"{'wearing' if worn else 'carrying' if has_pronoun else 'with'} {_item_phrases(what)}"
         case tree.Says(words=words):
             return f'saying "{" ".join(words).upper()}"' if words else "with text"
         case tree.Not(test=tree.Has(what=what)):
@@ -149,8 +151,8 @@ def _plain_test_words(view: View, test: tree.Test) -> str:
         case tree.Relation(kind=kind, other=other, preposition=preposition):
             return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {phrase_as_asked(view, other)}"
         case tree.Within(metres=metres, other=other, beyond=beyond):
-            of = f" of {phrase_as_asked(view, other)}" if other else ""
-            return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
+            reference = f" of {phrase_as_asked(view, other)}" if other else ""
+            return f"{'more than' if beyond else 'within'} {metres:g} m{reference}"
         case tree.Between(first=first, second=second):
             return f"between {phrase_as_asked(view, first)}" + ("" if first == second else f" and {phrase_as_asked(view, second)}")
         case tree.Region(sides=sides, half=half):
@@ -212,10 +214,10 @@ def _form_of_be(count: int, negated: bool) -> str:
     return ("is" if count == 1 else "are") + (" not" if negated else "")
 
 
-def _verb_form(many: str, one: str, count: int, negated: bool) -> str:
+def _verb_form(plural: str, singular: str, count: int, negated: bool) -> str:
     if negated:
-        return f"{'does' if count == 1 else 'do'} not {many}"
-    return one if count == 1 else many
+        return f"{'does' if count == 1 else 'do'} not {plural}"
+    return singular if count == 1 else plural
 
 
 def region_words(sides: Sequence[str], half: bool) -> str:
@@ -232,10 +234,10 @@ def region_words(sides: Sequence[str], half: bool) -> str:
 def none_in_view(view: View, description: tree.Description) -> str:
     """Return the statement that nothing matches: "there is no red car in view"."""
     description = tree.Description(tuple(replace(p, order=None, ordinal=None) for p in description.phrases))
-    many = is_plural(description)
+    plural = is_plural(description)
     only_one = len(description.phrases) > 1 and not any(is_plural(tree.Description((p,))) for p in description.phrases)
-    words = english.listing([noun_phrase(view, tree.Description((p,)), many and not only_one) for p in description.phrases], "or")
-    return f"there {'are' if many and not only_one else 'is'} no {words} in view"
+    words = english.listing([noun_phrase(view, tree.Description((p,)), plural and not only_one) for p in description.phrases], "or")
+    return f"there {'are' if plural and not only_one else 'is'} no {words} in view"
 
 
 def unmodelled_background(view: View, description: tree.Description) -> str:
@@ -257,4 +259,4 @@ def _background_in(view: View, phrase: tree.Phrase) -> str:
     spans = nouns_in(phrase.words, view.nouns)
     words = " ".join(phrase.words[slice(*spans[0])]) if spans else ""
     concept = lexicon().concept(words) if words else None
-    return words if concept and lexicon().kinds(concept) & BACKDROP and concept not in view.concepts else ""
+    return words if concept and lexicon().kinds(concept) & BACKGROUND_CONCEPTS and concept not in view.concepts else ""

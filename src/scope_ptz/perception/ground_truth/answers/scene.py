@@ -20,7 +20,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     position_words,
 )
 from scope_ptz.perception.ground_truth.answers.values import activity_of
-from scope_ptz.perception.ground_truth.relations import BACKDROP
+from scope_ptz.perception.ground_truth.relations import BACKGROUND_CONCEPTS
 from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES, COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -41,7 +41,7 @@ def answer_describe(view: View, question: tree.Describe) -> TruthAnswer:
         return _answer_load(view, question.tests) or answer_what(
             view, tree.What(tree.Description((tree.Phrase(("thing",)),)), question.tests)
         )
-    groups = _group_things(t for t in view.top_level() if not t.concepts & BACKDROP)
+    groups = _group_things(t for t in view.top_level() if not t.concepts & BACKGROUND_CONCEPTS)
     if not groups:
         return known_answer("I can see nothing that stands out")
     parts = english.listing(groups[:MAX_GROUPS])
@@ -67,7 +67,7 @@ def _describe_things(view: View, what: tree.Description, tests: tuple[tree.Test,
     if not matches:
         return known_answer(none_in_view(view, what))
     if len(matches) > MAX_TEXTS:
-        return known_answer(f"there are {len(matches)} {noun_phrase(view, what, many=True)}: {list_names(matches)}")
+        return known_answer(f"there are {len(matches)} {noun_phrase(view, what, plural=True)}: {list_names(matches)}")
     return TruthAnswer(" ".join(english.sentence(_thing_details(t)) for t in matches))
 
 
@@ -104,15 +104,16 @@ def _group_things(things: Iterable[Thing]) -> list[str]:
 
 def answer_happening(view: View) -> TruthAnswer:
     """Answer which things are moving or active. If there are none, describe the view."""
-    activities = Counter((t.category, doing) for t in view.top_level() if (doing := _activity_of(t)) is not None)
+    activities = Counter((t.category, activity) for t in view.top_level() if (activity := _activity_of(t)) is not None)
     if not activities:
         return TruthAnswer(f"Nothing is moving. {answer_describe(view, tree.Describe()).text}")
     parts = [
-        f"{english.article(k) if n == 1 else english.counted(n, k)} {is_or_are(n)} {doing}" for (k, doing), n in activities.items()
+        f"{english.article(k) if n == 1 else english.counted(n, k)} {is_or_are(n)} {activity}"
+        for (k, activity), n in activities.items()
     ]
     return known_answer(english.listing(parts[:MAX_GROUPS]))
 
 
 def _activity_of(thing: Thing) -> str | None:
-    doing = activity_of(thing)
-    return doing if doing not in NON_ACTIVITIES else "moving" if "moving" in fact_words(thing) else None
+    activity = activity_of(thing)
+    return activity if activity not in NON_ACTIVITIES else "moving" if "moving" in fact_words(thing) else None

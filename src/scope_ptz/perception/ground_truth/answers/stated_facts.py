@@ -1,4 +1,4 @@
-"""Answers about prices and times, which only texts state. Only legible text is reported."""
+"""Answers about prices and times, which are stated only in text. Only legible text is reported."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TIME = re.compile(
 
 
 @dataclass(frozen=True)
-class _Panel:
+class _ThingTexts:
     """The texts on one thing, such as a price card."""
 
     name: str
@@ -57,70 +57,70 @@ def answer_price(view: View, question: tree.Price) -> TruthAnswer:
     """Answer what something costs: with the price on its card, or in its line of a price list."""
     goods = [_content_words(phrase.words) for phrase in question.what.phrases]
     named = phrase_as_asked(view, tree.Description(tuple(replace(p, tests=()) for p in question.what.phrases)))
-    matches = find(view.for_reading(), question.what)
-    belonging = _panels(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
+    matches = find(view.with_cut_off_texts(), question.what)
+    belonging = _texts_by_thing(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
     has_tests = any(phrase.tests for phrase in question.what.phrases)
-    candidates = belonging if has_tests and belonging else _panels(view)
+    candidates = belonging if has_tests and belonging else _texts_by_thing(view)
     # A card or line that names the goods takes precedence over other texts on the same stall or crate.
-    panels = [p for p in candidates if any(words <= p.words for words in goods)]
-    prices = list(dict.fromkeys(price for panel in panels for price in _prices_on(panel, goods)))
-    if not prices and not any(words <= _words(p.name) for p in panels for words in goods):
-        panels = belonging
-        prices = list(dict.fromkeys(price for panel in panels for price in _prices_on(panel, goods)))
+    groups = [p for p in candidates if any(words <= p.words for words in goods)]
+    prices = list(dict.fromkeys(price for group in groups for price in _prices_on(group, goods)))
+    if not prices and not any(words <= _words(p.name) for p in groups for words in goods):
+        groups = belonging
+        prices = list(dict.fromkeys(price for group in groups for price in _prices_on(group, goods)))
     if len({price for _, price in prices}) == 1:
         return known_answer(f"the price of {named} is {prices[0][1]}")
     if prices:
         labels = {label for label, _ in prices}
         listed = [f"{price} for {label}" if len(labels) > 1 and label else price for label, price in prices]
         return known_answer(f"there are {len(prices)} prices for {named}: {english.listing(listed)}")
-    return _illegible(panels, f"the price of {named}") or unknown_answer(
+    return _illegible_answer(groups, f"the price of {named}") or unknown_answer(
         f"I cannot tell: nothing that I can read in view states the price of {named}"
     )
 
 
-def _prices_on(panel: _Panel, goods: Sequence[frozenset[str]]) -> list[tuple[str, str]]:
-    """Return the labels and prices for goods on a panel. Lines of a price list count only if they name the goods."""
-    lines = [(line, prices[0]) for line in panel.legible if (prices := _PRICE.findall(line))]
-    label = " ".join(line.lower() for line in panel.legible if not _PRICE.search(line))
+def _prices_on(group: _ThingTexts, goods: Sequence[frozenset[str]]) -> list[tuple[str, str]]:
+    """Return the labels and prices for goods in the texts on one thing. Lines of a price list count only if they name the goods."""
+    lines = [(line, prices[0]) for line in group.legible if (prices := _PRICE.findall(line))]
+    label = " ".join(line.lower() for line in group.legible if not _PRICE.search(line))
     if len(lines) == 1 and lines[0][0].strip() == lines[0][1]:
         return [(label, lines[0][1])]
     return [("", price) for line, price in lines if any(words <= _words(line) for words in goods)]
 
 
 def answer_time(view: View, question: tree.Time) -> TruthAnswer:
-    """Answer when something opens, closes or happens: with a text that states a time and is on the thing or names it."""
+    """Answer when something opens, closes or happens: with text that states a time and is on the thing or names it."""
     heads = tree.Description(tuple(replace(p, words=split_after_noun(view, p.words)[0]) for p in question.what.phrases))
-    matches = [t for what in (question.what, heads) for t in find(view.for_reading(), what)]
-    belonging = _panels(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
+    matches = [t for what in (question.what, heads) for t in find(view.with_cut_off_texts(), what)]
+    belonging = _texts_by_thing(view, lambda parent: any(view.belongs(parent, t.id) for t in matches))
     named = [
-        panel
+        group
         for what in (question.what, heads)
-        for panel in _panels(view)
-        if any(_content_words(phrase.words) <= panel.legible_words for phrase in what.phrases)
+        for group in _texts_by_thing(view)
+        if any(_content_words(phrase.words) <= group.legible_words for phrase in what.phrases)
     ]
-    for panel in (*belonging, *named):
-        if any(_TIME.search(text) for text in panel.legible):
-            quoted = [f'"{text}"' for text in panel.legible]
-            return known_answer(f"the {panel.name} reads {english.listing(quoted)}")
+    for group in (*belonging, *named):
+        if any(_TIME.search(text) for text in group.legible):
+            quoted = [f'"{text}"' for text in group.legible]
+            return known_answer(f"the {group.name} reads {english.listing(quoted)}")
     subject = phrase_as_asked(view, heads)
-    return _illegible(belonging, f"the text about {subject}") or unknown_answer(
+    return _illegible_answer(belonging, f"the text about {subject}") or unknown_answer(
         f"I cannot tell: nothing that I can read in view states a time for {subject}"
     )
 
 
-def _illegible(panels: Sequence[_Panel], what: str) -> TruthAnswer | None:
-    """Return the answer that a text is on a panel, but cannot be read; None if no text on the panels is illegible."""
-    panel = next((p for p in panels if not all(t.legible for t in p.texts)), None)
-    if panel is None:
+def _illegible_answer(groups: Sequence[_ThingTexts], what: str) -> TruthAnswer | None:
+    """Return the answer that the text is on a certain thing, but cannot be read; None if all texts are legible."""
+    group = next((p for p in groups if not all(t.legible for t in p.texts)), None)
+    if group is None:
         return None
-    reason = illegibility_reason([t for t in panel.texts if not t.legible])
-    return unknown_answer(f"{what} is on the {panel.name}, but it is {reason} to read")
+    reason = illegibility_reason([t for t in group.texts if not t.legible])
+    return unknown_answer(f"{what} is on the {group.name}, but it is {reason} to read")
 
 
-def _panels(view: View, includes: Callable[[str], bool] = lambda _: True) -> list[_Panel]:
+def _texts_by_thing(view: View, includes: Callable[[str], bool] = lambda _: True) -> list[_ThingTexts]:
     """Return the texts in view, grouped by the thing that they are on. ``includes`` selects things by id."""
     parents = dict.fromkeys(t.text.parent for t in view.texts if includes(t.text.parent))
-    return [_Panel(view.instances[parent].name, tuple(t for t in view.texts if t.text.parent == parent)) for parent in parents]
+    return [_ThingTexts(view.instances[parent].name, tuple(t for t in view.texts if t.text.parent == parent)) for parent in parents]
 
 
 def _content_words(words: Iterable[str]) -> frozenset[str]:

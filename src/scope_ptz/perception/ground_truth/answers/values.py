@@ -67,27 +67,27 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     values = [(t, value_of(t, question.attribute)) for t in matches]
     stated = [(t, v) for t, v in values if v is not None]
     if not stated:
-        attribute, who = " ".join(question.attribute), definite_as_asked(view, question.what)
-        missing = f"what {who} is {attribute}" if attribute.endswith("ing") else f"the {attribute} of {who}"
+        attribute, subject = " ".join(question.attribute), definite_as_asked(view, question.what)
+        missing = f"what {subject} is {attribute}" if attribute.endswith("ing") else f"the {attribute} of {subject}"
         return unknown_answer(f"I cannot tell: the scene does not state {missing}")
-    verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
-    if verb == "facing " and all("direction" in t.attributes for t, _ in stated):
-        verb = "pointing "
+    prefix = next((v for words, v in _VALUE_PREFIXES.items() if set(words.split()) & set(question.attribute)), "")
+    if prefix == "facing " and all("direction" in t.attributes for t, _ in stated):
+        prefix = "pointing "
     if question.attribute[-1] in COLOUR_KEYS and is_person(question.what.phrases[0].words):
-        verb = "wearing "  # the scene states the colours of people's clothes
+        prefix = "wearing "  # the scene states the colours of people's clothes
     distinct = Counter(v for _, v in stated)
     if len(distinct) == 1:
-        who = definite_phrase(view, question.what, many=len(stated) > 1)
-        return known_answer(f"{who} {is_or_are(len(stated))} {verb}{stated[0][1]}")
+        subject = definite_phrase(view, question.what, plural=len(stated) > 1)
+        return known_answer(f"{subject} {is_or_are(len(stated))} {prefix}{stated[0][1]}")
     if not is_plural(question.what) and len(stated) <= 4:
         things = [f"{t.category} {position_words(t)}" for t, _ in stated]
-        which = "the" if len(set(things)) == len(things) else "one"
+        determiner = "the" if len(set(things)) == len(things) else "one"
         return known_answer(
-            english.listing([f"{which} {thing} is {verb}{v}" for thing, (_, v) in zip(things, stated, strict=True)])
+            english.listing([f"{determiner} {thing} is {prefix}{v}" for thing, (_, v) in zip(things, stated, strict=True)])
         )
     return known_answer(
-        f"{len(stated)} {noun_phrase(view, question.what, many=True)}: "
-        + english.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
+        f"{len(stated)} {noun_phrase(view, question.what, plural=True)}: "
+        + english.listing([f"{n} {prefix}{v}" for v, n in distinct.most_common()])
     )
 
 
@@ -104,8 +104,8 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
         keys = {canonical_form(english.singular(x)) for x in key_words(key)}
         if requested <= keys or keys & synonyms or keys <= requested:
             return _value_words(key, value)
-    if set(attribute) & _ACTIVITY_WORDS and (pose := activity_of(thing)) is not None:
-        return pose
+    if set(attribute) & _ACTIVITY_WORDS and (activity := activity_of(thing)) is not None:
+        return activity
     if set(attribute) & _ACTIVITY_WORDS:
         states = fact_words(thing) & {"moving", "stationary", "walking", "working", "upright", "sitting"}
         return min(states, default=None)
@@ -115,13 +115,13 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
     return None
 
 
-_VERBS = {
+_VALUE_PREFIXES = {
     "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
     "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
 }  # fmt: skip
 """The words between "is" and the value of an attribute, by the words that ask for the attribute."""
 # Activities in scene files, and the words for them in answers.
-_GERUNDS = {
+_ACTIVITY_PHRASES = {
     "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
     "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
     "work": "working", "wave": "waving", "dig": "digging", "drive": "driving",
@@ -132,7 +132,7 @@ def activity_of(thing: Thing) -> str | None:
     """Return the stated activity of a person or machine; None if the scene states none."""
     for key in ("activity", "action", "doing", "task", "pose", "state"):
         if isinstance(value := thing.attributes.get(key), str):
-            return _GERUNDS.get(value, value)
+            return _ACTIVITY_PHRASES.get(value, value)
     return None
 
 
@@ -211,7 +211,7 @@ def answer_fact_in_view(view: View, attribute: Sequence[str]) -> TruthAnswer:
         return known_answer(f"the {' '.join(attribute)} is {english.listing(values)}")
     signs = find(view, tree.Description((tree.Phrase(tuple(attribute)),)))
     if "limit" in attribute:
-        signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
+        signs = [t for t in (signs or view.with_cut_off_texts().things) if any(x.strip().isdigit() for x in t.texts)] or signs
     return answer_from_signs(view, signs, " ".join(attribute)) or unknown_answer(
         f"I cannot tell: nothing in view says the {' '.join(attribute)}"
     )

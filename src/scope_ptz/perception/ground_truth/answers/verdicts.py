@@ -62,13 +62,17 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     answers = [_all_hold([holds(view, t, test) for test in tests]) for t in things]
     if (None in answers or any(_is_unknown_place(view, t) for t in tests)) and True not in answers:
         predicate = english.listing([words_after_noun(view, t) for t in tests])
-        anyone = subject.phrases[0].words[0] in _ANYBODY_WORDS
-        who = "anyone" if anyone else definite_as_asked(view, subject)
-        return unknown_answer(f"I cannot tell whether {who} {'are' if is_plural(subject) and not anyone else 'is'} {predicate}")
+        is_anyone = subject.phrases[0].words[0] in _ANYBODY_WORDS
+        subject_words = "anyone" if is_anyone else definite_as_asked(view, subject)
+        return unknown_answer(
+            f"I cannot tell whether {subject_words} {'are' if is_plural(subject) and not is_anyone else 'is'} {predicate}"
+        )
     choice = _answer_choice(view, subject, tests, things)
     if choice is not None:
         return choice
-    return _answer_verdict(view, question.scope, subject, tests, things, [t for t, ok in zip(things, answers, strict=True) if ok])
+    return _answer_verdict(
+        view, question.scope, subject, tests, things, [t for t, answer in zip(things, answers, strict=True) if answer]
+    )
 
 
 def _unstated_activity(view: View, subject: tree.Description) -> str:
@@ -85,7 +89,7 @@ def _answer_as_text(view: View, subject: tree.Description, tests: tuple[tree.Tes
     phrase = subject.phrases[0]
     if len(tests) != 1 or not isinstance(tests[0], tree.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
         return None
-    texts = [text for t in find(view.for_reading(), tests[0].other) for text in t.texts]
+    texts = [text for t in find(view.with_cut_off_texts(), tests[0].other) for text in t.texts]
     if not texts:
         return None
     requested = english.letters(" ".join(phrase.words))
@@ -179,18 +183,20 @@ def _answer_choice(view: View, subject: tree.Description, tests: Sequence[tree.T
         return known_answer(f"the {coloured_name(things[0])} {predicate_words(view, true_options, 1)}")
     if true_options:
         counts = [(sum(holds(view, t, o) is True for t in things), o) for o in true_options]
-        many = noun_phrase(view, subject, many=True)
+        plural_noun = noun_phrase(view, subject, plural=True)
         if len(counts) == 1 and counts[0][0] == total:
-            return known_answer(f"{_all(total)} {many} {predicate_words(view, true_options, total)}")
+            return known_answer(f"{_all_words(total)} {plural_noun} {predicate_words(view, true_options, total)}")
         (first, option), *rest = counts
         others = [f"{n} {predicate_words(view, [o], n)}" for n, o in rest]
-        return known_answer(english.listing([f"{first} of the {total} {many} {predicate_words(view, [option], first)}", *others]))
+        return known_answer(
+            english.listing([f"{first} of the {total} {plural_noun} {predicate_words(view, [option], first)}", *others])
+        )
     fact = _actual_value(view, options[0], things)
     return known_answer(f"neither: {fact}") if fact else None
 
 
 def _answer_verdict(
-    view: View, scope: str, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], yes: list[Thing]
+    view: View, scope: str, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], matches: list[Thing]
 ) -> TruthAnswer:
     """Answer yes or no, with the number of things for which the tests hold.
 
@@ -200,28 +206,28 @@ def _answer_verdict(
         subject: The description of the things in question.
         tests: The tests.
         things: The things in question.
-        yes: Those of ``things`` for which the tests hold.
+        matches: Those of ``things`` for which the tests hold.
     """
-    total, many = len(things), noun_phrase(view, subject, many=True)
+    total, plural_noun = len(things), noun_phrase(view, subject, plural=True)
     if any(p.words[-1] in _EVERYBODY_WORDS for p in subject.phrases if p.words):
         scope = "all"
-    some = scope == "any" or any(p.words[-1] in _ANYBODY_WORDS for p in subject.phrases if p.words)
-    share = f"{len(yes)} of the {total} {many} {predicate_words(view, tests, len(yes))}"
+    asks_any = scope == "any" or any(p.words[-1] in _ANYBODY_WORDS for p in subject.phrases if p.words)
+    share = f"{len(matches)} of the {total} {plural_noun} {predicate_words(view, tests, len(matches))}"
     if scope == "none":
-        return known_answer(f"no, {share}" if yes else f"yes, none of the {many} {predicate_words(view, tests, total)}")
-    if not yes:
-        return _answer_no(view, subject, tests, things, some=some)
-    if len(yes) == total:
+        return known_answer(f"no, {share}" if matches else f"yes, none of the {plural_noun} {predicate_words(view, tests, total)}")
+    if not matches:
+        return _answer_no(view, subject, tests, things, asks_any=asks_any)
+    if len(matches) == total:
         several = total > 1 and len(subject.phrases) == 1
-        every = f"{_all(total)} {many}" if several else _subject_words(view, subject, total)
+        every = f"{_all_words(total)} {plural_noun}" if several else _subject_words(view, subject, total)
         return known_answer(f"yes, {every} {predicate_words(view, tests, total)}")
-    if scope == "all" or (is_plural(subject) and not some):
+    if scope == "all" or (is_plural(subject) and not asks_any):
         return known_answer(f"no, only {share}")
-    where = f": the one {position_words(yes[0])}" if len(yes) == 1 else ""
+    where = f": the one {position_words(matches[0])}" if len(matches) == 1 else ""
     return known_answer(f"yes, {share}{where}")
 
 
-def _all(total: int) -> str:
+def _all_words(total: int) -> str:
     """Return "both", or "all" followed by the number of things. Numbers up to twelve are words."""
     return "both" if total == 2 else f"all {english.number_word(total) if total <= _MAX_SPELLED_NUMBER else total}"
 
@@ -230,21 +236,20 @@ _MAX_SPELLED_NUMBER = 12
 
 
 def _answer_no(
-    view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], *, some: bool
+    view: View, subject: tree.Description, tests: tuple[tree.Test, ...], things: list[Thing], *, asks_any: bool
 ) -> TruthAnswer:
-    """Answer no, and state the actual value if it is known. ``some`` is True if the question asks about any of the things."""
-    total, union = len(things), len(subject.phrases) > 1
-    if total > 1 and not union and len(tests) == 1 and isinstance(tests[0], tree.Not):
+    """Answer no, and state the actual value if it is known. ``asks_any`` is True if the question asks about any of the things."""
+    total, has_several_phrases = len(things), len(subject.phrases) > 1
+    if total > 1 and not has_several_phrases and len(tests) == 1 and isinstance(tests[0], tree.Not):
         # Avoid "none of them does not wear a helmet".
-        return known_answer(
-            f"no, {_all(total)} {noun_phrase(view, subject, many=True)} in view {predicate_words(view, [tests[0].test], total)}"
-        )
-    fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not union else None
+        plural_noun = noun_phrase(view, subject, plural=True)
+        return known_answer(f"no, {_all_words(total)} {plural_noun} in view {predicate_words(view, [tests[0].test], total)}")
+    fact = _actual_value(view, tests[-1], things) if len(tests) == 1 and not has_several_phrases else None
     if fact:
         return known_answer(f"no, {fact}")
-    if some or (total > 1 and not union):
+    if asks_any or (total > 1 and not has_several_phrases):
         return known_answer(
-            f"no, none of the {total} {noun_phrase(view, subject, many=True)} in view {predicate_words(view, tests, total)}"
+            f"no, none of the {total} {noun_phrase(view, subject, plural=True)} in view {predicate_words(view, tests, total)}"
         )
     return known_answer(f"no, {_subject_words(view, subject, total)} {predicate_words(view, tests, total, negated=True)}")
 

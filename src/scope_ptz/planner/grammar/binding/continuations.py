@@ -55,7 +55,7 @@ def continued_text(instruction: str, conversation: Sequence[PastTurn], presets: 
 
 
 def continued_texts(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> list[str]:
-    """Return what each of the latest turns stands for, such as "pan left a bit" for "a bit more"."""
+    """Return the full instruction of each of the latest turns, such as "pan left a bit" for "a bit more"."""
     recent = conversation[-_MAX_TURNS:]
     texts: list[str] = []
     for i, turn in enumerate(recent):
@@ -67,7 +67,7 @@ def question_about_other_way(instruction: str, conversation: Sequence[PastTurn],
     """Return the question about "the other way" after a turn that panned left; None for other instructions."""
     if not _OTHER_WAY.fullmatch(instruction.strip()):
         return None
-    last = _last_way(continued_texts(conversation, presets), presets)
+    last = _last_direction(continued_texts(conversation, presets), presets)
     if last is None:
         return None
     axis, way = last
@@ -76,24 +76,24 @@ def question_about_other_way(instruction: str, conversation: Sequence[PastTurn],
 
 
 def _continues(instruction: str) -> bool:
-    """Return whether an instruction has the form of one that refers to an earlier turn."""
+    """Return whether the wording of an instruction refers to an earlier turn."""
     said = instruction.strip()
     forms = (_AMOUNT, _NEIGHBOUR, _SAME, _MORE, _PICTURES, _NOW, _FOR)
     return any(form.fullmatch(said) for form in forms) or _CORRECTION.match(said) is not None
 
 
 def _continued(instruction: str, conversation: Sequence[PastTurn], texts: Sequence[str], presets: tuple[str, ...]) -> str:
-    """Return what an instruction stands for. ``texts`` holds what the earlier turns stand for."""
+    """Return the full instruction that a short one stands for. ``texts`` holds the full instructions of the earlier turns."""
     said = instruction.strip()
     asked = _ASKED.fullmatch(conversation[-1].reply) if conversation else None
     if asked is not None and (amount := _AMOUNT.fullmatch(said)):
         return f"{asked[1]} {amount['number']} degrees"
     if (neighbour := _neighbour(said, conversation, presets)) is not None:
         return f"go to preset {neighbour}"
-    if texts and (changed := _changed_turn(said, texts[-1], presets)) is not None:
+    if texts and (changed := _changed_instruction(said, texts[-1], presets)) is not None:
         return changed
     match = _MORE.fullmatch(said)
-    last = _last_way(texts, presets) if match or _SAME.fullmatch(said) else None
+    last = _last_direction(texts, presets) if match or _SAME.fullmatch(said) else None
     if last is None:
         return instruction
     if match is None:
@@ -105,8 +105,8 @@ def _continued(instruction: str, conversation: Sequence[PastTurn], texts: Sequen
     return f"{axis} {way} {number} degrees" if number else f"{axis} {way} a bit"
 
 
-def _last_way(texts: Sequence[str], presets: tuple[str, ...]) -> tuple[str, str] | None:
-    """Return the axis and the direction of the last move, if the last turn that did anything only moved along one axis."""
+def _last_direction(texts: Sequence[str], presets: tuple[str, ...]) -> tuple[str, str] | None:
+    """Return the axis and direction of the move that ended the last turn; None unless it moved a single axis."""
     for text in reversed(texts):
         steps = parse(text, presets).steps
         if not steps or all(isinstance(step, ast.DoAgain | ast.Unclear) for step in steps):
@@ -123,8 +123,8 @@ def _last_way(texts: Sequence[str], presets: tuple[str, ...]) -> tuple[str, str]
     return None
 
 
-def _changed_turn(said: str, last: str, presets: tuple[str, ...]) -> str | None:
-    """Return the last instruction with a correction or an addition: "no, the yard", "for 20 seconds"; None otherwise."""
+def _changed_instruction(said: str, last: str, presets: tuple[str, ...]) -> str | None:
+    """Return the last instruction as changed by a correction or addition ("no, the yard", "for 20 seconds"); None for others."""
     steps = parse(last, presets).steps or ()
     if len(steps) != 1:
         return None
@@ -143,7 +143,7 @@ def _changed_turn(said: str, last: str, presets: tuple[str, ...]) -> str | None:
 
 
 def _neighbour(said: str, conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> str | None:
-    """Return the preset after or before the last one that was visited, if the instruction asks for it; otherwise None."""
+    """Return the preset before or after the one visited last, if the instruction asks for it; otherwise None."""
     match = _NEIGHBOUR.fullmatch(said)
     outcomes = [outcome for turn in conversation for exchange in turn.exchanges for outcome in exchange.outcomes]
     visited = [str(o.call.arguments.get("name")) for o in outcomes if o.call.name == "go_to_preset" and o.error is None]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.question_text import which_has
+from scope_ptz.planner.grammar.binding.question_text import bare_comparison
 from scope_ptz.planner.grammar.execution.comparison_sentences import presets_of_rank
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 
-def compared_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Return the preset that the last turn with calls found to show the most or the fewest, or several in a tie.
+def earlier_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Return the preset that won the comparison of the last turn with tool calls, or several presets in a tie.
 
     None if that turn did not compare presets.
     """
@@ -35,7 +35,7 @@ def compared_winners(conversation: Sequence[PastTurn], presets: tuple[str, ...])
 
 
 def _comparison_of(step: ast.Step) -> ast.WhichPreset | None:
-    """Return a step that compares presets, or what "which has more?" stands for; None for other steps."""
-    if isinstance(step, ast.Ask) and (way := which_has(step.question)) is not None:
+    """Return a step as a comparison of presets, which "which has more?" also asks for; None for other steps."""
+    if isinstance(step, ast.Ask) and (way := bare_comparison(step.question)) is not None:
         return ast.WhichPreset(ast.Thing(), way)
     return step if isinstance(step, ast.WhichPreset) else None

@@ -78,8 +78,8 @@ def _wh_question(phrase: str) -> str | None:
     if match := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
         return f"{match[1]} {match[3]} {match[2]}{match[4] or ''}"
     if match := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
-        many = re.match(r"they|these|those", match[2], re.IGNORECASE)
-        return f"{match[1]} {'do' if many else 'does'} {match[2]} {_BASE_FORMS[match[3].lower()]}{match[4] or ''}"
+        plural = re.match(r"they|these|those", match[2], re.IGNORECASE)
+        return f"{match[1]} {'do' if plural else 'does'} {match[2]} {_BASE_FORMS[match[3].lower()]}{match[4] or ''}"
     if match := re.fullmatch(r"what(?:'s| is) happening(.*)", phrase, re.IGNORECASE):
         return f"what is happening{match[1]}"
     return None
@@ -92,9 +92,9 @@ def _noun_question(phrase: str) -> str | None:
     if _QUESTION_WORD.match(phrase):
         return None
     head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", phrase)[0]
-    many = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)
+    plural = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)
     return (
-        f"what {'are' if many else 'is'} {phrase}"
+        f"what {'are' if plural else 'is'} {phrase}"
         if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", phrase, re.IGNORECASE)
         else None
     )

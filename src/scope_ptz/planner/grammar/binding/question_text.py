@@ -34,7 +34,7 @@ _WINNER = re.compile(
     rf"|{_HAS_MORE}",
     re.IGNORECASE,
 )
-_SHARE = re.compile(r"how many (?:of them )?(?:are|were) (\w+ing\b[^?]*)\?*", re.IGNORECASE)
+_PREDICATE = re.compile(r"how many (?:of them )?(?:are|were) (\w+ing\b[^?]*)\?*", re.IGNORECASE)
 _WHICH_HAS = re.compile(_HAS_MORE, re.IGNORECASE)
 _ANY_THERE = re.compile(
     r"(?:is there|are there|(?:can|do) you see|do we have|have we got|is|are) "
@@ -58,15 +58,15 @@ def is_answered_by_counts(question: str) -> bool:
     return bool(_WINNER.fullmatch(question.strip()) or _ANY_THERE.fullmatch(question.strip()))
 
 
-def which_has(question: str) -> Literal["more", "fewer"] | None:
-    """Return the comparison in a question that names no objects, such as "which has more?"; None for other questions."""
+def bare_comparison(question: str) -> Literal["more", "fewer"] | None:
+    """Return the comparison of a question that names no objects, such as "which has more?"; None for other questions."""
     match = _WHICH_HAS.fullmatch(question.strip())
     return None if match is None else "more" if match[1].lower().startswith("mo") else "fewer"
 
 
-def counted_share(question: str) -> str:
-    """Return "sitting down" for "how many are sitting down?", which asks about the things of the last count; empty for others."""
-    match = _SHARE.fullmatch(question.strip())
+def how_many_predicate(question: str) -> str:
+    """Return "sitting down" for "how many are sitting down?", which asks about the objects counted last; empty for others."""
+    match = _PREDICATE.fullmatch(question.strip())
     return match[1] if match else ""
 
 

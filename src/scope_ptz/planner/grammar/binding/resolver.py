@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural, listing
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.earlier_comparison import compared_winners
+from scope_ptz.planner.grammar.binding.earlier_comparison import earlier_winners
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.binding.plain_questions import plain_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly, match_preset, plausible_name
 from scope_ptz.planner.grammar.binding.question_text import (
-    counted_share,
+    bare_comparison,
+    how_many_predicate,
     is_about_the_future,
     is_answered_by_counts,
     is_impersonal,
@@ -23,7 +24,6 @@ from scope_ptz.planner.grammar.binding.question_text import (
     sought_thing,
     split_at_preset,
     two_questions,
-    which_has,
     with_antecedent,
 )
 from scope_ptz.planner.grammar.execution.answer_sentences import noun
@@ -71,24 +71,24 @@ class Resolver:
         conversation: The earlier turns, to which pronouns may refer.
         antecedent: The description that a pronoun refers to.
         preset: The preset that "there" refers to.
-        compared: Whether an earlier step compares presets.
-        counted: Whether an earlier step counts something.
+        has_compared: Whether an earlier step compares presets.
+        has_counted: Whether an earlier step counts something.
         whole_scene: Whether questions are about the whole scene instead of the current view.
-        still: Whether the camera must not move.
-        looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
-        counts: The presets at which earlier turns counted something, each with the description.
+        must_not_move: Whether the camera must not move.
+        has_looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
+        earlier_counts: The presets at which earlier turns counted objects, each with the objects' description.
     """
 
     presets: tuple[str, ...] | None
     conversation: tuple[PastTurn, ...] = ()
     antecedent: str = ""
     preset: str = ""
-    compared: bool = False
-    counted: bool = False
+    has_compared: bool = False
+    has_counted: bool = False
     whole_scene: bool = False
-    looked: bool = False
-    still: bool = False
-    counts: list[tuple[str, str]] = field(default_factory=list)
+    has_looked: bool = False
+    must_not_move: bool = False
+    earlier_counts: list[tuple[str, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         at = ""  # the preset at which the camera was
@@ -101,7 +101,7 @@ class Resolver:
                         self.preset = str(arguments.get("name", ""))
                         at = self.preset
                     elif outcome.call.name == "count_objects" and at:
-                        self.counts.append((at, str(arguments.get("description", ""))))
+                        self.earlier_counts.append((at, str(arguments.get("description", ""))))
                     elif outcome.call.name in {"adjust_ptz", "go_home", "zoom_to_object", "track_object"}:
                         at = ""
 
@@ -118,13 +118,13 @@ class Resolver:
         out: list[ast.Step] = []
         for step in steps:
             bound = self._bind(self._completed(step, out))
-            self.looked = self.looked or isinstance(step, _LOOKS)
+            self.has_looked = self.has_looked or isinstance(step, _LOOKS)
             again = bool(out) and [_target(s) for s in bound] == [_target(out[-1])] != [""]
             out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Apply the verb of the previous step to a step without one, as in "read the left sign and then the right one"."""
+        """Complete a step that lacks a verb, as in "read the left sign and then the right one", or that tests the last count."""
         last = before[-1] if before else None
         if (
             isinstance(step, ast.If)
@@ -168,7 +168,7 @@ class Resolver:
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
-        """Return a reference with the exact name of one of the presets."""
+        """Return a reference with the exact name of the preset that it means."""
         preset = self.find_place(ref)
         if preset is None:
             if self.presets is None:
@@ -179,7 +179,7 @@ class Resolver:
         return ast.PresetRef(preset, explicit=True)
 
     def find_place(self, ref: ast.PresetRef) -> str | None:
-        """Return the name of the preset that is referred to; None if there is no such preset."""
+        """Return the name of the preset that a reference means; None if there is no such preset."""
         if self.presets is None:
             if not ref.explicit and not plausible_name(ref.name):
                 return None
@@ -228,9 +228,9 @@ class Resolver:
         return [ast.GoToPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
-        if self.compared:
+        if self.has_compared:
             return [step]
-        if (winners := compared_winners(self.conversation, self.presets or ())) is not None:
+        if (winners := earlier_winners(self.conversation, self.presets or ())) is not None:
             if len(winners) != 1:
                 raise UnresolvedError(f"Where is 'there'? {listing(winners, 'and')} show the same number.")
             return [ast.GoToPreset(ast.PresetRef(winners[0], explicit=True))]
@@ -246,7 +246,7 @@ class Resolver:
         return [replace(step, of=self.thing(step.of))]
 
     def _count(self, step: ast.Count) -> Sequence[ast.Step]:
-        self.counted = True
+        self.has_counted = True
         return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
 
     def _tally(self, part: ast.Tally) -> ast.Tally:
@@ -263,24 +263,24 @@ class Resolver:
         return tuple(self._tally(part) for part in every)
 
     def _total(self, step: ast.Total) -> Sequence[ast.Step]:
-        self.counted = True
+        self.has_counted = True
         return [ast.Total(self._tallies(step.parts))]
 
     def _difference(self, step: ast.Difference) -> Sequence[ast.Step]:
-        self.counted = True
+        self.has_counted = True
         return [ast.Difference(self._tally(step.first), self._tally(step.second))]
 
     def _rankcounts(self, step: ast.RankCounts) -> Sequence[ast.Step]:
-        self.counted = True
+        self.has_counted = True
         return [replace(step, parts=self._tallies(step.parts))]
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
-        if self.counted and is_answered_by_counts(step.question):
+        if self.has_counted and is_answered_by_counts(step.question):
             return []
-        if self.conversation and (said := counted_share(step.question)) and is_plural(self.antecedent.split(" ")[-1]):
-            return self._count(ast.Count((ast.Thing(f"{self.antecedent} {said}"),), step.view))
-        if way := which_has(step.question):
-            return self._bind(self._earlier_comparison(way))
+        if self.conversation and (predicate := how_many_predicate(step.question)) and is_plural(self.antecedent.split(" ")[-1]):
+            return self._count(ast.Count((ast.Thing(f"{self.antecedent} {predicate}"),), step.view))
+        if comparison := bare_comparison(step.question):
+            return self._bind(self._earlier_comparison(comparison))
         if is_request_to_describe(step.question):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(f"{step.question} {self.antecedent if 'time' in step.question else ''}"):
@@ -290,23 +290,23 @@ class Resolver:
         if is_about_the_future(step.question, embedded=step.embedded):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         asked, close_up = plain_question(step.question)
-        question, place = self._asked_at(direct_question(asked) if step.embedded else asked)
+        question, place = self._question_and_place(direct_question(asked) if step.embedded else asked)
         question = with_antecedent(question, self.antecedent)
         self.antecedent = sought_thing(question) or self.antecedent
-        zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.still else []
+        zoom = [ast.ZoomTo(self.thing(ast.Thing(close_up, definite=True)))] if close_up and not self.must_not_move else []
         return [*place, *zoom, ast.Ask(question, self._view(step.view))]
 
-    def _earlier_comparison(self, way: ast.Comparison) -> ast.WhichPreset:
+    def _earlier_comparison(self, comparison: ast.Comparison) -> ast.WhichPreset:
         """Return the comparison of the two presets at which earlier turns last counted the same thing."""
-        for place, description in reversed(self.counts[:-1]):
-            last, counted = self.counts[-1]
+        for place, description in reversed(self.earlier_counts[:-1]):
+            last, counted = self.earlier_counts[-1]
             if place != last and description == counted:
                 places = tuple(ast.PresetRef(name, explicit=True) for name in (place, last))
-                return ast.WhichPreset(ast.Thing(counted), way, places)
+                return ast.WhichPreset(ast.Thing(counted), comparison, places)
         raise UnresolvedError("Which presets shall I compare, and what shall I count there?")
 
-    def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
-        """Split a question that ends with a preset ("... at gate?") into the question and a step to the preset."""
+    def _question_and_place(self, question: str) -> tuple[str, list[ast.Step]]:
+        """Split a question that ends with a preset ("... at gate?") into the question and a step that goes to the preset."""
         if (split := split_at_preset(question, self.presets or ())) is None:
             return question, []
         self.preset, self.whole_scene = split[1], False
@@ -316,7 +316,7 @@ class Resolver:
         raise UnresolvedError("What shall I look for there?")
 
     def _forbid(self, step: ast.Forbid) -> Sequence[ast.Step]:
-        self.still = self.still or step.any_move
+        self.must_not_move = self.must_not_move or step.any_move
         return [step]
 
     def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
@@ -394,7 +394,7 @@ class Resolver:
                 self.antecedent = inner.thing.text
                 break
         condition = self.condition(step.condition)
-        self.looked = True
+        self.has_looked = True
         return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
 
     def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
@@ -418,11 +418,11 @@ class Resolver:
         return self._atplaces(ast.AtPlaces(step.places, tuple(body)))
 
     def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
-        self.compared = True
+        self.has_compared = True
         return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
 
     def _firstwith(self, step: ast.FirstWith) -> Sequence[ast.Step]:
-        self.compared = True
+        self.has_compared = True
         places = self._places(step.places)
         return [replace(step, thing=self.thing(step.thing), places=places[::-1] if step.last else places)]
 
@@ -453,7 +453,7 @@ class Resolver:
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
         if isinstance(condition, ast.Answered):
-            if not self.looked:
+            if not self.has_looked:
                 raise UnresolvedError("What does 'if so' refer to? Please name what I shall look for first.")
             return condition
         if isinstance(condition, ast.PresetOutnumbers):
@@ -468,7 +468,7 @@ class Resolver:
 
 
 def _answered_by(condition: ast.Condition, count: ast.Count) -> ast.Condition | None:
-    """Return the condition that refers to a count, if it asks for the same: "check for smoke, and if there is smoke, ..."."""
+    """Return the condition that reuses a count of the same objects: "check for smoke, and if there is smoke, ..."."""
     if not isinstance(condition, ast.Seen) or [thing.text for thing in count.things] != [condition.thing.text]:
         return None
     if condition.view not in (None, count.view):

@@ -53,7 +53,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     parsed = parse(continued_text(instruction, conversation, preset_names or ()), preset_names or ())
     try:
         if parsed.steps is None:
-            raise _not_parsed(parsed)
+            raise _question_about_unparsed(parsed)
         bound = resolver.bind(parsed.steps)
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
@@ -68,8 +68,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     return Understanding(bound)
 
 
-def _not_parsed(parsed: Parsed) -> UnresolvedError:
-    """Return the question about an instruction that was not understood."""
+def _question_about_unparsed(parsed: Parsed) -> UnresolvedError:
+    """Return the clarifying question about an instruction that was not parsed."""
     if len(parsed.text) > MAX_CHARS:
         return UnresolvedError(f"That is too long: I read at most {MAX_CHARS} characters, so I did nothing. Please split it.")
     if parsed.unread:

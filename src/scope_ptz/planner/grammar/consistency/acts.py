@@ -34,7 +34,7 @@ _COURTESY_REACH = 7  # number of words after "if" in which to look for courtesy
 
 
 def ignored_conditions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return each "if" and "unless" of an instruction whose plan tests nothing."""
+    """Return each "if" and "unless" of an instruction if the plan tests nothing."""
     if evidence.has(*_TESTS):
         return []
     return [
@@ -46,13 +46,13 @@ def ignored_conditions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     ]
 
 
-def omitted_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+def omitted_actions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     """Return the words for pictures, home, pan, tilt and zoom that no step of the plan carries out."""
     return [word for i, word in enumerate(words) if not (word.is_described or word.is_negated) and _is_omitted(words, i, evidence)]
 
 
-def forbidden_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return the words after "not" for following, pictures and home that the plan carries out: "follow it. No, don't follow it"."""
+def forbidden_actions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words of forbidden actions that the plan carries out: "follow it. No, don't follow it"."""
     return [
         word
         for i, word in enumerate(words)
@@ -67,13 +67,13 @@ def forbidden_acts(words: Sequence[Word], evidence: Evidence) -> list[Word]:
 
 
 def _is_forbidden(words: Sequence[Word], i: int) -> bool:
-    """Return whether "do not", "don't" or "never" precedes a word, unlike "if not"."""
+    """Return whether "do not", "don't" or "never" precedes a word. "If not" does not count."""
     before = [word.text for word in words[max(0, i - _FORBIDDING_REACH) : i]]
     return any(b in {"not", "t", "dont", "never"} and a != "if" for a, b in pairwise(before))
 
 
 def _ends_clause(words: Sequence[Word], i: int) -> bool:
-    """Return whether at most a pronoun follows a word in its clause, so that it refers to the same thing as before."""
+    """Return whether a word ends its clause, or only a pronoun follows it, so that the clause is about the same thing as before."""
     after = words[i + 1] if i + 1 < len(words) else None
     later = words[i + 2] if i + 2 < len(words) else None
     is_last = later is None or later.is_break

@@ -13,11 +13,11 @@ from difflib import SequenceMatcher
 
 from scope_ptz.english import listing
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.consistency.acts import forbidden_acts, ignored_conditions, omitted_acts
+from scope_ptz.planner.grammar.consistency.acts import forbidden_actions, ignored_conditions, omitted_actions
 from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
-from scope_ptz.planner.grammar.consistency.slots import swallowed_commands
+from scope_ptz.planner.grammar.consistency.slots import swallowed_command
 from scope_ptz.planner.grammar.consistency.words import Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
@@ -25,7 +25,7 @@ _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track
 _PURPOSE = re.compile(
     r"\b(?:so|so that|because|as|since) (?:i|we) (?:can|could|cannot|can t|want to|need to) (?:see|view|watch)(?: \w+)?$"
 )
-"""The beginning of words that say what a move is for, before the name of the thing to be seen."""
+"""The beginning of a clause that says what a move is for, up to the name of the thing to be seen: "so I can see the"."""
 
 
 def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str] = ()) -> str | None:
@@ -37,10 +37,10 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
         presets: The camera's presets.
     """
     evidence = evidence_of(steps)
-    found = (swallowed_commands(text, is_thing=is_thing) for text, is_thing in evidence.texts.items())
+    found = (swallowed_command(text, is_thing=is_thing) for text, is_thing in evidence.texts.items())
     if swallowed := next(filter(None, found), None):
         return not_understood([swallowed])
-    if evidence.is_still and evidence.has(*_MOVES):
+    if evidence.forbids_moving and evidence.has(*_MOVES):
         return "You ask me not to move, and to do something for which the camera must move. Which of the two shall I do?"
     words = words_of(instruction)
     _mark_described(words, evidence)
@@ -52,8 +52,8 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
                 *unused_numbers(words, evidence),
                 *ignored_directions(words, evidence),
                 *contradicted_zoom(words, evidence),
-                *omitted_acts(words, evidence),
-                *forbidden_acts(words, evidence),
+                *omitted_actions(words, evidence),
+                *forbidden_actions(words, evidence),
                 *ignored_conditions(words, evidence),
                 *unvisited_presets(words, evidence, presets),
             )
@@ -85,7 +85,7 @@ def unvisited_presets(words: Sequence[Word], evidence: Evidence, presets: Sequen
             if (
                 [word.text for word in span] == name
                 and not _is_purpose(words, i)
-                and not any(word.is_described or word.is_negated or _in_other_name(word, evidence) for word in span)
+                and not any(word.is_described or word.is_negated or _is_in_used_name(word, evidence) for word in span)
             ):
                 found += span
     return found
@@ -97,7 +97,7 @@ def _is_purpose(words: Sequence[Word], i: int) -> bool:
     return _PURPOSE.search(before) is not None
 
 
-def _in_other_name(word: Word, evidence: Evidence) -> bool:
+def _is_in_used_name(word: Word, evidence: Evidence) -> bool:
     return any(word.text in re.findall(r"[^\W\d_]+|\d+", name.lower()) for name in evidence.presets)
 
 

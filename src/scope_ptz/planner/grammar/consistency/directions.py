@@ -16,7 +16,7 @@ _WORDS = {
     "down": ("down", "downward", "downwards", "dn", "lower"),
 }
 _DIRECTION_OF = {word: direction for direction, words in _WORDS.items() for word in words}
-_ALSO = {
+_OTHER_DIRECTION_WORDS = {
     "left": frozenset({"l", "anti", "counter", "port"}),
     "right": frozenset({"r", "starboard"}),
     "up": frozenset({"u", "raise", "raising", "raised", "lift", "lifting", "elevate", "elevating", "above", "sky", "upper", "top"}),
@@ -41,16 +41,18 @@ _MOTION = frozenset({
     "moving", "diagonally",
 })  # fmt: skip
 _TOWARDS = frozenset({"at", "to", "towards", "toward", "on", "onto", "face"})
-_LOOSE = frozenset({
+_INDIRECT_MOVE_WORDS = frozenset({
     "increase", "raise", "boost", "back", "again", "same", "opposite", "reverse", "undo", "another", "further", "more", "minus",
     "negative", "repeat", "return", "centre", "center", "level", "decrease", "reduce", "lessen", "other", "around", "round",
     "behind", "u", "i", "ahead", "straight", "horizon", "twice", "retrace",
 })  # fmt: skip
-"""Words that allow a plan to move in a direction that is not named."""
+"""Words with which a plan may move in a direction that is not named, such as "back" and "another"."""
 
 _ZOOM_IN = frozenset({"in", "closer", "nearer", "tighter", "tighten", "tightening", "inwards"})
 _ZOOM_OUT = frozenset({"out", "wider", "widen", "widening", "outwards", "broaden"})
-_FACTORS_OUT = frozenset({"back", "off", "away", "halve", "half", "wide", "reduce", "decrease", "lower", "less", "down", "undo"})
+_OTHER_ZOOM_OUT_WORDS = frozenset(
+    {"back", "off", "away", "halve", "half", "wide", "reduce", "decrease", "lower", "less", "down", "undo"}
+)
 
 
 def ignored_directions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
@@ -61,7 +63,7 @@ def ignored_directions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
         if (direction := _DIRECTION_OF.get(word.text))
         and not (word.is_described or word.is_negated)
         and _is_direction(words, i, direction)
-        and direction not in evidence.directions | evidence.still
+        and direction not in evidence.directions | evidence.zero_turns
         and not (direction in {"up", "down"} and evidence.has(ast.GoToPreset) and not evidence.axes)
         and not _leads_to_target(words, i, evidence)
     ]
@@ -90,28 +92,28 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
 
 def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:
     """Return the directions in which the plan turns, but which the instruction does not name."""
-    texts = {_direction_like(word.text) for word in words if not word.is_described}
-    if texts & _LOOSE or any(text.startswith(("-", "+")) or text == "plus" for text in texts):
+    texts = {_corrected_direction(word.text) for word in words if not word.is_described}
+    if texts & _INDIRECT_MOVE_WORDS or any(text.startswith(("-", "+")) or text == "plus" for text in texts):
         return []
     named = {_DIRECTION_OF[text] for text in texts if text in _DIRECTION_OF}
-    named |= {direction for direction, also in _ALSO.items() if texts & also}
+    named |= {direction for direction, also in _OTHER_DIRECTION_WORDS.items() if texts & also}
     aimed = evidence.has(ast.Aim)
     unnamed = sorted(evidence.directions - named)
     return [] if aimed else [d for d in unnamed if d != "right" or evidence.directions & named & {"left"}]
 
 
-def _direction_like(text: str) -> str:
-    """Return the direction for a word that differs from it by one typing error ("leeft"); other words unchanged."""
+def _corrected_direction(text: str) -> str:
+    """Return the direction that a word with one typing error stands for ("leeft"); other words unchanged."""
     return next((word for word in ("left", "right", "down") if len(text) > 3 and within_one_edit(text, word)), text)
 
 
 def contradicted_zoom(words: Sequence[Word], evidence: Evidence) -> list[Word]:
-    """Return the words that name a change of the magnification in the direction opposite to that of the plan."""
+    """Return the words for zooming in if the plan only zooms out, or for zooming out if it only zooms in."""
     senses = {"in": _zoom_words(words, _ZOOM_IN), "out": _zoom_words(words, _ZOOM_OUT)}
     texts = {word.text for word in words}
     if evidence.has(ast.ZoomTo, ast.Track, ast.Back):
         return []
-    if senses["in"] and evidence.zooms == {"out"} and not senses["out"] and not texts & _FACTORS_OUT:
+    if senses["in"] and evidence.zooms == {"out"} and not senses["out"] and not texts & _OTHER_ZOOM_OUT_WORDS:
         return senses["in"]
     return senses["out"] if senses["out"] and evidence.zooms == {"in"} and not senses["in"] else []
 

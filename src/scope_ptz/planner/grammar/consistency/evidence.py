@@ -19,24 +19,24 @@ class Evidence:
     Attributes:
         numbers: Every number, without its sign.
         directions: "left", "right", "up" and "down" for turns; both directions of an axis for absolute targets.
-        still: The directions of turns by zero degrees.
+        zero_turns: The directions of turns by zero degrees.
         zooms: "in" and "out" for relative changes of the magnification.
         presets: The names of the presets.
         steps: The types of all steps and conditions.
         axes: The axes that move: "pan", "tilt" and "zoom".
-        texts: Descriptions and questions, each with True for a description.
-        is_still: Whether the instruction says not to move.
+        texts: Descriptions and questions; the value is True for a description.
+        forbids_moving: Whether the instruction says not to move.
     """
 
     numbers: list[float] = field(default_factory=list)
     directions: set[str] = field(default_factory=set)
-    still: set[str] = field(default_factory=set)
+    zero_turns: set[str] = field(default_factory=set)
     zooms: set[str] = field(default_factory=set)
     presets: set[str] = field(default_factory=set)
     steps: set[type[Any]] = field(default_factory=set)
     axes: set[str] = field(default_factory=set)
     texts: dict[str, bool] = field(default_factory=dict)
-    is_still: bool = False
+    forbids_moving: bool = False
 
     def has(self, *kinds: type[Any]) -> bool:
         """Return whether the plan has a step of one of the types."""
@@ -51,12 +51,12 @@ def evidence_of(steps: Sequence[ast.Step]) -> Evidence:
         for name in _TEXTS.get(type(node), ()):
             if text := getattr(node, name):
                 found.texts[text] = isinstance(node, ast.Thing)
-        _add(found, node)
+        _add_node(found, node)
     return found
 
 
 def _nodes(value: Any) -> Iterator[Any]:
-    """Return every dataclass of a tree of steps."""
+    """Yield every dataclass instance in a tree of steps."""
     if isinstance(value, tuple | list):
         for item in value:
             yield from _nodes(item)
@@ -66,13 +66,13 @@ def _nodes(value: Any) -> Iterator[Any]:
             yield from _nodes(getattr(value, each.name))
 
 
-def _add(found: Evidence, node: Any) -> None:
+def _add_node(found: Evidence, node: Any) -> None:
     match node:
         case ast.Turn(axis=axis, sign=sign, amount=amount):
             backwards = amount is not None and amount.degrees < 0
             found.axes.add(axis)
             is_turn = amount is None or amount.kind != "degrees" or amount.degrees
-            (found.directions if is_turn else found.still).add(_DIRECTIONS[axis, -sign if backwards else sign])
+            (found.directions if is_turn else found.zero_turns).add(_DIRECTIONS[axis, -sign if backwards else sign])
             if node.steps:
                 found.numbers.append(node.steps)
         case ast.Amount(kind=kind, degrees=degrees, factor=factor):
@@ -85,7 +85,7 @@ def _add(found: Evidence, node: Any) -> None:
         case ast.Zoom():
             _add_zoom(found, node)
         case ast.Forbid(any_move=True):
-            found.is_still = True
+            found.forbids_moving = True
         case ast.PresetRef(name=name):
             found.presets.add(name)
         case ast.Snap(times=times) | ast.Repeat(times=times):

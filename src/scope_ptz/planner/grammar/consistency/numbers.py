@@ -22,7 +22,7 @@ _NAMED = frozenset({
 
 
 @dataclass(frozen=True, slots=True)
-class NumberClaim:
+class StatedNumber:
     """A number in an instruction, with its words."""
 
     value: float
@@ -30,32 +30,32 @@ class NumberClaim:
     is_fraction: bool = False
 
 
-_BEFORE_SHARE = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "got"})
-_AFTER_SHARE = frozenset({"the", "full", "out", "empty", "open", "closed", "hidden", "cut", "missing", "gone"})
-"""Words around "half" in a remark about what the picture shows."""
+_BEFORE_HALF = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "got"})
+_AFTER_HALF = frozenset({"the", "full", "out", "empty", "open", "closed", "hidden", "cut", "missing", "gone"})
+"""Words before and after "half" in a remark about what the picture shows."""
 _LONG_TIMES = frozenset({"minute", "minutes", "min", "mins", "hour", "hours"})
 
 
 def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     """Return the words of the numbers that the plan does not use. Numbers in descriptions and negated clauses count as used."""
-    claims = _claims(words)
-    left = list(evidence.numbers)
-    unmatched = [claim for claim in claims if not _take(claim, left, evidence)]
-    unmatched = [claim for claim in unmatched if not _is_product(claim, evidence)]
-    for first, second in pairwise(claims):
+    stated_numbers = _stated_numbers(words)
+    remaining = list(evidence.numbers)
+    unmatched = [stated for stated in stated_numbers if not _take_match(stated, remaining, evidence)]
+    unmatched = [stated for stated in unmatched if not _is_product(stated, evidence)]
+    for first, second in pairwise(stated_numbers):
         together = (
             first.value * second.value,  # "three quarters of 20 degrees"
             360 * first.value * second.value,  # "three quarters of the way round"
             60 * first.value + second.value,  # "1 minute 30 seconds"
         )
-        is_time = _found(together[-1], evidence.numbers)
-        if second in unmatched and (is_time or (first in unmatched and any(_found(value, left) for value in together))):
-            unmatched = [claim for claim in unmatched if claim not in (first, second)]
-    return [word for claim in unmatched for word in claim.words]
+        is_time = _is_among(together[-1], evidence.numbers)
+        if second in unmatched and (is_time or (first in unmatched and any(_is_among(value, remaining) for value in together))):
+            unmatched = [stated for stated in unmatched if stated not in (first, second)]
+    return [word for stated in unmatched for word in stated.words]
 
 
-def _claims(words: Sequence[Word]) -> list[NumberClaim]:
-    claims: list[NumberClaim] = []
+def _stated_numbers(words: Sequence[Word]) -> list[StatedNumber]:
+    stated_numbers: list[StatedNumber] = []
     i, listed = 0, 1  # the next number of a numbered list
     while i < len(words):
         read = read_number([word.text for word in words[i : i + 8]])
@@ -64,9 +64,9 @@ def _claims(words: Sequence[Word]) -> list[NumberClaim]:
         if read.used == 1 and after in {".", ")"} and read.value == listed and i + 2 < len(words):
             listed += 1
         elif read.used and read.kind != "ORDINAL" and not _is_ignored(words, i, read.used):
-            claims.append(NumberClaim(abs(read.value), tuple(used), read.kind == "FRACTION"))
+            stated_numbers.append(StatedNumber(abs(read.value), tuple(used), read.kind == "FRACTION"))
         i += len(used)
-    return claims
+    return stated_numbers
 
 
 def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
@@ -77,45 +77,45 @@ def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
         return True  # "we start loading in five minutes" is only a remark: a plan cannot wait
     if before == "your" and after == "o":
         return True  # "your nine o'clock" is a direction
-    if used_words[0].text == "half" and before in _BEFORE_SHARE and after in _AFTER_SHARE:
+    if used_words[0].text == "half" and before in _BEFORE_HALF and after in _AFTER_HALF:
         return True  # "the net's half out of frame", "half the crowd is cut off"
     return before in {*_NAMED, "the", "these", "those"} or any(
         word.is_described or word.is_negated or word.text in _VAGUE for word in used_words
     )
 
 
-def _take(claim: NumberClaim, left: list[float], evidence: Evidence) -> bool:
-    """Remove a number that the claim explains from the numbers that are left. Return whether there is one."""
-    for value in _candidates(claim, evidence):
-        for number in left:
+def _take_match(stated: StatedNumber, remaining: list[float], evidence: Evidence) -> bool:
+    """Remove the plan's number that matches a stated number from ``remaining``. Return whether there is one."""
+    for value in _plan_values(stated, evidence):
+        for number in remaining:
             if abs(number - value) <= _TOLERANCE:
-                left.remove(number)
+                remaining.remove(number)
                 return True
     return False
 
 
-def _candidates(claim: NumberClaim, evidence: Evidence) -> list[float]:
-    """Return the numbers that a plan may use for a number of an instruction."""
-    value = claim.value
-    candidates = [value * unit for unit in _UNITS_OF]
+def _plan_values(stated: StatedNumber, evidence: Evidence) -> list[float]:
+    """Return the numbers with which a plan may express a stated number."""
+    value = stated.value
+    values = [value * unit for unit in _UNITS_OF]
     if value:
-        candidates.append(1 / value)
-    if claim.is_fraction:
-        candidates += [1 + value, 1 - value, 60 + 60 * value]
+        values.append(1 / value)
+    if stated.is_fraction:
+        values += [1 + value, 1 - value, 60 + 60 * value]
     if evidence.has(ast.Repeat):
-        candidates += [value - 1, value + 1]
+        values += [value - 1, value + 1]
     if value == len(evidence.presets):
-        candidates.append(0.0)
-    return candidates
+        values.append(0.0)
+    return values
 
 
-def _is_product(claim: NumberClaim, evidence: Evidence) -> bool:
-    """Return whether the plan reaches a number in steps: 90 degrees as three turns of 30."""
-    if claim.value == len(evidence.presets) or (claim.value in {180, 360} and evidence.has(ast.Sweep)):
+def _is_product(stated: StatedNumber, evidence: Evidence) -> bool:
+    """Return whether the plan reaches a stated number in steps: 90 degrees as three turns of 30."""
+    if stated.value == len(evidence.presets) or (stated.value in {180, 360} and evidence.has(ast.Sweep)):
         return True
     pairs = combinations(evidence.numbers, 2)
-    return any(abs(a * b - claim.value) <= _TOLERANCE for a, b in pairs)
+    return any(abs(a * b - stated.value) <= _TOLERANCE for a, b in pairs)
 
 
-def _found(value: float, numbers: Sequence[float]) -> bool:
+def _is_among(value: float, numbers: Sequence[float]) -> bool:
     return any(abs(number - value) <= _TOLERANCE for number in numbers)

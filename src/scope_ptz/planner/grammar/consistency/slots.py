@@ -41,7 +41,7 @@ _SWALLOWED = tuple(
 """Patterns of commands, angles and conditions, each up to the end of the text."""
 
 
-def swallowed_commands(text: str, *, is_thing: bool) -> str | None:
+def swallowed_command(text: str, *, is_thing: bool) -> str | None:
     """Return the part of a description or question that is a command; None if there is none.
 
     Args:

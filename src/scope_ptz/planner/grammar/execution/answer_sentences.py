@@ -57,7 +57,7 @@ def head_and_rest(description: str) -> tuple[str, str]:
 
 
 def _end_of_noun(head: str) -> int:
-    """Return where the noun ends: before the adjectives that follow a plural, as in "roller doors half open"."""
+    """Return the index at which the noun ends: before the adjectives that follow a plural, as in "roller doors half open"."""
     words = head.split(" ")
     last = words[-1].lower()
     if english.is_plural(last) or is_common_noun(last) or lexicon().concept(last) is not None:
@@ -150,7 +150,7 @@ def moves_text(arguments: Mapping[str, Any], times: int) -> str:
 
 
 def shortfall_text(result: Mapping[str, Any]) -> str:
-    """Return the words that state why a move ended early: a site rule or a camera limit; empty if it did not."""
+    """Return the words that state why a move ended early (a site rule or a camera limit); empty if it did not."""
     if held_back_by := result.get("held_back_by"):
         return f", held back by {held_back_by}"
     clamped = result.get("clamped", ())
@@ -178,7 +178,7 @@ _NOT_MODELLED = re.compile(r"The scene says nothing about the (?P<place>.+?), so
 
 
 def not_understood_text(error: str) -> str:
-    """Return the statement that perception did not understand a question or a description, or knows nothing about a place.
+    """Return the note that perception did not understand a question or a description, or knows nothing about a place.
 
     Empty for other errors.
     """
@@ -191,16 +191,16 @@ def not_understood_text(error: str) -> str:
     return f'I did not understand "{match["text"] or words}"'
 
 
-def continued(text: str) -> str:
-    """Return a sentence so that it can follow a colon: with a lower-case first letter, unless it begins with "I" or capitals."""
+def with_lower_initial(text: str) -> str:
+    """Return text with a lower-case first letter, unless it begins with "I" or capitals, so that it can follow a colon."""
     return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
 
 
-def without_consequence(reason: str, what: str) -> str:
-    """Return why a step was not carried out: "I can see no trucks, so I left it at that"."""
+def reason_and_reaction(reason: str, reaction: str) -> str:
+    """Append what the camera did to the reason for it: "I can see no trucks, so I left it at that"."""
     if not reason:
-        return f"so I {what}"
-    return f"{reason} So I {what}" if reason[-1] in ".!?" else f"{reason}, so I {what}"
+        return f"so I {reaction}"
+    return f"{reason} So I {reaction}" if reason[-1] in ".!?" else f"{reason}, so I {reaction}"
 
 
 def quantity_text(quantity: Quantity, description: str) -> str:

@@ -33,13 +33,13 @@ _PROPERTY_OF = re.compile(
     r" (?:the|that|this|an?) ",
     re.IGNORECASE,
 )
-"""The beginning of a phrase that names a property or a part of the thing: "the price on the"."""
+"""The beginning of a phrase that names a property or a part of a thing: "the price on the"."""
 
 _NO_THING = frozenset({"picture", "image", "view", "frame", "scene", "photo", "text", "writing", "time", "word", "words"})
 
 
 class CloserLook(RunState):
-    """The part of a run that asks perception, and goes closer when necessary."""
+    """The part of a run that asks perception questions, and zooms in when something is too small."""
 
     def _answer_to(self, question: str, view: View, thing: str = "") -> CallGenerator:
         """Ask a question and return the result; None if perception fails.
@@ -57,9 +57,9 @@ class CloserLook(RunState):
             if result is not None:
                 return result
         result = yield from self._perception_call("query_answer", question=plain, view=view)
-        if result is None or view != "current" or self.keeps_still or not is_too_small(result):
+        if result is None or view != "current" or self.moves_are_forbidden or not is_too_small(result):
             return result
-        thing = thing or _named_in(result) or thing_of(question)
+        thing = thing or _object_with_text(result) or thing_of(question)
         if not thing:
             return result
         if not self.may_go_closer:
@@ -93,16 +93,16 @@ class CloserLook(RunState):
         return before if result is None else result
 
 
-def _named_in(result: dict[str, Any]) -> str:
-    """Return the thing that carries a text, according to an answer; empty if the answer names none.
+def _object_with_text(result: dict[str, Any]) -> str:
+    """Return the object that the text is on, according to an answer; empty if the answer names none.
 
     For "The price of the lettuce is on the price card for lettuce, but it is too small to read", it is "price card for lettuce".
     """
-    match = _BEARER.search(str(result.get("answer", "")))
+    match = _OBJECT_WITH_TEXT.search(str(result.get("answer", "")))
     return match[1] if match else ""
 
 
-_BEARER = re.compile(r"^The .+ is on the (.+), but it is too small to read")
+_OBJECT_WITH_TEXT = re.compile(r"^The .+ is on the (.+), but it is too small to read")
 
 
 def _whole_of(thing: str) -> str:
@@ -147,7 +147,7 @@ def thing_of(question: str) -> str:
 
 
 def offer_text(offer: Offer) -> str:
-    """Return the question that asks whether to go closer. ``offered`` reads the offer back from this text."""
+    """Return the question that asks whether to go closer. ``offer_in`` reads the offer back from this text."""
     thing, question = (json.dumps(text, ensure_ascii=False) for text in (offer.thing, offer.question))
     return f"Shall I zoom in on {thing} to answer {question}? {_END}"
 
@@ -157,7 +157,7 @@ _STRING = r'"(?:[^"\\]|\\.)*"'
 _OFFER = re.compile(rf"Shall I zoom in on (?P<thing>{_STRING}) to answer (?P<question>{_STRING})\? {re.escape(_END)}\Z", re.DOTALL)
 
 
-def offered(reply: str) -> tuple[str, str] | None:
+def offer_in(reply: str) -> tuple[str, str] | None:
     """Return the thing and the question of the offer at the end of a reply; None if there is none."""
     match = _OFFER.search(reply)
     return (json.loads(match["thing"]), json.loads(match["question"])) if match else None

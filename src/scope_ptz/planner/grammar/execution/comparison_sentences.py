@@ -39,7 +39,7 @@ def counts_and_difference_text(parts: Sequence[ast.Tally], counts: Sequence[int]
 
 
 def is_one_kind_at_two_presets(first: ast.Tally, second: ast.Tally) -> bool:
-    """Return whether two counts are of the same objects at different presets."""
+    """Return whether two counts are of the same objects, each at a preset."""
     return first.thing.text == second.thing.text and first.place is not None and second.place is not None
 
 
@@ -50,10 +50,10 @@ def difference_text(first: ast.Tally, second: ast.Tally, difference: int) -> str
     number = abs(difference)
     noun = phrases.noun(first.thing.text, number)
     verb, comparison = ("is" if number == 1 else "are"), ("more" if difference > 0 else "fewer")
-    return f"There {verb} {number} {comparison} {noun} than {_other_than(first.thing.text, second.thing.text)}"
+    return f"There {verb} {number} {comparison} {noun} than {_compared_with(first.thing.text, second.thing.text)}"
 
 
-def _other_than(first: str, second: str) -> str:
+def _compared_with(first: str, second: str) -> str:
     """Return what a count is compared with: "vans", or only the place if both counts are of the same kind ("in the left half")."""
     (kind, place), (other, rest) = phrases.head_and_rest(first), phrases.head_and_rest(second)
     same = kind.removeprefix("the ") == other.removeprefix("the ")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 
-class Comparisons(ConditionEvaluation):
+class ComparisonSteps(ConditionEvaluation):
     """The part of a run with steps that count more than once, with one method for each step type."""
 
     @abstractmethod

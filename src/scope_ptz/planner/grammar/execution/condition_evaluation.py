@@ -62,7 +62,7 @@ class ConditionEvaluation(CloserLook):
             raise HaltedError("I stopped there, because the next step depends on the answer")
         answer = result["answer"].strip().lower()
         if not result.get("known", True) or not answer.startswith(("yes", "no")):
-            return None, f"I cannot tell whether {subject} is {condition.predicate}: {phrases.continued(result['answer'])}"
+            return None, f"I cannot tell whether {subject} is {condition.predicate}: {phrases.with_lower_initial(result['answer'])}"
         return answer.startswith("yes") == condition.expected, result["answer"]
 
     def _joined(self, condition: ast.Joined) -> CallGenerator:

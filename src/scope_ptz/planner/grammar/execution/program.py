@@ -19,7 +19,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
-from scope_ptz.planner.grammar.execution.comparisons import Comparisons, stops_of_tour
+from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
 from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError, Offer
@@ -32,12 +32,12 @@ _DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction 
 _MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
-class Program(Comparisons):
+class Program(ComparisonSteps):
     """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> CallGenerator:
         """Run all steps. After that, ``answer()`` returns the answer."""
-        self.keeps_still = any(isinstance(step, ast.Forbid) and step.any_move for step in steps)
+        self.moves_are_forbidden = any(isinstance(step, ast.Forbid) and step.any_move for step in steps)
         start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
         self._visited = [self.positions.before, start] if self.positions.before else [start]
         try:
@@ -62,7 +62,7 @@ class Program(Comparisons):
 
     # Motion ------------------------------------------------------------------------------------------------------------
     def _move(self, step: ast.Move) -> CallGenerator:
-        if opposed := next((p for p in step.parts if isinstance(p, ast.Aim) and _is_opposed(p, self.pose)), None):
+        if opposed := next((p for p in step.parts if isinstance(p, ast.Aim) and _is_in_wrong_direction(p, self.pose)), None):
             raise HaltedError(
                 f"The zoom is {phrases.number(round(self.pose.zoom, 2))}x, so zooming {'in' if opposed.sense > 0 else 'out'} does "
                 f"not lead to {phrases.number(opposed.value)}x; I left the zoom as it is"
@@ -76,8 +76,8 @@ class Program(Comparisons):
         # Report a move that was cut short as the camera made it.
         shortfall = phrases.shortfall_text(result)
         moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
-        how = f"I {phrases.move_text(moved)}{shortfall}"
-        self._note(f"{how}; the camera is now at {phrases.pose_text(result['pose'])}")
+        report = f"I {phrases.move_text(moved)}{shortfall}"
+        self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _back(self, step: ast.Back) -> CallGenerator:
         place = self._visited[-1]
@@ -145,7 +145,7 @@ class Program(Comparisons):
     def _snap(self, step: ast.Snap) -> CallGenerator:
         if step.of is not None:
             yield from self._zoomto(ast.ZoomTo(step.of))
-            if step.of.text in self._missing:
+            if step.of.text in self._not_found:
                 return
         for _ in range(step.times):
             result = yield from self._camera_call("take_image")
@@ -153,12 +153,12 @@ class Program(Comparisons):
 
     def _zoomto(self, step: ast.ZoomTo) -> CallGenerator:
         text = step.thing.text
-        if text in self._missing:
+        if text in self._not_found:
             return
         result = yield from self._perception_call("zoom_to_object", description=text)
         self._last_was_yes = bool(result.get("found")) if result is not None else None
         if result is None or not result.get("found"):
-            self._missing.add(text)
+            self._not_found.add(text)
             if result is not None:
                 self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
             return
@@ -169,14 +169,14 @@ class Program(Comparisons):
 
     def _track(self, step: ast.Track) -> CallGenerator:
         text = step.thing.text
-        if text in self._missing:
+        if text in self._not_found:
             return
         result = yield from self._perception_call("track_object", description=text, duration_s=_whole_as_int(step.seconds))
         if result is None:
             return
         self._last_was_yes = bool(result.get("found"))
         if not result.get("found"):
-            self._missing.add(text)
+            self._not_found.add(text)
             self._note(f"I could not find {_the(step.thing)} to follow")
             return
         self._moved_to_object = True
@@ -202,10 +202,10 @@ class Program(Comparisons):
         self._last_was_yes = _said_yes(result)
         if result is not None:
             is_stated = result.get("known", True) or is_too_small(result) or result["answer"].lower().startswith("i cannot tell")
-            self._note(result["answer"] if is_stated else f"I cannot tell: {phrases.continued(result['answer'])}")
+            self._note(result["answer"] if is_stated else f"I cannot tell: {phrases.with_lower_initial(result['answer'])}")
 
     def _read(self, step: ast.Read) -> CallGenerator:
-        if step.thing.text in self._missing:
+        if step.thing.text in self._not_found:
             self._note("There was nothing to read")
             return
         yield from self._ask(ast.Ask(reading_question(step.thing.text), step.view), step.thing.text)
@@ -242,7 +242,7 @@ class Program(Comparisons):
             self._note(reason)
             yield from self._run_steps(branch)
         else:
-            self._note(phrases.without_consequence(reason, "did neither" if met is None and step.otherwise else "left it at that"))
+            self._note(phrases.reason_and_reaction(reason, "did neither" if met is None and step.otherwise else "left it at that"))
 
     def _loop(self, step: ast.Loop) -> CallGenerator:
         limit, moves, best = self._move_limit(step), 0, -1
@@ -273,9 +273,9 @@ class Program(Comparisons):
                 return
         yield from self._end_unmet_loop(step, best, f", and stopped after {phrases.moves_text(last, moves)}")
 
-    def _end_unmet_loop(self, step: ast.Loop, best: int, how: str) -> CallGenerator:
+    def _end_unmet_loop(self, step: ast.Loop, best: int, ending: str) -> CallGenerator:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
-        reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{how}"
+        reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{ending}"
         if not step.otherwise:
             raise HaltedError(reason)
         self._note(reason)
@@ -295,8 +295,8 @@ class Program(Comparisons):
         return max(1, min(full_range_moves, _DEFAULT_MAX_MOVES))
 
 
-def _is_opposed(aim: ast.Aim, pose: Pose) -> bool:
-    """Return whether a magnification is in the opposite direction to the instruction: "zoom in to 2x" at 4x."""
+def _is_in_wrong_direction(aim: ast.Aim, pose: Pose) -> bool:
+    """Return whether reaching a magnification needs a zoom in the other direction than stated: "zoom in to 2x" at 4x."""
     return aim.axis == "zoom" and aim.sense * (aim.value - pose.zoom) < 0
 
 

@@ -63,7 +63,7 @@ class RunState:
         positions: The camera's positions in earlier turns of the conversation.
         assume_met: Whether to treat every condition as met, for plans without a camera.
         may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers to.
-        keeps_still: Whether the user asks for the camera not to move.
+        moves_are_forbidden: Whether the user forbids camera moves.
         notes: The sentences of the answer.
         sources: The sources of the perception results.
     """
@@ -73,11 +73,11 @@ class RunState:
     positions: PositionHistory = field(default_factory=PositionHistory)
     assume_met: bool = False
     may_go_closer: bool = False
-    keeps_still: bool = False
+    moves_are_forbidden: bool = False
     offers: list[Offer] = field(default_factory=list)  # closer looks that the user must allow first
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
-    _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
+    _not_found: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
     _best_preset: str | None = None  # the preset for "go there" after a comparison; None if there is no winner
     _moved_to_object: bool = False  # whether a perception tool moved the camera after the last move to a preset or home

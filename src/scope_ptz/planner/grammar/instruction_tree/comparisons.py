@@ -45,7 +45,7 @@ class WhichPreset:
 
 @dataclass(frozen=True, slots=True)
 class FirstWith:
-    """Go to one preset after the other, and stay at the first that shows an object. If ``places`` is empty, try every preset.
+    """Go to presets one after another, and stay at the first that shows an object. If ``places`` is empty, try every preset.
 
     Attributes:
         last: Whether to begin with the last preset, so that the camera stays at the last one that shows an object.

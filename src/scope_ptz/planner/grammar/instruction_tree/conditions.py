@@ -20,7 +20,7 @@ class PresetRef:
     Attributes:
         name: The name as it appears in the instruction.
         number: The position in the list of presets, if the instruction gives one: 1 is the first, -1 the last.
-        explicit: Whether the wording can only refer to a preset ("preset gate"); other words may also refer to an object.
+        explicit: Whether the wording can only refer to a preset ("preset gate"), and not to an object.
         has_article: Whether the name follows "the", "a" or "an".
     """
 
@@ -82,7 +82,7 @@ class Statement:
 
     Attributes:
         subject: The object.
-        predicate: The statement about the object, such as "open".
+        predicate: What is stated about the object, such as "open".
         expected: True if the statement must be true to meet the condition, False if it must be false.
         question: The question to ask perception; if it is empty, "is SUBJECT PREDICATE?" is asked.
     """

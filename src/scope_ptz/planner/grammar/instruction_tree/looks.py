@@ -93,7 +93,7 @@ class WhatAbout:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """Look all around: the following questions are about the whole scene.
+    """Look all around, so that the following questions are about the whole scene.
 
     Attributes:
         turn: Whether the wording could also mean a full turn of the camera.

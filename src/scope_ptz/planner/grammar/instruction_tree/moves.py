@@ -81,7 +81,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Further:
-    """Repeat the previous turn with another amount ("another 15")."""
+    """Repeat the previous turn with a new amount ("another 15")."""
 
     amount: Amount
 

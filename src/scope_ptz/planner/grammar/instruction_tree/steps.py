@@ -63,7 +63,7 @@ class DoAgain:
     """Repeat the previous steps.
 
     Attributes:
-        times: How many times the steps run: in total, or in addition if ``more`` is set. None means once more.
+        times: How many times the steps run in total or, if ``more`` is set, in addition. None means once more.
     """
 
     times: int | None = None
@@ -116,7 +116,7 @@ class AtIntervals:
 class AtPlaces:
     """Run the body at each of several presets. If ``places`` is empty, run it at every preset.
 
-    ``is_fronted`` states that the presets are named before the body, as in "at each preset, zoom out".
+    ``is_fronted`` is True if the presets are named before the body, as in "at each preset, zoom out".
     """
 
     places: tuple[PresetRef, ...]

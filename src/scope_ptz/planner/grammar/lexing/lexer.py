@@ -1,4 +1,4 @@
-"""Split a text into lexemes: words and fixed expressions with their classes, numbers and preset names."""
+"""Split text into lexemes: words and fixed expressions with their classes, numbers and preset names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MARKS = {
 }  # fmt: skip
 _MAX_NUMBER_WORDS = 8
 _ENDING = frozenset({"IFSO", "IFNOT", "EACHTIME", "PURPOSE"})
-"""Classes of expressions that end their clause: "if there is" has its class only before a comma, a command or the end."""
+"""Classes whose expressions must end a clause. "If there is" belongs to one only before a comma, a command or the end."""
 
 _AFTER_ENDING = frozenset(
     {
@@ -55,12 +55,12 @@ _COMMANDS = frozenset({"PAN", "TILT", "ZOOM", "SNAP", "TURN", "TRACK"})
 _ADDRESSED = frozenset(
     {"operator", "captain", "skipper", "chief", "bud", "buddy", "mate", "pal", "boss", "lad", "lads", "fella", "fellas"}
 )
-"""Words for people, which only address someone unless a determiner precedes them."""
+"""Words for people. Without a determiner before them, they only address someone."""
 
 
 _MIN_CHARS_OF_PRESET_WORD = 4  # shorter words of a preset's name must be spelt correctly
 _AT_PLACE = frozenset({"at", "to", "go", "goto"})
-"""Words after which the last word of a preset's name stands for the preset."""
+"""Words after which the last word of a preset's name can stand for the preset: "at the gate"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +94,10 @@ class Lexeme:
 
 @lru_cache(maxsize=512)
 def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
-    """Return the lexemes of a text. At every position the longest preset name, number or expression of the lexicon wins."""
+    """Return the lexemes of a text. At every position, the longest preset name, number or expression of the lexicon wins."""
     tokens = _without_inner_hyphens(_without_list_markers(tokenise(text)))
     known = {part for preset in presets for part in re.findall(r"[^\W\d_]+", preset.lower())}
-    words = [_preset_word(token.text, known) if _is_near(token.text, known) else corrected_word(token.text) for token in tokens]
+    words = [_preset_word(token.text, known) if _resembles(token.text, known) else corrected_word(token.text) for token in tokens]
     words = _with_preset_words(["and" if word == "&" else word for word in words], presets)
     out: list[Lexeme] = []
     i = 0
@@ -134,8 +134,8 @@ def _with_preset_words(words: list[str], presets: tuple[str, ...]) -> list[str]:
     return out
 
 
-def _is_near(word: str, known: set[str]) -> bool:
-    """Return whether a word occurs in a preset's name or, unless it is an English word, nearly does."""
+def _resembles(word: str, known: set[str]) -> bool:
+    """Return whether a word equals a known one or, unless it is an English word, resembles one."""
     if word in known:
         return True
     return len(word) > 3 and not is_english(word) and any(len(name) > 3 and within_one_edit(word, name) for name in known)
@@ -171,13 +171,13 @@ def _phrase_at(words: Sequence[str], i: int, presets: tuple[str, ...]) -> tuple[
     table = phrases()
     for length in range(min(longest_phrase(), len(words) - i), 0, -1):
         classes = table.get(tuple(words[i : i + length]))
-        if classes and (length == 1 or _fits(words, i, length, classes, presets)):
+        if classes and (length == 1 or _can_occur(words, i, length, classes, presets)):
             return length, classes
     return 0, frozenset()
 
 
-def _fits(words: Sequence[str], i: int, length: int, classes: frozenset[str], presets: tuple[str, ...]) -> bool:
-    """Return whether an expression can occur at a position: it must not overlap a preset, and some must end a clause."""
+def _can_occur(words: Sequence[str], i: int, length: int, classes: frozenset[str], presets: tuple[str, ...]) -> bool:
+    """Return whether an expression can occur at a position: it must not overlap a preset, and may have to end a clause."""
     if words[i : i + length] == ["right", "then"] and i and words[i - 1].isalpha():
         return False  # "a quarter turn right then zoom in"
     if words[i + 1 : i + length] == ["the", "far"] and (i + length >= len(words) or words[i + length] in {"end", "side", "corner"}):
@@ -247,7 +247,7 @@ def _without_list_markers(tokens: list[Token]) -> list[Token]:
 
 
 def _without_inner_hyphens(tokens: list[Token]) -> list[Token]:
-    """Drop hyphens inside words ("close-up", "15-degree"). Other hyphens are dashes, which separate like commas."""
+    """Drop hyphens inside words ("close-up", "15-degree"). Other hyphens are dashes, which separate clauses as commas do."""
     out: list[Token] = []
     for i, token in enumerate(tokens):
         inner = 0 < i < len(tokens) - 1 and tokens[i - 1].end == token.start and tokens[i + 1].start == token.end

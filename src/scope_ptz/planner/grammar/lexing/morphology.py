@@ -51,6 +51,6 @@ def _stems(verb: str) -> tuple[str, ...]:
 
 
 def noun_forms(noun: str) -> tuple[str, ...]:
-    """Return the singular and plural of a noun phrase, whose last word is inflected."""
+    """Return the singular and plural of a noun phrase. Only its last word is inflected."""
     *first, last = noun.split(" ")
     return noun, " ".join([*first, plural_noun(last)])

@@ -32,6 +32,11 @@ def preset_table(presets: tuple[str, ...]) -> Mapping[tuple[str, ...], str]:
         if key:
             table[key] = preset
             table.setdefault(("".join(key),), preset)
+    shorter = Counter(key[1:] for key in map(preset_key, presets) if len(key) > 2)  # "car park" for "visitor-car-park"
+    for preset in presets:
+        key = preset_key(preset)
+        if shorter[key[1:]] == 1:
+            table.setdefault(key[1:], preset)
     return table
 
 
@@ -44,7 +49,7 @@ def short_names(presets: tuple[str, ...]) -> Mapping[str, str]:
 
 
 def preset_at(words: Sequence[str], presets: tuple[str, ...]) -> tuple[str, int]:
-    """Return the preset whose name begins a list of words, and the number of its words, with hyphens; ("", 0) if there is none."""
+    """Return the preset whose name begins a list of words, and its length in words, counting hyphens; ("", 0) if there is none."""
     if not presets:
         return "", 0
     table = preset_table(presets)

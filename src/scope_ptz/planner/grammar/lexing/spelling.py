@@ -35,13 +35,13 @@ def corrected_word(word: str) -> str:
         return f"{word}g"  # "goin", "lookin"
     if len(swapped := _with_letters_swapped(word)) == 1 and not parts_of_speech(word):
         return swapped[0]
-    close = [known for known in lists["short"] if (_is_slip if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
+    close = [known for known in lists["short"] if (_is_typing_error if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
     close = close or _likely_words(word)
     return close[0] if len(close) == 1 and not parts_of_speech(word) else word
 
 
 def _with_letters_swapped(word: str) -> list[str]:
-    """Return the words of the vocabulary that a word becomes if two neighbouring letters are exchanged: the commonest error."""
+    """Return the words of the vocabulary that result from swapping two neighbouring letters, which corrects the commonest error."""
     swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(len(word) - 1)} - {word}
     return sorted(swapped & known_words())
 
@@ -53,8 +53,8 @@ def _likely_words(word: str) -> list[str]:
     return [known for known in known_words() if len(known) >= _MIN_CHARS and word[0] == known[0] and within_one_edit(word, known)]
 
 
-def _is_slip(word: str, known: str) -> bool:
-    """Return whether a short word was mistyped: the same letters in another order, or one letter doubled or left out."""
+def _is_typing_error(word: str, known: str) -> bool:
+    """Return whether a short word is a typing error: a known word with its letters reordered, or one letter doubled or left out."""
     if len(word) == len(known):
         return sorted(word) == sorted(known) and within_one_edit(word, known)
     if len(word) > len(known):
@@ -64,5 +64,5 @@ def _is_slip(word: str, known: str) -> bool:
 
 @lru_cache(maxsize=8192)
 def is_english(word: str) -> bool:
-    """Return whether a word is known, so that it is not a misspelling of another."""
+    """Return whether a word is English, so that it is not treated as a misspelling."""
     return word in known_words() or word in spelling_lists()["real"] or lexicon().concept(word) is not None or is_common_noun(word)

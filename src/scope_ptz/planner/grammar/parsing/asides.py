@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS, Cl
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_time_ahead
+from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement, without_future_time
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import STATEMENT
 
 _WISH = r"(WRAPPER|SELF (want|need|wish|MODAL like) to) (see|look at|check|SEE|READ|have_a_look at) _+"
@@ -50,7 +50,7 @@ _WITHDRAWAL = re.compile(
     r"|\bnever to\b|\b(?:say|says|said|told \w+ to) (?:hold on|hang on|wait|stop)\b|\b(?:have|has|had) to wait\b"
     r"|\b(?:has|have) already been done\b|\balready did (?:it|that)\b"
 )
-"""Wordings that may withdraw or forbid what was asked."""
+"""Wordings that may withdraw or forbid a command."""
 
 _DROPPED = "(forget|scrap|scratch|cancel|disregard|belay|drop) (it|that|this|PRON)"
 _TAKEN_BACK = (
@@ -86,8 +86,8 @@ def may_withdraw(lexemes: Sequence[Lexeme]) -> bool:
     return _WITHDRAWAL.search(" ".join(x.word.replace("_", " ") for x in lexemes)) is not None
 
 
-def withdraws(clause: Clause) -> bool:
-    """Return whether a statement may withdraw or forbid what was asked: "I changed my mind", "that is not allowed".
+def is_withdrawal_statement(clause: Clause) -> bool:
+    """Return whether a statement may withdraw or forbid a command: "I changed my mind", "that is not allowed".
 
     Unlike other statements, it must not be ignored.
     """
@@ -110,23 +110,23 @@ def drops_everything(clause: Clause) -> bool:
     )
 
 
-def is_news(clause: Clause) -> bool:
+def reports_event(clause: Clause) -> bool:
     """Return whether a clause says that something has happened: "something just banged", "somebody is on the phone"."""
     subject = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA", "BUT")), None)
     is_vague = subject is not None and subject.word in {"someone", "somebody", "something"}
     return is_vague and not clause.is_question and is_statement(clause.lexemes)
 
 
-def is_shared_knowledge(clause: Clause) -> bool:
+def appeals_to_shared_knowledge(clause: Clause) -> bool:
     """Return whether a clause only appeals to what the listener knows: "... and you know how that goes", "who knows why"."""
     knows = "(FILLER|COMMA|AND|BUT)* (you_know|SELF know|who knows|god knows|heaven knows)"
     return not clause.is_question and full_match(f"{knows} (how|what|why|where|WHQ) _{{1,4}}", clause.lexemes) is not None
 
 
-def explains(clause: Clause, clause_count: int) -> bool:
-    """Return whether a clause that cannot be parsed only gives the reason for the others.
+def only_gives_reason(clause: Clause, clause_count: int) -> bool:
+    """Return whether a clause that cannot be parsed only gives the reason for the other clauses.
 
-    It must not state an angle, a place, or something to do several times.
+    It must not state an angle, a place or a repetition.
 
     Args:
         clause: The clause.
@@ -136,7 +136,7 @@ def explains(clause: Clause, clause_count: int) -> bool:
         return True
     if clause.is_question or clause_count < 2:
         return False
-    clause = replace(clause, lexemes=without_time_ahead(clause.lexemes))
+    clause = replace(clause, lexemes=without_future_time(clause.lexemes))
     if not (match_start(STATEMENT, clause.lexemes) or is_statement(clause.lexemes) or is_comment(clause.lexemes)):
         return False
     knows = match_start("(FILLER|COMMA|NOW)* SELF know (this|it|that|you|DET)", clause.lexemes)  # "I know this sounds picky"
@@ -153,8 +153,8 @@ def explains(clause: Clause, clause_count: int) -> bool:
     return not any(x.has("NUM", "DEG", "PAN", "TILT", "ZOOM", "PRESET", "HOME") for x in clause.lexemes)
 
 
-def pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing | None:
-    """Return the thing that a clause points out for the next one: "there is a man by the van. Follow him."; otherwise None."""
+def thing_pointed_out(source: Source, clause: Clause, after: Clause | None) -> Thing | None:
+    """Return the thing that a clause points out for the next clause: "there is a man by the van. Follow him."; otherwise None."""
     if (
         after is None
         or clause.is_question
@@ -203,20 +203,20 @@ def _is_command(lexemes: Sequence[Lexeme]) -> bool:
     return first is not None and first.has(*VERBS, "HOME", "LEFT", "RIGHT", "UP", "DOWN")
 
 
-def is_courtesy(lexemes: Sequence[Lexeme]) -> bool:
+def is_courtesy_condition(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "if" are only polite: "it's not too much trouble", "you don't mind"."""
     if any(x.has("PRESET", "HOME", "NUM", "DEG", *DIRECTIONS) for x in lexemes):
         return False
     return bool(full_match(_FINE, lexemes))
 
 
-def is_ability(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the words after "if" only say that a question may be too hard: "you can read it", "you can make them out"."""
+def is_ability_condition(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "if" only admit that a question may be too hard: "you can read it"."""
     return bool(
         full_match("SELF (MODAL|can|BE able to)? (READ|make|make_out|TELL|SEE) (it|them|that|PRON)? (out|from here)*", lexemes)
     )
 
 
-def is_need(lexemes: Sequence[Lexeme]) -> bool:
+def is_necessity_condition(lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the words after "if" leave the decision to the planner: "needed", "you have to"."""
     return bool(full_match(f"(FILLER)* {_NEED} (FILLER)*", lexemes))

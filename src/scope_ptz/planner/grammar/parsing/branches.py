@@ -14,7 +14,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Step,
 )
 from scope_ptz.planner.grammar.instruction_tree.conditions import Condition, Negated, PresetOutnumbers, Quantity, Seen, Statement
-from scope_ptz.planner.grammar.parsing.clause_reading import ClauseReading
+from scope_ptz.planner.grammar.parsing.clause_reading import ClauseSequenceReader
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.conditions import condition_of, named_thing, without_happening
 from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstoodError
@@ -22,13 +22,13 @@ from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, place_asked_about, places_of, without_inner_place
-from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
+from scope_ptz.planner.grammar.parsing.parts.scopes import split_trailing_place
 
 _PLACE_WITH = "(?P<place>_+?) (has|have|got|shows) (?P<rest>(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY|ANY|NONE) _+|people)"
 """A condition about a preset, such as "the gate has fewer than 3 cars"."""
 
 
-class Branches(ClauseReading):
+class BranchReader(ClauseSequenceReader):
     """Reads conditions, with the clauses to carry out when they are met and when they are not."""
 
     @abstractmethod
@@ -42,7 +42,7 @@ class Branches(ClauseReading):
         if condition is None and clause.marker == "IF":
             condition = named_thing(self.reader.source, clause.lexemes)
         places: tuple = ()  # type: ignore[type-arg]
-        rest, found = place_after(self.reader.source, clause.lexemes)
+        rest, found = split_trailing_place(self.reader.source, clause.lexemes)
         owner = full_match(_PLACE_WITH, clause.lexemes)
         if owner and (owners := places_of(self.reader.source, owner["place"])):
             rest, found = tuple(owner["rest"]), owners
@@ -75,7 +75,7 @@ class Branches(ClauseReading):
             is_if
             and isinstance(condition, Statement)
             and found is None
-            and (named := place_asked_about(clause.lexemes)) is not None
+            and (named := place_asked_about(self.reader.source, clause.lexemes)) is not None
         ):
             places = (named,)  # "if the bus bay is full"
         if is_if and isinstance(condition, Statement) and (inside := without_inner_place(self.reader.source, clause.lexemes)):
@@ -99,7 +99,7 @@ class Branches(ClauseReading):
         """Return the conditional step whose branches are the clauses that follow."""
         then: list[Step] = []
         if clause.marker in {"IFSO", "IFNOT"} and clause.lexemes:
-            then = compose([Linked("", s) for s in self.reader.read(clause.lexemes, asked=clause.is_question)], then)
+            then = compose([Linked("", s) for s in self.reader.read(clause.lexemes, has_question_mark=clause.is_question)], then)
         then = self._block(then)
         otherwise: list[Step] = []
         after = self._peek()
@@ -114,7 +114,7 @@ class Branches(ClauseReading):
         return If(condition, tuple(then), tuple(otherwise))
 
     def _block(self, steps: list[Step]) -> list[Step]:
-        """Return the given steps, followed by those of the clauses up to the end of the sentence or the next "otherwise"."""
+        """Return the given steps, followed by those of the clauses up to the next "otherwise" or the end of the sentence."""
         while (clause := self._peek()) is not None:
             if bound_of(clause) is not None and steps:
                 break
@@ -125,7 +125,7 @@ class Branches(ClauseReading):
             steps = compose(self._linked(), steps)
         return steps
 
-    def _trailing(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
+    def _with_trailing_condition(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
         """Return the step for "take a picture if ...", with the "otherwise" that may follow."""
         condition, places = self._condition(clause)
         otherwise: list[Step] = []
@@ -140,7 +140,7 @@ class Branches(ClauseReading):
 
 
 def bound_of(clause: Clause) -> Bound | None:
-    """Return the limit of a loop that a clause states: "at most 8 times", "but stop after 5 tries"."""
+    """Return the loop limit that a clause states: "at most 8 times", "but stop after 5 tries"; None if it states none."""
     lexemes = bare_clause(clause.lexemes)
     if match := full_match(r"(ATMOST|FILLER|but|BUT|to|AMOUNTISH|for|or)* (?P<number>NUM) (DEG) (FILLER|INTURN|of turn)*", lexemes):
         return Bound(degrees=abs(match["number"][0].value)) if any(x.has("ATMOST") for x in lexemes) else None

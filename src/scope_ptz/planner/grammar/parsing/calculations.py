@@ -13,15 +13,15 @@ _SUM = frozenset({
     "total_of", "total_count_of", "combined_number_of", "overall_number_of", "total_amount_of", "in_all", "overall",
 })  # fmt: skip
 _SUM_AT_END = frozenset({"together", "altogether", "all_together", "in_total", "combined", "in_all", "overall", "total"})
-_ADDED = frozenset({"put", "taken", "added", "all", "counted", "and", "when"})
+_BEFORE_TOGETHER = frozenset({"put", "taken", "added", "all", "counted", "and", "when"})
 """Words that can precede "together" in a request for a sum, as in "put together"."""
 
 _DIFFERENCE = frozenset({"minus", "difference", "the_difference"})
 
 
-def calculated(lexemes: Sequence[Lexeme], step: Step) -> Step:
-    """Return a step with its counts added or subtracted if the words of its clause ask for that; otherwise the step itself."""
-    parts = _parts(step)
+def with_calculation(lexemes: Sequence[Lexeme], step: Step) -> Step:
+    """Return a step with its counts added or subtracted if its clause asks for that; otherwise the step itself."""
+    parts = _single_counts(step)
     words = {x.word for x in lexemes}
     if len(parts) == 2 and words & _DIFFERENCE:
         return Difference(*parts)
@@ -35,22 +35,22 @@ def without_sum(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
         lexemes = lexemes[:-1]
     if not lexemes or lexemes[-1].word not in _SUM_AT_END:
         return lexemes
-    while len(lexemes) > 1 and (lexemes[-1].word in _SUM_AT_END or lexemes[-1].word in _ADDED):
+    while len(lexemes) > 1 and (lexemes[-1].word in _SUM_AT_END or lexemes[-1].word in _BEFORE_TOGETHER):
         lexemes = lexemes[:-1]
     return lexemes
 
 
-def calculated_afterwards(steps: Sequence[Step]) -> list[Step]:
-    """Return steps with counts combined where "... and add them up" or "... report the difference" follows them."""
+def with_later_calculations(steps: Sequence[Step]) -> list[Step]:
+    """Return steps, with counts combined if "... and add them up" or "... report the difference" follows them."""
     out: list[Step] = []
     for step in steps:
         if not isinstance(step, Report) or step.calculation == "none":
             out.append(step)
             continue
         first = len(out)
-        while first and _parts(out[first - 1]):
+        while first and _single_counts(out[first - 1]):
             first -= 1
-        parts = tuple(part for counted in out[first:] for part in _parts(counted))
+        parts = tuple(part for counted in out[first:] for part in _single_counts(counted))
         if step.calculation == "difference" and len(parts) == 2:
             out[first:] = [Difference(*parts)]
         elif step.calculation == "total" and (len(parts) > 1 or any(part.everywhere for part in parts)):
@@ -60,7 +60,7 @@ def calculated_afterwards(steps: Sequence[Step]) -> list[Step]:
     return out
 
 
-def _parts(step: Step) -> tuple[Tally, ...]:
+def _single_counts(step: Step) -> tuple[Tally, ...]:
     """Split a count of several things, or of one thing at several presets, into single counts; other steps yield none."""
     match step:
         case Count(things=things, view=view):

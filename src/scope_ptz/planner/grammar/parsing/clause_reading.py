@@ -33,10 +33,10 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.asides import (
-    explains,
-    pointed_out,
+    only_gives_reason,
+    thing_pointed_out,
 )
-from scope_ptz.planner.grammar.parsing.calculations import calculated
+from scope_ptz.planner.grammar.parsing.calculations import with_calculation
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Clause, NotUnderstoodError, text_of
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
@@ -51,87 +51,89 @@ _INSPECTING = "checking|inspecting|watching|looking|viewing|verifying"
 _NO_COMMAND = Unclear("That tells me something, but not what to do. What shall I look at or look for?")
 _SET = ("ZOOM-ED", "PAN-ED", "TILT-ED")
 _SLIPS = frozenset({"er", "erm", "uh", "um", "uhm", "oops", "actually", "sorry", "no", "rather", "i_mean", "i_meant"})
-"""Words with which someone corrects what they have just said."""
+"""Words with which speakers correct themselves."""
 
 
-class ClauseReading:
-    """Reads single clauses from left to right."""
+class ClauseSequenceReader:
+    """Reads a sequence of clauses from left to right, one clause at a time."""
 
     def __init__(self, reader: Reader, clauses: Sequence[Clause]) -> None:
         self.reader, self.clauses = reader, list(clauses)
-        self.next = 0
-        self.last: Step | None = None
+        self.next_index = 0
+        self.last_step: Step | None = None
         self.has_zoomed_in = False
         self.visits_in_row = 0  # number of presets that the last clauses visit in a row
         self.has_pictured_preset = False  # whether the last clause takes a picture of a preset
         self.has_visited = self.has_left = False  # whether this sentence goes to a preset, and then moves on from it
 
     def _peek(self, offset: int = 0) -> Clause | None:
-        position = self.next + offset
+        position = self.next_index + offset
         return self.clauses[position] if position < len(self.clauses) else None
 
     def _take(self) -> Clause:
-        self.next += 1
-        return self.clauses[self.next - 1]
+        self.next_index += 1
+        return self.clauses[self.next_index - 1]
 
-    def _as_needed(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
-        """Return no steps for "zoom in if you have to", because a look zooms in by itself when necessary; ask about other steps."""
+    def _steps_if_needed(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
+        """Return no steps for "zoom in if you have to", because looking zooms in when necessary; ask about other steps."""
         self._take()
         is_zoom = all(isinstance(s, Move) and all(isinstance(p, Zoom) for p in s.parts) for s in steps)
-        if is_zoom and (self.next > 2 or self._peek() is not None):
+        if is_zoom and (self.next_index > 2 or self._peek() is not None):
             return []
         return [Linked(clause.link, Unclear("Shall I do that, or not?"))]
 
     def _read(self, clause: Clause) -> tuple[Step, ...]:
-        """Return the steps of a clause, which may leave out the verb of the previous clause: "..., then on the bin"."""
-        looks_at_place = isinstance(self.last, AtPlaces) and all(isinstance(step, Count | Ask) for step in self.last.body)
+        """Return the steps of a clause, which may omit a verb that the previous clause has: "..., then on the bin"."""
+        looks_at_place = isinstance(self.last_step, AtPlaces) and all(isinstance(step, Count | Ask) for step in self.last_step.body)
         preposition = "(at|in|from)?" if looks_at_place and not clause.marker else "(at|in|from)"
         if (
             (match := full_match(f"{preposition} (?P<places>_+)", clause.lexemes))
-            and isinstance(self.last, Count | Ask | AtPlaces)
+            and isinstance(self.last_step, Count | Ask | AtPlaces)
             and not clause.is_question
             and (places := places_of(self.reader.source, match["places"]))
         ):
             return (SameAt(places),)  # "count the people at the gate, and then at the yard"
-        if isinstance(self.last, GoToPreset) and not clause.is_question:
+        if isinstance(self.last_step, GoToPreset) and not clause.is_question:
             clause = replace(clause, lexemes=_as_command(clause.lexemes))
         try:
-            steps = self.reader.read(clause.lexemes, asked=clause.is_question)
+            steps = self.reader.read(clause.lexemes, has_question_mark=clause.is_question)
         except NotUnderstoodError:
-            if (thing := pointed_out(self.reader.source, clause, self._peek())) is not None:
+            if (thing := thing_pointed_out(self.reader.source, clause, self._peek())) is not None:
                 return (Mention(thing),)
-            if explains(clause, len(self.clauses)):
+            if only_gives_reason(clause, len(self.clauses)):
                 return ()
             if len(self.clauses) == 1 and not clause.is_question and not clause.marker and is_statement(clause.lexemes):
                 return (_NO_COMMAND,)
             if (pictured := self._another_picture(clause)) is not None:
-                return self._checked(clause, pictured)
+                return self._corrected(clause, pictured)
             if (step := self._without_verb(clause)) is None:
                 raise
             steps = (step,)
-        steps = self._checked(clause, steps)
+        steps = self._corrected(clause, steps)
         is_held = all(isinstance(step, Forbid) and step.any_move for step in steps) and not any(
             x.has("NEGATED") or x.word.startswith("do_not") for x in clause.lexemes
         )
-        if self.last and clause.link and is_held and steps:
+        if self.last_step and clause.link and is_held and steps:
             steps = ()  # "bring it up five degrees and hold"
-        if isinstance(self.last, ZoomTo) and any(x.word in {"close_up", "closer_look", "a_closer_look"} for x in clause.lexemes):
+        if isinstance(self.last_step, ZoomTo) and any(
+            x.word in {"close_up", "closer_look", "a_closer_look"} for x in clause.lexemes
+        ):
             steps = tuple(step for step in steps if not isinstance(step, Move))  # "find the van, get a close-up"
-        if len(steps) == 1 and isinstance(self.last, ZoomTo) and _is_open_ended(steps[0]):
+        if len(steps) == 1 and isinstance(self.last_step, ZoomTo) and _is_open_ended(steps[0]):
             steps = (NO_END,)  # "search for a car, panning right 20 at a time"
-        if len(steps) == 1 and isinstance(steps[0], Track) and not steps[0].thing.text and isinstance(self.last, Track):
+        if len(steps) == 1 and isinstance(steps[0], Track) and not steps[0].thing.text and isinstance(self.last_step, Track):
             steps = ()  # "stay on the crane, tracking it"
         steps = self._with_clear_return(clause, steps)
         if any(isinstance(step, Move | GoToPreset | ZoomTo) for step in steps):
             self.reader = Reader(replace(self.reader.source, has_moved=True))
-        self.last = steps[-1] if steps else self.last
+        self.last_step = steps[-1] if steps else self.last_step
         self.visits_in_row = self.visits_in_row + len(steps) if all(isinstance(step, GoToPreset) for step in steps) else 0
         return steps
 
     def _another_picture(self, clause: Clause) -> tuple[Step, ...] | None:
         """Return the steps of "another one 20 degrees further to the right" after a picture; None for other clauses."""
         match = full_match("(FILLER)* (DET)? ANOTHER (one|PICTURE)? (at|from)? (?P<turn>(NUM DEG?|LITTLE|LOT) _+)", clause.lexemes)
-        if not isinstance(self.last, Snap) or match is None or not any(x.has(*DIRECTIONS) for x in match["turn"]):
+        if not isinstance(self.last_step, Snap) or match is None or not any(x.has(*DIRECTIONS) for x in match["turn"]):
             return None
         moves = self.reader.read(match["turn"])
         return (*moves, Snap()) if len(moves) == 1 and isinstance(moves[0], Move) else None
@@ -160,38 +162,47 @@ class ClauseReading:
     def _is_aside(self, clause: Clause, steps: tuple[Step, ...]) -> bool:
         """Return whether a clause asks for nothing new: "find the hydrant, centre it", "tilt up 10, checking the wires"."""
         if match_start("(FILLER)* (CENTREWORD|CENTREALL) (it|them|PRON|him|her)", clause.lexemes):
-            return isinstance(self.last, ZoomTo | Track) and all(isinstance(step, Move) for step in steps)
+            return isinstance(self.last_step, ZoomTo | Track) and all(isinstance(step, Move) for step in steps)
         is_inspecting = match_start(f"(FILLER)* ({_INSPECTING})", clause.lexemes) and not search(
             "IF|if|whether|for|HOWMANY", clause.lexemes
         )
         is_wish = match_start(
             "(DET|my|our)? FREE{1,2} (wants|needs|wanted) (DET)? (FREE)? (look|view|SEE|to SEE|VIEWNOUN|eyes)", clause.lexemes
         )
-        return bool(is_inspecting or is_wish) and isinstance(self.last, Move) and clause.link in {",", ""} and self.next > 1
+        return (
+            bool(is_inspecting or is_wish) and isinstance(self.last_step, Move) and clause.link in {",", ""} and self.next_index > 1
+        )
 
     def _is_alternative(self, clause: Clause, steps: tuple[Step, ...]) -> bool:
         """Return whether a clause may replace the one before it: "go to the gate. Let's go to the yard instead"."""
-        if not any(x.has("INSTEAD") and x.word == "instead" for x in clause.lexemes) or len(steps) != 1 or self.last is None:
+        if not any(x.has("INSTEAD") and x.word == "instead" for x in clause.lexemes) or len(steps) != 1 or self.last_step is None:
             return False
-        is_conditional = any(other.marker for other in self.clauses[: self.next])
-        return type(steps[0]) is type(self.last) and not is_conditional
+        is_conditional = any(other.marker for other in self.clauses[: self.next_index])
+        return type(steps[0]) is type(self.last_step) and not is_conditional
 
-    def _checked(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    def _corrected(self, clause: Clause, steps: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps of a clause, corrected for its context."""
         first = clause.lexemes[0] if clause.lexemes else None
         slip = next((x for x in clause.lexemes if not x.has("FILLER", "COMMA") or x.word in _SLIPS), None)
-        steps = tuple(calculated(clause.lexemes, step) for step in steps)
+        steps = tuple(with_calculation(clause.lexemes, step) for step in steps)
         same = full_match(f"HOWMANY BE (?!LEFT|RIGHT) (?P<state>FREE|ADVERB|{'|'.join(GERUNDS)})", clause.lexemes)
-        if same and isinstance(self.last, Count) and len(words := self.last.things[-1].text.split()) in {1, 2} and len(steps) == 1:
+        if (
+            same
+            and isinstance(self.last_step, Count)
+            and len(words := self.last_step.things[-1].text.split()) in {1, 2}
+            and len(steps) == 1
+        ):
             things = [word for word in words if not word.endswith("ing")] or words  # "people" of "people standing"
-            return (Count((Thing(f"{same['state'][0].word} {things[-1]}"),), self.last.view),)  # "... and how many are moving?"
+            return (
+                Count((Thing(f"{same['state'][0].word} {things[-1]}"),), self.last_step.view),
+            )  # "... and how many are moving?"
         if (
             len(steps) == 1
             and slip is not None
             and slip.word in _SLIPS
             and (clause.link in {",", "and"} or slip.word in {"i_mean", "i_meant"})
-            and self.last is not None
-            and (type(steps[0]) is type(self.last) or slip.word in {"i_mean", "i_meant"})
+            and self.last_step is not None
+            and (type(steps[0]) is type(self.last_step) or slip.word in {"i_mean", "i_meant"})
         ):
             return (Unclear("Which of the two do you mean?"),)  # "go to the gate, er, the yard"
         if self.visits_in_row > 1 and len(steps) == 1 and isinstance(steps[0], AtPlaces) and not steps[0].places and steps[0].body:
@@ -200,15 +211,15 @@ class ClauseReading:
             return (Unclear("Shall I do that at every preset, or only at those that you have named?"),)
         if self._is_alternative(clause, steps):
             return (Unclear("Which of the two do you mean?"),)
-        if isinstance(self.last, ZoomTo | Count | Mention) and full_match(
+        if isinstance(self.last_step, ZoomTo | Count | Mention) and full_match(
             "(FILLER)* CENTREWORD (it|them|him|her) (FILLER)*", clause.lexemes
         ):
             return (ZoomTo(Thing()),)  # "find the hydrant and centre it"
-        before = self.clauses[self.next - 2].lexemes if self.next > 1 else ()
+        before = self.clauses[self.next_index - 2].lexemes if self.next_index > 1 else ()
         is_turned = any(x.has("REVERSE", "AROUND") for x in before) and not any(x.has("NUM") for x in (*before, *clause.lexemes))
         if (
             is_turned
-            and steps == (self.last,)
+            and steps == (self.last_step,)
             and clause.link in {",", "and"}
             and not any(x.has("AGAINWORD") for x in clause.lexemes)
         ):
@@ -216,34 +227,36 @@ class ClauseReading:
         if self._is_aside(clause, steps):
             return ()
         if len(steps) == 1 and isinstance(steps[0], GoToPreset) and steps[0].how == "bare":
-            return self._checked_visit(clause, steps)
-        if isinstance(self.last, ListPresets) and full_match(
+            return self._corrected_visit(clause, steps)
+        if isinstance(self.last_step, ListPresets) and full_match(
             "(FILLER)* (LISTING|SHOW|TELL) (me|us)* (em|them|PRON)", clause.lexemes
         ):
             return ()  # "presets? List them."
         self.has_pictured_preset = len(steps) == 1 and isinstance(steps[0], AtPlaces) and steps[0].body == (Snap(),)
         words = [x.word for x in clause.lexemes]
-        if words[-2:] == ["take", "one"] and isinstance(self.last, Snap):
+        if words[-2:] == ["take", "one"] and isinstance(self.last_step, Snap):
             return ()  # "my boss wants a photo of the trailer, so take one"
         moves = bool(steps) and all(isinstance(step, Move | Snap) for step in steps)
         zooms = [part for step in steps if isinstance(step, Move) for part in step.parts if isinstance(part, Zoom)] if moves else []
         multiplied = full_match("(FILLER)* (DOUBLE|TRIPLE|QUADRUPLE|HALVE) (?P<what>PRON) (FILLER)*", clause.lexemes)
         if multiplied and (
-            (isinstance(self.last, Move) and all(isinstance(part, Turn) for part in self.last.parts))
-            or (self.last is None and multiplied["what"][0].word == "that")
+            (isinstance(self.last_step, Move) and all(isinstance(part, Turn) for part in self.last_step.parts))
+            or (self.last_step is None and multiplied["what"][0].word == "that")
         ):
             return (Unclear("Shall I change the zoom, or turn again? Please say by how much."),)
         is_in = bool(match_start("(FILLER|WRAPPER)* ZOOM IN", clause.lexemes))
         if is_in and any(part.kind == "factor" and part.value < 1 for part in zooms):
             return (Unclear("Shall I zoom in or out?"),)  # "zoom in half"
-        is_aimed = isinstance(self.last, Move) and all(isinstance(part, Aim) and part.axis == "zoom" for part in self.last.parts)
+        is_aimed = isinstance(self.last_step, Move) and all(
+            isinstance(part, Aim) and part.axis == "zoom" for part in self.last_step.parts
+        )
         is_undirected = not any(x.has(*DIRECTIONS, "MORE") for x in clause.lexemes) and clause.link in {",", "and"}
         turns = moves and all(isinstance(part, Turn) for step in steps if isinstance(step, Move) for part in step.parts)
         if turns and is_aimed and is_undirected and isinstance(steps[0], Move):
             return (Unclear("Is that the angle to turn to, or the angle to turn by?"),)  # "set zoom 4x, pan 10 and tilt -5"
         if is_aimed and (again := full_match("(FILLER|to)* (?P<target>NUM) X (FILLER)*", clause.lexemes)):
             return (Move((Aim("zoom", again["target"][0].value),)),)  # "zoom to 2x, then 10x"
-        if moves and isinstance(self.last, AtIntervals) and any(isinstance(step, Snap) and step.times > 1 for step in steps):
+        if moves and isinstance(self.last_step, AtIntervals) and any(isinstance(step, Snap) and step.times > 1 for step in steps):
             return (Unclear("How far shall I turn in all?"),)  # "pan right 60, a picture every 15 degrees, four pictures"
         if moves and [x.word for x in clause.lexemes[:2]] == ["make", "that"]:
             return (Unclear("Which way shall I turn, and how far?"),)  # "make that ..." has nothing to correct
@@ -252,18 +265,18 @@ class ClauseReading:
         if moves:
             self.has_zoomed_in |= any(isinstance(p, Zoom) and p.value > 1 for s in steps if isinstance(s, Move) for p in s.parts)
         is_search = len(steps) == 1 and isinstance(steps[0], ZoomTo) and first is not None and first.has("FIND")
-        if is_search and isinstance(steps[0], ZoomTo) and isinstance(self.last, Sweep):
+        if is_search and isinstance(steps[0], ZoomTo) and isinstance(self.last_step, Sweep):
             return (Count((steps[0].thing,), "full"),)  # "sweep round and look for a ladder"
         return steps
 
-    def _checked_visit(self, clause: Clause, visit: tuple[Step, ...]) -> tuple[Step, ...]:
+    def _corrected_visit(self, clause: Clause, visit: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps of a clause that only names a preset, corrected for its context."""
         words = [x.word for x in clause.lexemes]
         if clause.lexemes[0].has("BE"):
             return (Ask(text_of(self.reader.source, clause.lexemes) + "?"),)  # "is this the gate?"
         if match_start("(FILLER)* (this|that|it|SELF) BE ", clause.lexemes):
             return (Unclear("Shall I go there?"),)  # "this is the gate"
-        if words[0] in {"what_about", "how_about"} and self.last is None:
+        if words[0] in {"what_about", "how_about"} and self.last_step is None:
             return (Unclear("What shall I look for there?"),)
         if words[-1] == "last" and self._peek() is not None:
             return (Unclear("In which order shall I visit them?"),)  # "the gate last, the yard first"
@@ -282,15 +295,15 @@ class ClauseReading:
         thing = thing_of(self.reader.source, match["thing"])
         if thing is None or not thing.text or clause.lexemes[-1].word in {"away", "off", "back"}:
             return None
-        match self.last:
+        match self.last_step:
             case ZoomTo() | Read():
-                return replace(self.last, thing=thing)
+                return replace(self.last_step, thing=thing)
             case Count():
-                return replace(self.last, things=(thing,))
+                return replace(self.last_step, things=(thing,))
         return None
 
-    def _ended(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
-        """Return the linked steps of a clause, or ask where to stop if it is "keep panning" without an end."""
+    def _linked_steps(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked]:
+        """Return the linked steps of a clause, or a question if it says "keep panning" but not where to stop."""
         keeps = bool(clause.lexemes) and any(
             x.has("KEEP") and x.word.startswith(("keep", "carry_on", "continue")) for x in clause.lexemes[:2]
         )
@@ -317,7 +330,7 @@ class ClauseReading:
 
 
 def _as_command(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return the command for a clause that says how to set the camera at the last preset: "the gate, zoomed in", "... at 3x"."""
+    """Return a clause about the camera's setting at the last preset as a command: "the gate, zoomed in", "... at 3x"."""
     if match_start("(FILLER|COMMA)* at NUM X", lexemes):
         start = next(i for i, x in enumerate(lexemes) if x.word == "at")
         return (*lexemes[:start], replace(lexemes[start], word="zoom", classes=frozenset({"ZOOM"})), *lexemes[start:])

@@ -39,8 +39,14 @@ from scope_ptz.planner.grammar.instruction_tree import (
     ZoomTo,
 )
 from scope_ptz.planner.grammar.parsing.repeated_amounts import add_back_by, add_back_towards, add_further, with_same_amounts
-from scope_ptz.planner.grammar.parsing.repetitions import add_again, add_at_intervals, add_each_time, done_at_place, interleaved
-from scope_ptz.planner.grammar.parsing.turns_in_steps import stepped, stepped_loop
+from scope_ptz.planner.grammar.parsing.repetitions import (
+    add_again,
+    add_at_intervals,
+    add_each_time,
+    interleaved,
+    steps_at_last_place,
+)
+from scope_ptz.planner.grammar.parsing.turns_in_steps import split_into_steps, split_loop_into_steps
 
 _CONTRADICTION = "Those two directions contradict each other. Which way shall I turn?"
 
@@ -49,11 +55,11 @@ def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
     """Return the steps of a sentence combined with the steps before it."""
     out = list(before)
     for item in linked:
-        _add(out, item.link, item.step)
+        _add_step(out, item.link, item.step)
     return out
 
 
-def _add(out: list[Step], link: str, step: Step) -> None:
+def _add_step(out: list[Step], link: str, step: Step) -> None:
     """Append a step to the previous steps, or combine it with them."""
     if isinstance(step, Move):
         step = with_same_amounts(step, out)
@@ -73,13 +79,13 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     if last is not None and (joined := _joined_to_last(last, link, step)) is not None:
         out[-1:] = joined
     elif isinstance(step, Loop | Repeat):
-        out.append(stepped_loop(step))
+        out.append(split_loop_into_steps(step))
     elif isinstance(step, GoToPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
         out.append(
             Unclear("I can look at one place and then the other, but I cannot answer that for both at once. What shall I look for?")
         )
     else:
-        out.append(stepped(step))
+        out.append(split_into_steps(step))
 
 
 def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
@@ -113,7 +119,7 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
                 replace(step, places=(*visited, *places))
             ]  # "visit gate, then yard, and stop at the first with a van"
         case SameAt() if out:
-            out.append(AtPlaces(step.places, done_at_place(out)))
+            out.append(AtPlaces(step.places, steps_at_last_place(out)))
         case _:
             return False
     return True
@@ -144,7 +150,7 @@ def _last_visited(steps: Sequence[Step]) -> tuple[PresetRef, ...]:
 
 def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
     """Return the steps that replace the last step if the new step belongs to it; None if the new step is separate."""
-    if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
+    if isinstance(step, Repeat) and link in {"and", ","} and _also_repeats_previous(step, last):
         return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
     if isinstance(last, Move):
         return _joined_to_move(last, step) if link == "and" else None
@@ -154,11 +160,11 @@ def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
 def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
     """Join a move with the step after "and": another move, or a loop, whose body then begins with the move."""
     if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
-        return [stepped_loop(replace(step, body=(last, *step.body)))]
-    if isinstance(step, Loop | Repeat) and (verbless := _verbless(step.body[0])):
-        joined = _joined(last, verbless)
+        return [split_loop_into_steps(replace(step, body=(last, *step.body)))]
+    if isinstance(step, Loop | Repeat) and (verbless := _as_verbless_move(step.body[0])):
+        joined = _joined_moves(last, verbless)
         return [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
-    return _joined(last, step) if isinstance(step, Move) else None
+    return _joined_moves(last, step) if isinstance(step, Move) else None
 
 
 def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
@@ -179,23 +185,23 @@ def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | Non
     return None
 
 
-def _covers_before(step: Repeat, last: Step) -> bool:
-    """Return whether "three times" also covers the previous step: after a comma, or for a picture after a move."""
+def _also_repeats_previous(step: Repeat, last: Step) -> bool:
+    """Return whether "three times" also repeats the previous step: after a comma, or for a picture after a move."""
     is_picture_after_move = isinstance(step.body[-1], Snap) and isinstance(last, Move)
     return (step.group or is_picture_after_move) and not isinstance(last, GoToPreset | Home | Repeat | Loop)
 
 
-def _verbless(step: Step) -> Move | None:
+def _as_verbless_move(step: Step) -> Move | None:
     """Return the step if it is a move without a verb, which continues the previous move; otherwise None."""
     return step if isinstance(step, Move) and not step.has_verb else None
 
 
-def _joined(first: Move, second: Move) -> list[Step]:
+def _joined_moves(first: Move, second: Move) -> list[Step]:
     """Join two moves linked by "and". They become one move if their axes differ."""
     axes = [axis_of(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
-        parts = first.parts if second.has_verb else tuple(_shared(p, second.parts) for p in first.parts)
-        return [stepped(Move((*parts, *second.parts), first.has_verb))]
+        parts = first.parts if second.has_verb else tuple(_with_shared_amount(p, second.parts) for p in first.parts)
+        return [split_into_steps(Move((*parts, *second.parts), first.has_verb))]
     one, other = first.parts[-1], second.parts[0]
     if isinstance(one, Zoom) and isinstance(other, Zoom) and {one.kind, other.kind} == {"in", "out"}:
         return [Unclear("Shall I zoom all the way in, or all the way out?")]
@@ -204,7 +210,7 @@ def _joined(first: Move, second: Move) -> list[Step]:
     )
     if unspecified and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
         return [Unclear(_CONTRADICTION)]
-    return [stepped(first), stepped(second)]
+    return [split_into_steps(first), split_into_steps(second)]
 
 
 def axis_of(part: Part) -> str:
@@ -212,7 +218,7 @@ def axis_of(part: Part) -> str:
     return part.axis if isinstance(part, Turn | Aim) else "zoom"
 
 
-def _shared(part: Part, others: tuple[Part, ...]) -> Part:
+def _with_shared_amount(part: Part, others: tuple[Part, ...]) -> Part:
     """Give a part without an amount the amount of the last part: in "up and left 20", 20 applies to both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
@@ -221,7 +227,7 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _compare_with_before(out: list[Step], step: CompareWithBefore) -> None:
-    """Count again to compare with the last count; without one, compare the counts before and after the last moves."""
+    """Repeat the last count to compare with it; if there is none, compare the counts before and after the last moves."""
     counts = [s for s in out if isinstance(s, Count)]
     first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
     moves = tuple(out[first:])

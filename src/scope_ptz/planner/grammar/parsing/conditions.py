@@ -22,7 +22,7 @@ from scope_ptz.planner.grammar.instruction_tree.conditions import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun, is_noun_phrase, people, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun, is_noun_phrase, people_description, thing_of, things_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
@@ -65,7 +65,7 @@ _LEGIBLE = (
 
 
 def condition_of(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
-    """Return the condition that lexemes state; None if they state none."""
+    """Return the condition that lexemes state; None if they do not state one."""
     lexemes = without_happening(trimmed(lexemes, "FILLER", "COMMA", "QUOTE", "THEN"))
     if not lexemes:
         return None
@@ -119,9 +119,9 @@ def _single(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
         view = "full"
     return (
         _comparison(source, lexemes)
-        or _number(source, bare, view)
-        or _seen(source, lexemes, bare, view)
-        or _statement(source, lexemes)
+        or _count_condition(source, bare, view)
+        or _visibility_condition(source, lexemes, bare, view)
+        or _statement_condition(source, lexemes)
     )
 
 
@@ -174,7 +174,7 @@ def _quantity(match: Match) -> Quantity:
     return Quantity(operator, number)
 
 
-def _number(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Condition | None:
+def _count_condition(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Condition | None:
     """Read conditions about a number of things."""
     patterns = (
         rf"(there|DET)* (BE|HAVEV|happen to be)* (?P<not>not)? {_QUANTITY} (of)? (?P<thing>_+?) ({_APPEARS})?",
@@ -205,12 +205,12 @@ def _number(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Con
     return None
 
 
-def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], view: View | None) -> Condition | None:
+def _visibility_condition(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], view: View | None) -> Condition | None:
     """Read conditions that something is or is not visible."""
     for words in (bare, lexemes) if bare != lexemes else (lexemes,):
         if match := full_match(rf"(?P<none>NOONE|NONE)? (?P<someone>SOMEONE)? (?P<thing>_*?) ({_APPEARS}|BE) ?", words):
             nobody = match.has("none") and match["none"][0].has("NOONE")
-            who = people(source, match["thing"]) if nobody or match.has("someone") else None
+            who = people_description(source, match["thing"]) if nobody or match.has("someone") else None
             if who is not None:
                 return Seen(who, Quantity("==", 0) if match.has("none") or match.has("not") else Quantity(), view)
         patterns = (
@@ -239,9 +239,9 @@ def _seen(source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], vie
             words_of_thing = match["thing"]
             thing: Thing | None
             if words_of_thing and words_of_thing[0].has("NOONE"):
-                thing, negated = people(source, words_of_thing[1:]), True
+                thing, negated = people_description(source, words_of_thing[1:]), True
             elif words_of_thing and words_of_thing[0].has("SOMEONE"):
-                thing = people(source, words_of_thing[1:])
+                thing = people_description(source, words_of_thing[1:])
             elif things := things_of(source, trimmed(words_of_thing, "NONE" if negated else "FILLER")):
                 if negated and len(things) > 1:
                     return Joined(tuple(Seen(thing, Quantity("==", 0), view) for thing in things), "all")
@@ -287,7 +287,7 @@ def _names_a_thing(lexemes: Sequence[Lexeme]) -> bool:
     return 0 < head < 4 and all(x.has("FREE", "DET") for x in lexemes[:head]) and is_noun(lexemes[head - 1].word)
 
 
-def _statement(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
+def _statement_condition(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
     """Read "the gate is open", "a worker is not wearing a helmet" and "the sign says stop"."""
     if search("PAN|TILT|ZOOM|DEG|UNTIL|THEN|WRAPPER|IFSO|IFNOT", lexemes):
         return None
@@ -301,7 +301,7 @@ def _statement(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
     if not match:
         match = full_match(r"(?P<thing>_+?) (?P<verb>DOV) (?P<not>not) (have|look) (?P<rest>_+)", lexemes)
     if not match:
-        return _does(source, lexemes)
+        return _verb_condition(source, lexemes)
     expected = not match.has("not")
     if match["thing"][0].has("SOMEONE", "NOONE") and len(match["thing"]) == 1:
         text = f"people {text_of(source, match['rest'])}"
@@ -322,7 +322,7 @@ def _statement(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
     return Statement(thing, predicate, expected)
 
 
-def _does(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
+def _verb_condition(source: Source, lexemes: Sequence[Lexeme]) -> Condition | None:
     """Read "a van pulls up": a thing and a verb in the third person."""
     for i in range(len(lexemes) - 1, 0, -1):
         x = lexemes[i]

@@ -29,7 +29,7 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
     if full_match("(FILLER)* (never mind|(cancel|forget|scrap|scratch|drop|leave) (that|it)) (FILLER)*", lexemes):
         return (Forbid(),)
     if match_start(_NEGATION, lexemes) and not match_start("NEGATED (more)? (FREE|PRESETNOUN) BE", lexemes):
-        return _forbidden(lexemes)
+        return _forbid_step(lexemes)
     if full_match("(FILLER)* (STAY|STAY-ING) (FILLER|there|here|where|SELF|BE|CAMERA|still|DET|VIEWNOUN|this|put|as)*", lexemes):
         return (Forbid(any_move=True),)
     if match := full_match(
@@ -119,7 +119,7 @@ def control_step(source: Source, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] 
     return None
 
 
-def _forbidden(lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
+def _forbid_step(lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
     """Read "don't zoom", "without moving the camera" and "no zooming"."""
     match = match_start(f"{_NEGATION} (FILLER|need to|have to|ever|bother)*", lexemes)
     rest = lexemes[match.size :] if match else lexemes

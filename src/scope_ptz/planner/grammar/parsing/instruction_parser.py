@@ -19,7 +19,7 @@ from scope_ptz.planner.grammar.parsing.rewording.repairs import repaired, unreso
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
 from scope_ptz.planner.grammar.parsing.segments.segmentation import clauses_of
 from scope_ptz.planner.grammar.parsing.segments.settings_first import with_settings_first
-from scope_ptz.planner.grammar.parsing.sentences import Sentences
+from scope_ptz.planner.grammar.parsing.sentences import SentenceReader
 
 MAX_CHARS = 2000  # longer texts are rejected as a whole, because part of an instruction must not be carried out alone
 MAX_LEXEMES = 250  # maximum number of lexemes in a text that is parsed
@@ -45,34 +45,38 @@ class Parsed:
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """Return the steps of an instruction. This never raises an exception."""
+    """Parse an instruction. This never raises an exception."""
     if len(text) > MAX_CHARS:
         return Parsed(text, None)
     plain = plainer(text, presets)
-    for said in (relayed(plain, presets), plain if plain != text else None):
-        if said is not None and (parsed := _parsed(said, presets)).steps is not None:
+    for wording in (relayed(plain, presets), plain if plain != text else None):
+        if wording is not None and (parsed := _parse_as_written(wording, presets)).steps is not None:
             return parsed
-    return _parsed(text, presets)
+    return _parse_as_written(text, presets)
 
 
-def _parsed(text: str, presets: tuple[str, ...]) -> Parsed:
-    """Return the steps of a text, parsed as it stands."""
+def _parse_as_written(text: str, presets: tuple[str, ...]) -> Parsed:
+    """Parse text without the changes that ``parse`` makes to the wording first."""
     lexemes = lexemes_of(text, presets)
     if not lexemes or is_too_complex(lexemes):
         return Parsed(text, None)
-    meant = without_denials(repaired(with_contractions(reworded(lexemes)), text))
-    lexemes, text = meant.lexemes, meant.text
+    corrected = without_denials(repaired(with_contractions(reworded(lexemes)), text))
+    lexemes, text = corrected.lexemes, corrected.text
     if unresolved := unresolved_editing(lexemes):
         return Parsed(text, None, _quoted(text, unresolved))
     try:
         clauses = in_order(with_settings_first(clauses_of(lexemes)))
-        steps = Sentences(Reader(Source(text, presets)), clauses).steps()
+        steps = SentenceReader(Reader(Source(text, presets)), clauses).steps()
     except NotUnderstoodError as error:
         return Parsed(text, None, _quoted(text, error.lexemes))
-    return Parsed(text, tuple(_with_preset_first(steps, is_vantage=_is_vantage(clauses, lexemes)))) if steps else Parsed(text, None)
+    return (
+        Parsed(text, tuple(_with_preset_first(steps, is_vantage_point=_is_vantage_point(clauses, lexemes))))
+        if steps
+        else Parsed(text, None)
+    )
 
 
-def _is_vantage(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
+def _is_vantage_point(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
     """Return whether the last clause only states where to look from to answer a question: "is it open? Look from the yard."."""
     is_asked = clauses[-1].is_question and not any(x.has("OPEN") for x in lexemes)
     if len(clauses) < 2 or is_asked or any(x.has("THEN") for x in lexemes):
@@ -82,12 +86,12 @@ def _is_vantage(clauses: Sequence[Clause], lexemes: Sequence[Lexeme]) -> bool:
     return asks and not goes
 
 
-def _with_preset_first(steps: list[Step], *, is_vantage: bool) -> list[Step]:
+def _with_preset_first(steps: list[Step], *, is_vantage_point: bool) -> list[Step]:
     """Move a preset that is named after its question to the front: "how many are there? Use the yard preset."."""
     *before, last = steps
     if not before or not all(isinstance(s, Count | Ask | Read) for s in before):
         return steps
-    is_place = isinstance(last, GoToPreset) and (last.how == "use" or (is_vantage and last.how != "look"))
+    is_place = isinstance(last, GoToPreset) and (last.how == "use" or (is_vantage_point and last.how != "look"))
     return [last, *before] if is_place or isinstance(last, Sweep) else steps  # "has a ladder been left out? Check all around."
 
 

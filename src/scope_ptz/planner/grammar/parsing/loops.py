@@ -17,21 +17,21 @@ from scope_ptz.planner.grammar.instruction_tree import (
     ZoomTo,
 )
 from scope_ptz.planner.grammar.instruction_tree.conditions import Negated, Quantity, Seen
-from scope_ptz.planner.grammar.parsing.branches import Branches, bound_of
+from scope_ptz.planner.grammar.parsing.branches import BranchReader, bound_of
 from scope_ptz.planner.grammar.parsing.compose import compose
 from scope_ptz.planner.grammar.parsing.parts.clause import Clause, NotUnderstoodError
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _CENTRED = "(?P<thing>_+?) BE (CENTREWORD|in (DET)? (centre|center|middle|CENTREWORD) (of DET (PICTURE|VIEWNOUN|frame))?) (FILLER)*"
-"""An "until" condition that a thing is in the middle, such as "the van is in the centre of the picture"."""
+"""An "until" condition that a thing is centred: "the van is in the centre of the picture"."""
 
 
-class Loops(Branches):
+class LoopReader(BranchReader):
     """Reads loops with their conditions and limits."""
 
     def _loop(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
-        """Return the loop of a clause and the "until ..." that follows it."""
+        """Return the loop for a clause and the "until ..." that follows it."""
         until = self._take()
         is_turn = full_match("(KEEP|FILLER|CAMERA|DET)* (PAN|TURN|PAN-ING|TURN-ING) (AROUND|FILLER|CAMERA|DET)*", clause.lexemes)
         if is_turn and self._peek() is None and (centred := full_match(_CENTRED, until.lexemes)):
@@ -69,7 +69,7 @@ class Loops(Branches):
         return Loop(tuple(steps), condition, bound, tuple(otherwise))
 
     def _loop_ahead(self, clause: Clause) -> Step:
-        """Return the loop of "while there are no cars, pan right 10"."""
+        """Return the loop for "while there are no cars, pan right 10"."""
         condition, places = self._condition(clause)
         body = self._block([])
         if places or not body:

@@ -47,14 +47,14 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, place_asked_about, places_of, without_inner_place
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
-from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, place_before, without_times
+from scope_ptz.planner.grammar.parsing.parts.scopes import split_leading_place, split_trailing_place, without_repetitions
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
 
 _EDGE = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "QUOTE", "INSTEAD", "DASH", "OPEN", "CLOSE", "AND", "BUT", "ATSAMETIME")
-_SILENT_CLAUSE = r"(FILLER|LEADFILLER|FIRSTLY|COMMA|WRAPPER|PURPOSE|QUOTE|THEN|AND|SELF|HALT there)*"
+_EMPTY_CLAUSE = r"(FILLER|LEADFILLER|FIRSTLY|COMMA|WRAPPER|PURPOSE|QUOTE|THEN|AND|SELF|HALT there)*"
 _CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
 """The words that open a radio message: "camera one from control"."""
 
@@ -89,7 +89,7 @@ class Reader:
 
     source: Source
 
-    def read(self, lexemes: Sequence[Lexeme], *, asked: bool = False) -> tuple[Step, ...]:
+    def read(self, lexemes: Sequence[Lexeme], *, has_question_mark: bool = False) -> tuple[Step, ...]:
         """Return the steps of a clause.
 
         Raises:
@@ -99,7 +99,9 @@ class Reader:
             raise NotUnderstoodError(lexemes)
         if full_match(_CALL_SIGN, lexemes):
             return ()
-        if asked and (more := full_match("(FILLER)* (?P<and>AND|what_about|how_about) (?P<in>at|in|on)? (?P<what>_+)", lexemes)):
+        if has_question_mark and (
+            more := full_match("(FILLER)* (?P<and>AND|what_about|how_about) (?P<in>at|in|on)? (?P<what>_+)", lexemes)
+        ):
             places, thing = places_of(self.source, more["what"]), thing_of(self.source, more["what"])
             if places:
                 return (
@@ -108,7 +110,7 @@ class Reader:
             if thing is not None and thing.text and not more.has("in"):
                 return (WhatAbout(thing),)  # "and the cars?"
         lexemes = bare_clause(lexemes)
-        if asked and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
+        if has_question_mark and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
             lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"
         if enough := full_match(
             "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT)) ((MODAL|should|ought to|WRAPPER) "
@@ -117,18 +119,22 @@ class Reader:
             lexemes,
         ):
             lexemes = tuple(enough["body"])  # "a quarter turn to the left will do it"
-        if not lexemes or full_match(_SILENT_CLAUSE, lexemes):
+        if not lexemes or full_match(_EMPTY_CLAUSE, lexemes):
             return ()
-        steps = control_step(self.source, lexemes) or self._with_adjuncts(lexemes, asked) or self._plain(lexemes, asked)
+        steps = (
+            control_step(self.source, lexemes)
+            or self._with_adjuncts(lexemes, has_question_mark)
+            or self._without_adjuncts(lexemes, has_question_mark)
+        )
         if steps is None or any(isinstance(inner, Rescope) for step in steps for inner in getattr(step, "body", ())):
             raise NotUnderstoodError(lexemes)  # "everywhere each time": there is nothing to look for
         return steps
 
-    def _with_adjuncts(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+    def _with_adjuncts(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read a clause with words that repeat it or carry it out elsewhere: "... each time", "... at every preset"."""
         if (
             (match := full_match(r"(?P<body>_+?) (COMMA)? (EACHTIME|at ATATIME) (FILLER|INTURN|AGAINWORD)*", lexemes))
-            and not asked
+            and not has_question_mark
             and not search("(COUNTNOUN|BE) \\Z", match["body"])
         ):
             body = match["body"]
@@ -145,7 +151,7 @@ class Reader:
             return (AtIntervals(self.read(match["body"]), match["size"][0].value),)
         if match := full_match(r"(?P<body>_+?) BETWEENEACH|BETWEENEACH COMMA? (?P<late>_+)", lexemes):
             return (Between(self.read(match["body"] or match["late"])),)
-        step = self._whole(lexemes)
+        step = self._undivided(lexemes)
         if step is not None:
             return step
         if match := full_match("(?P<body>_+) per PRESETNOUN", lexemes):
@@ -168,17 +174,17 @@ class Reader:
         if not search("to NUM X", lexemes) and not any(
             x.has(*ZOOM_TOPICS, *(f"{topic}-ING" for topic in ZOOM_TOPICS), "IN", "OUT") for x in lexemes
         ):
-            body, times, group = without_times(lexemes)
+            body, times, group = without_repetitions(lexemes)
             if times > 1 and body:
                 inner = self.read(body)
                 if len(inner) == 1 and not isinstance(inner[0], Repeat):
                     if isinstance(inner[0], Snap) and not group:
                         return (replace(inner[0], times=times),)
                     return (Repeat(inner, times, group),)
-        return self._at_places(lexemes, asked)
+        return self._at_places(lexemes, has_question_mark)
 
-    def _whole(self, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
-        """Read clauses whose preset is not an adjunct."""
+    def _undivided(self, lexemes: Sequence[Lexeme]) -> tuple[Step, ...] | None:
+        """Read clauses from which no preset may be split off, such as comparisons and moves."""
         found = (
             listing_step(lexemes)
             or sum_step(self.source, lexemes)
@@ -202,27 +208,27 @@ class Reader:
             return None
         return steps if steps and all(isinstance(step, Move | Unclear | GoToPreset | Home) for step in steps) else None
 
-    def _at_places(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+    def _at_places(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read "at the gate, count the cars" and "count the cars at every preset"."""
-        rest, places = place_before(self.source, lexemes)
+        rest, places = split_leading_place(self.source, lexemes)
         if places is not None and rest:
             if all(x.has("GLUE", "FILLER", "COMMA") for x in rest):
                 return None
-            return (AtPlaces(places, self.read(rest, asked=asked), is_fronted=True),)
+            return (AtPlaces(places, self.read(rest, has_question_mark=has_question_mark), is_fronted=True),)
         if search("THAN|than|COMPARE", lexemes):
             return None
         if lexemes[0].has("BE", "WHQ") and (place := occupied_place(self.source, lexemes)) is not None:
             return (AtPlaces((place,), (Ask(f"{text_of(self.source, lexemes)}?"),)),)
-        rest, places = place_after(self.source, without_sum(lexemes))
-        if places is None and (inner := self._place_of_subject(lexemes, asked)) is not None:
+        rest, places = split_trailing_place(self.source, without_sum(lexemes))
+        if places is None and (inner := self._place_of_subject(lexemes, has_question_mark)) is not None:
             return inner
-        if places is None and (named := self._named_place(lexemes, asked)) is not None:
+        if places is None and (named := self._named_place(lexemes, has_question_mark)) is not None:
             return named
         if places is None or not rest:
             return None
         if any(x.has("PRON") for x in rest[-1:]) and match_start("WHQ", rest):
             return None
-        if asked and full_match("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM", rest):
+        if has_question_mark and full_match("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM", rest):
             return (AtPlaces(places, (Ask(f"Are there {text_of(self.source, rest).lower()} people there?"),)),)
         if full_match("(BE)? (SOMEONE|NOONE|anything|nothing)", rest):
             question = text_of(self.source, rest)
@@ -234,54 +240,61 @@ class Reader:
         if full_match("WHQ FREE{1,3} BE", rest):
             return (AtPlaces(places, (Ask(f"{text_of(self.source, rest)} there?"),)),)  # "which vans are at the gate?"
         try:
-            body = self.read(rest, asked=asked)
+            body = self.read(rest, has_question_mark=has_question_mark)
         except NotUnderstoodError:
             return None
         if not body or any(isinstance(step, Forbid | Report) for step in body):
             return None
         return (AtPlaces(places, body),)
 
-    def _place_of_subject(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+    def _place_of_subject(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read "is the barrier at the crossing up?" as a question at the preset."""
-        if not (asked or is_question(lexemes) or lexemes[0].has("TELL")):
+        if not (has_question_mark or is_question(lexemes) or lexemes[0].has("TELL")):
             return None
         if (found := without_inner_place(self.source, lexemes)) is None:
             return None
         source, rest, place = found
         try:
-            steps = Reader(source).read(rest, asked=asked)
+            steps = Reader(source).read(rest, has_question_mark=has_question_mark)
         except NotUnderstoodError:
             return None
         return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask | Count | Read) for step in steps) else None
 
-    def _named_place(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+    def _named_place(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read "has the bus bay got any room left?" as a question at the preset."""
-        if not (asked or is_question(lexemes) or lexemes[0].has("ANY")) or (place := place_asked_about(lexemes)) is None:
+        if (
+            not (has_question_mark or is_question(lexemes) or lexemes[0].has("ANY"))
+            or (place := place_asked_about(self.source, lexemes)) is None
+        ):
             return None
         try:
-            steps = self._plain(lexemes, asked)
+            steps = self._without_adjuncts(lexemes, has_question_mark)
         except NotUnderstoodError:
             return None
         return (AtPlaces((place,), steps),) if steps and all(isinstance(step, Ask) for step in steps) else None
 
-    def _plain(self, lexemes: Sequence[Lexeme], asked: bool) -> tuple[Step, ...] | None:
+    def _without_adjuncts(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read a clause without adjuncts."""
         failed: NotUnderstoodError | None = None
         if full_match(_RECORDING, lexemes):
             return (Unclear("I take single pictures and cannot record. Shall I take a picture?"),)
-        if full_match(_TO_CLOCK_POSITION, lexemes) and not asked:
+        if full_match(_TO_CLOCK_POSITION, lexemes) and not has_question_mark:
             return (special_turn(lexemes) or Unclear("Which way shall I turn, and how far?"),)
         if (
             any(x.has("PICTURE", "SNAP", "ANOTHER") for x in lexemes)
             and any(x.has("TAKE", "SNAP", "TAKE-ING", "SNAP-ING") for x in lexemes)
             and not any(x.has("LEFT", "RIGHT", "UP", "DOWN") for x in lexemes)
         ):
-            step = look_step(self.source, lexemes, asked=asked)
+            step = look_step(self.source, lexemes, has_question_mark=has_question_mark)
             if isinstance(step, Snap | AtPlaces):
                 return (step,)
         for read in (zoom_step, turn_step):
             try:
-                if not is_question(lexemes) and not is_report(lexemes, asked=asked) and (step := read(lexemes)) is not None:
+                if (
+                    not is_question(lexemes)
+                    and not is_report(lexemes, has_question_mark=has_question_mark)
+                    and (step := read(lexemes)) is not None
+                ):
                     return (step,)
             except NotUnderstoodError as error:
                 failed = failed or error
@@ -290,7 +303,7 @@ class Reader:
         if (place := unknown_place(self.source, lexemes)) is not None:
             return (place,)
         try:
-            found = look_step(self.source, lexemes, asked=asked)
+            found = look_step(self.source, lexemes, has_question_mark=has_question_mark)
         except NotUnderstoodError as error:
             raise failed or error from None
         if found is not None:
@@ -301,7 +314,7 @@ class Reader:
         scoping = ("NOW", "FULL", "FILLER", "PREP", "GLUE", "AND", "NOT", "NEGATED")
         if view and all(x.has(*scoping) or x.word in {"consider", "include", "cover", "mean"} for x in lexemes):
             return (Forbid() if any(x.has("NOT", "NEGATED") for x in lexemes) else Rescope(view),)
-        if full_match("(DET)? FREE{1,3}", lexemes) and not asked:
+        if full_match("(DET)? FREE{1,3}", lexemes) and not has_question_mark:
             name = text_of(self.source, lexemes)
             return (GoToPreset(PresetRef(name, has_article=lexemes[0].has("DET")), "bare"),)
         if failed:
@@ -309,9 +322,9 @@ class Reader:
         return None
 
 
-def is_report(lexemes: Sequence[Lexeme], *, asked: bool) -> bool:
-    """Return whether a clause reports or asks about a move, instead of commanding it: "I panned left", "did you pan left?"."""
-    if asked and lexemes[0].word in _ASKING:
+def is_report(lexemes: Sequence[Lexeme], *, has_question_mark: bool) -> bool:
+    """Return whether a clause reports or asks about an earlier move: "I panned left", "did you pan left?"."""
+    if has_question_mark and lexemes[0].word in _ASKING:
         return True
     if match_start("(SELF|PRON|(DET)? CAMERA|DET VIEWNOUN|DET PICTURE) (BE|HAVEV|'s) ", lexemes):
         return True

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from scope_ptz.planner.grammar.instruction_tree import Count, Move, Step
-from scope_ptz.planner.grammar.parsing.asides import is_news, is_reason, is_shared_knowledge, is_wish
+from scope_ptz.planner.grammar.parsing.asides import appeals_to_shared_knowledge, is_reason, is_wish, reports_event
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VERBS, Clause
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
-from scope_ptz.planner.grammar.parsing.restatements import says_size_again
+from scope_ptz.planner.grammar.parsing.restatements import repeats_previous_size
 
 _TOO_MUCH = "(FILLER|LITTLE|LOT|PRON|BE|DET|AMOUNTISH)* too (LOT|LITTLE|much|FREE|ADVERB|CLOSER|WIDER|tight|UP|DOWN)"
 """A comment on the previous move: "left 20, too far, back 5"."""
@@ -18,7 +18,7 @@ _WANTS_A_LOOK = "(DET)? FREE{1,2} (wants|needs|WRAPPER|TAKE-S|SHOW-S) (to)? (DET
 _WANTED_VIEW = (
     "(FILLER)* (i_need|i_want|we_need|we_want|SELF (need|want)) DET (FREE|CLOSER|WIDER|TIGHT|WIDE)? (VIEWNOUN|look) (of|at) _+"
 )
-"""A statement of the view that the user wants, which is the reason for the move in the next sentence."""
+"""A statement of the view that the user wants. The next sentence commands the move for it."""
 
 _NO_MORE = (
     "(FILLER|AND|BUT|DASH|just)* (not|no|NOT|NONE|NEGATED|nothing) (MORE|more|further) (than that)? (FILLER)*|no_more (FILLER)*"
@@ -45,7 +45,7 @@ def adds_nothing(clause: Clause, after: Clause | None, last: Step | None, *, is_
     if (
         clause.link in {",", "and", "."}
         and not is_first
-        and (is_reason(clause.lexemes) or is_news(clause) or is_shared_knowledge(clause))
+        and (is_reason(clause.lexemes) or reports_event(clause) or appeals_to_shared_knowledge(clause))
     ):
         return True
     is_move_next = after is not None and after.link == "," and not after.marker and after.lexemes[0].has(*MOTION_VERBS)
@@ -75,7 +75,7 @@ def adds_nothing(clause: Clause, after: Clause | None, last: Step | None, *, is_
         return True
     if clause.link != "," or not isinstance(last, Move):
         return False
-    return says_size_again(last, clause) or bool(match_start(_WANTS_A_LOOK, clause.lexemes))
+    return repeats_previous_size(last, clause) or bool(match_start(_WANTS_A_LOOK, clause.lexemes))
 
 
 def _is_full_sentence(clause: Clause) -> bool:

@@ -19,7 +19,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 
 
 def add_further(out: list[Step], step: Further) -> None:
-    """Repeat the last turn with another amount."""
+    """Repeat the last turn with a new amount."""
     last = out[-1] if out else None
     turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
     out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
@@ -46,7 +46,7 @@ def add_back_towards(out: list[Step], turn: Turn) -> None:
 
 
 def _multiple_of(turn: Turn, amount: Amount) -> Turn | None:
-    """Return a turn with another amount, which may be a multiple of its own; None if its own cannot be multiplied."""
+    """Return a turn with a new amount, which may be a multiple of its own; None if its own cannot be multiplied."""
     if amount.kind != "same":
         return replace(turn, amount=amount)
     own = turn.amount or Amount()

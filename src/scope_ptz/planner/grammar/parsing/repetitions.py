@@ -1,4 +1,4 @@
-"""Combine steps that say how often or where others are repeated: "each time", "again", "between each", "every 20 degrees"."""
+"""Apply steps that say how often or where others are repeated: "each time", "again", "between each", "every 20 degrees"."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def add_each_time(out: list[Step], step: EachTime) -> None:
     out.extend(step.body)
 
 
-def done_at_place(out: list[Step]) -> tuple[Step, ...]:
+def steps_at_last_place(out: list[Step]) -> tuple[Step, ...]:
     """Return the steps that follow the last move to a preset or home."""
     if out and isinstance(out[-1], AtPlaces):
         return out[-1].body
@@ -56,7 +56,7 @@ def add_again(out: list[Step], step: DoAgain) -> None:
     If that move is the last step ("count the cars, go to gate and do that again"), run the steps before it at the new place.
     """
     if isinstance(out[-1], GoToPreset) and len(out) > 1:
-        out.extend(done_at_place(out[:-1]))
+        out.extend(steps_at_last_place(out[:-1]))
         return
     if isinstance(out[-1], Repeat) and step.times is None and len(out) == 1:
         out[-1] = replace(out[-1], times=out[-1].times + 1)  # "right 10, again, again"

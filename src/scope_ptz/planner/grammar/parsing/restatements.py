@@ -17,28 +17,28 @@ from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 _HALF_TURN_DEG = 180.0
 
 
-def says_again(before: Step | None, steps: Sequence[Step]) -> bool:
+def repeats_previous_move(before: Step | None, steps: Sequence[Step]) -> bool:
     """Return whether a move goes the same way as the previous move: "pan left 10, ten degrees to the left".
 
     It may just be a rewording of that move, so it must not be carried out as a second one.
     """
     if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
         return False
-    return bool(_ways(before) & _ways(steps[0]))
+    return bool(_axis_directions(before) & _axis_directions(steps[0]))
 
 
-def is_wish_for_zoom(before: Step | None, steps: Sequence[Step], clause: Clause) -> bool:
+def is_reason_for_zoom(before: Step | None, steps: Sequence[Step], clause: Clause) -> bool:
     """Return whether a clause only says why the previous move zooms: "zoom out a lot, I want the wide view"."""
     if not (clause.lexemes and clause.lexemes[0].has("WRAPPER") and clause.lexemes[0].word.endswith(("want", "need"))):
         return False
     if not (isinstance(before, Move) and len(steps) == 1 and isinstance(steps[0], Move)):
         return False
     limits = [part.kind for part in steps[0].parts if isinstance(part, Zoom)]
-    ways = {"in" if inwards else "out" for axis, inwards in _ways(before) if axis == "zoom"}
-    return len(limits) == len(steps[0].parts) == 1 and limits[0] in ways
+    directions = {"in" if inwards else "out" for axis, inwards in _axis_directions(before) if axis == "zoom"}
+    return len(limits) == len(steps[0].parts) == 1 and limits[0] in directions
 
 
-def says_size_again(move: Move, clause: Clause) -> bool:
+def repeats_previous_size(move: Move, clause: Clause) -> bool:
     """Return whether a clause only repeats how far the previous move goes: "a hair to the right, just slightly"."""
     half_turn = full_match("(FILLER|AMOUNTISH|DET|LIMIT)* (?P<number>NUM) DEG? (FILLER)*", clause.lexemes)
     if half_turn is not None and half_turn["number"][0].value == _HALF_TURN_DEG:
@@ -56,10 +56,10 @@ def says_size_again(move: Move, clause: Clause) -> bool:
     )
 
 
-def _ways(move: Move) -> set[tuple[str, bool]]:
+def _axis_directions(move: Move) -> set[tuple[str, bool]]:
     """Return the axes that a move changes by an amount, each with its direction."""
-    ways: set[tuple[str, bool]] = {(part.axis, part.sign > 0) for part in move.parts if isinstance(part, Turn)}
+    directions: set[tuple[str, bool]] = {(part.axis, part.sign > 0) for part in move.parts if isinstance(part, Turn)}
     for part in move.parts:
         if isinstance(part, Zoom) and part.kind in {"factor", "percent"}:
-            ways.add(("zoom", part.value > (1 if part.kind == "factor" else 0)))
-    return ways
+            directions.add(("zoom", part.value > (1 if part.kind == "factor" else 0)))
+    return directions

@@ -27,14 +27,14 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.asides import (
     drops_everything,
     elliptical_condition,
-    is_ability,
-    is_courtesy,
-    is_need,
+    is_ability_condition,
+    is_courtesy_condition,
+    is_necessity_condition,
+    is_withdrawal_statement,
     takes_back,
-    withdraws,
 )
 from scope_ptz.planner.grammar.parsing.branches import bound_of
-from scope_ptz.planner.grammar.parsing.calculations import calculated_afterwards
+from scope_ptz.planner.grammar.parsing.calculations import with_later_calculations
 from scope_ptz.planner.grammar.parsing.compose import axis_of, compose
 from scope_ptz.planner.grammar.parsing.parts.clause import (
     VERBS,
@@ -45,12 +45,12 @@ from scope_ptz.planner.grammar.parsing.parts.clause import (
 )
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of
-from scope_ptz.planner.grammar.parsing.parts.scopes import place_after
+from scope_ptz.planner.grammar.parsing.parts.scopes import split_trailing_place
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
 from scope_ptz.planner.grammar.parsing.remarks import adds_nothing
-from scope_ptz.planner.grammar.parsing.restatements import is_wish_for_zoom, says_again
+from scope_ptz.planner.grammar.parsing.restatements import is_reason_for_zoom, repeats_previous_move
 from scope_ptz.planner.grammar.parsing.topics import topic_count, topic_step
-from scope_ptz.planner.grammar.parsing.tours import Tours
+from scope_ptz.planner.grammar.parsing.tours import TourReader
 
 _SEARCHING = frozenset({"look_for", "search_for", "have_a_look_for", "take_a_look_for"})
 _REACHED = (
@@ -64,24 +64,24 @@ _WITHDRAWN = Unclear("Shall I do that, or not?")
 _SAME_MOVE = Unclear("Is that part of the same move, or another one? Please give each move its amount.")
 
 
-class Sentences(Tours):
-    """Reads a list of clauses from left to right."""
+class SentenceReader(TourReader):
+    """Reads all clauses of an instruction from left to right."""
 
     def steps(self) -> list[Step]:
         """Return the steps of all clauses."""
         out: list[Step] = []
         at_once: list[Step] = []  # steps since the last "then" or full stop
-        while self.next < len(self.clauses):
-            start, linked = self.next, self._linked()
-            out = _merged(compose(linked, out))
+        while self.next_index < len(self.clauses):
+            start, linked = self.next_index, self._linked()
+            out = _with_merged_conditions(compose(linked, out))
             if self.clauses[start].link in {"then", "."}:
                 at_once = []
             at_once += [each.step for each in linked]
-            is_one_move = any(x.has("ATSAMETIME") for clause in self.clauses[start : self.next] for x in clause.lexemes)
+            is_one_move = any(x.has("ATSAMETIME") for clause in self.clauses[start : self.next_index] for x in clause.lexemes)
             axes = [axis_of(part) for step in at_once if isinstance(step, Move) for part in step.parts]
             if is_one_move and len(set(axes)) < len(axes):
                 return [Unclear("That asks for two moves on the same axis at once. Which one shall I make?")]
-        return calculated_afterwards(out)
+        return with_later_calculations(out)
 
     def _linked(self) -> list[Linked]:
         """Return the linked steps of the next clause and of the clauses that belong to it."""
@@ -89,15 +89,15 @@ class Sentences(Tours):
         match clause.marker:
             case "" if self._takes_back(clause):
                 return [Linked(clause.link, _WITHDRAWN)]
-            case "" if adds_nothing(clause, self._peek(), self.last, is_first=self.next == 1):
+            case "" if adds_nothing(clause, self._peek(), self.last_step, is_first=self.next_index == 1):
                 return []
             case "":
-                return self._main(clause)
+                return self._main_clause(clause)
             case _ if _is_meanwhile(clause):
                 return []
             case "WHILE" | "UNTIL":
                 return [Linked(clause.link, self._loop_ahead(clause))]
-            case "IF" if is_courtesy(clause.lexemes):
+            case "IF" if is_courtesy_condition(clause.lexemes):
                 return []
             case "WHEN" | "AFTER" if self._follows_search() and full_match(_REACHED, clause.lexemes):
                 return [Linked("then", step) for step in self._block([])]
@@ -118,19 +118,19 @@ class Sentences(Tours):
     def _takes_back(self, clause: Clause) -> bool:
         """Return whether a clause takes back or forbids another one: "I changed my mind", or "no, don't" at the end."""
         after = self._peek()
-        is_last = self.next > 1 and (after is None or after.link == "." or drops_everything(clause))
-        return (len(self.clauses) > 1 and withdraws(clause)) or (is_last and takes_back(clause))
+        is_last = self.next_index > 1 and (after is None or after.link == "." or drops_everything(clause))
+        return (len(self.clauses) > 1 and is_withdrawal_statement(clause)) or (is_last and takes_back(clause))
 
     def _follows_search(self) -> bool:
         """Return whether the previous clause looks for something: "until you see a van", "find the van"."""
-        ends_loop = self.next > 1 and self.clauses[self.next - 2].marker in {"UNTIL", "WHILE"}
-        return ends_loop or isinstance(self.last, ZoomTo)
+        ends_loop = self.next_index > 1 and self.clauses[self.next_index - 2].marker in {"UNTIL", "WHILE"}
+        return ends_loop or isinstance(self.last_step, ZoomTo)
 
     # Main clauses ------------------------------------------------------------------------------------------------------
-    def _main(self, clause: Clause) -> list[Linked]:
+    def _main_clause(self, clause: Clause) -> list[Linked]:
         """Return the steps of a main clause, with what follows it: "until ...", "if ...", "before ..."."""
         after = self._peek()
-        if times := self._times_of_all(clause):
+        if times := self._repeated_list(clause):
             return [Linked(clause.link, times)]
         if (condition := elliptical_condition(self.reader.source, clause, after)) is not None:
             return self._elliptical(clause, after, condition)
@@ -138,24 +138,24 @@ class Sentences(Tours):
             self._take()
             clause, after = count, self._peek()
         elif (topic := topic_step(self.reader.source, clause, after)) is not None:
-            self.last, takes_next = topic
+            self.last_step, takes_next = topic
             if takes_next:
                 self._take()
-            return [Linked(clause.link, self.last)]
-        before = self.last
+            return [Linked(clause.link, self.last_step)]
+        before = self.last_step
         steps = self._read(clause)
-        if clause.link == "," and is_wish_for_zoom(before, steps, clause):
+        if clause.link == "," and is_reason_for_zoom(before, steps, clause):
             return []
         if self._lists_pictures(steps):
             return []
         if (
             clause.link == ","
-            and says_again(before, steps)
+            and repeats_previous_move(before, steps)
             and not any(x.has("AGAINWORD") or (x.has("ANOTHER") and x.word != "it") or x.word == "more" for x in clause.lexemes)
         ):
             return [Linked("then", _SAME_MOVE)]
         if after is not None and after.opener is not None and after.opener.word.startswith("if_there"):
-            steps = tuple(_presence(clause, step) for step in steps)
+            steps = tuple(_as_presence_count(clause, step) for step in steps)
         if (tour := self._tour(clause, steps)) is not None:
             return tour
         if (
@@ -171,11 +171,11 @@ class Sentences(Tours):
                 return [Linked(clause.link, replace(steps[0], move=moves[0]))]
             raise NotUnderstoodError(after.lexemes)
         if after is None:
-            return self._ended(clause, steps)
+            return self._linked_steps(clause, steps)
         there = steps[0] if len(steps) == 1 and isinstance(steps[0], AtPlaces) and _begins_at_place(clause) else None
         done = there.body if there is not None and there.body else steps
         if after.marker in {"UNTIL", "WHILE"} and self._is_place(clause):
-            return self._ended(clause, steps)  # "at the gate, until you see a van, pan right 10"
+            return self._linked_steps(clause, steps)  # "at the gate, until you see a van, pan right 10"
         is_while = after.marker == "WHILE" and after.link in {"", ","} and not _is_meanwhile(after)
         if after.marker == "UNTIL" or is_while:
             return [Linked(clause.link, _with_body(there, self._loop(clause, done)))]
@@ -183,13 +183,13 @@ class Sentences(Tours):
             self._take()
             loop = self._loop(clause, steps)
             return [Linked(clause.link, replace(loop, bound=bound) if isinstance(loop, Loop) else loop)]
-        is_too_hard = all(isinstance(step, Ask | Read) for step in steps) and bool(steps) and is_ability(after.lexemes)
-        is_polite = after.marker == "IF" and (is_courtesy(after.lexemes) or is_too_hard)
+        is_too_hard = all(isinstance(step, Ask | Read) for step in steps) and bool(steps) and is_ability_condition(after.lexemes)
+        is_polite = after.marker == "IF" and (is_courtesy_condition(after.lexemes) or is_too_hard)
         if is_polite or _is_meanwhile(after):
             self._take()
-            return self._ended(clause, steps)
-        if after.marker == "IF" and is_need(after.lexemes):
-            return self._as_needed(clause, steps)
+            return self._linked_steps(clause, steps)
+        if after.marker == "IF" and is_necessity_condition(after.lexemes):
+            return self._steps_if_needed(clause, steps)
         if after.marker in {"WHEN", "AFTER"} and steps and (place := _arrival(self.reader.source, after)) is not None:
             self._take()
             return [Linked(clause.link, place), *(Linked("then", step) for step in steps)]
@@ -203,15 +203,15 @@ class Sentences(Tours):
             return ordered
         if after.marker == "REASON" and after.link in {"", ",", "and"}:
             self._take()
-        return self._ended(clause, steps)
+        return self._linked_steps(clause, steps)
 
     def _elliptical(self, clause: Clause, after: Clause | None, condition: Condition) -> list[Linked]:
-        """Return the steps of a condition without "if" and of its branches: "more than five vans at the gate? Then go home"."""
-        is_told = not clause.is_question and match_start("SOMEONE BE", clause.lexemes)
-        if is_told and isinstance(condition, Seen) and after is not None and search("them|him|her|it|PRON", after.lexemes):
-            self.last = Mention(condition.thing)  # "someone is at the door - zoom in on them"
-            return [Linked(clause.link, self.last)]
-        rest, places = place_after(self.reader.source, clause.lexemes)
+        """Return the steps for a condition without "if" and its branches: "more than five vans at the gate? Then go home"."""
+        is_report = not clause.is_question and match_start("SOMEONE BE", clause.lexemes)
+        if is_report and isinstance(condition, Seen) and after is not None and search("them|him|her|it|PRON", after.lexemes):
+            self.last_step = Mention(condition.thing)  # "someone is at the door - zoom in on them"
+            return [Linked(clause.link, self.last_step)]
+        rest, places = split_trailing_place(self.reader.source, clause.lexemes)
         inner = elliptical_condition(self.reader.source, replace(clause, lexemes=rest), after) if places and rest else None
         branches = self._branches(inner or condition, replace(clause, lexemes=(), marker="IF"))
         return [Linked(clause.link, branches if inner is None else AtPlaces(places or (), (branches,)))]
@@ -221,7 +221,7 @@ class Sentences(Tours):
         condition = self._take()
         if condition.marker == "UNLESS" and (later := self._peek()) is not None and later.link == "then":
             return _IN_ANY_CASE  # "pan left unless there is a van, then pan right"
-        return _with_body(there, self._trailing(condition, steps))
+        return _with_body(there, self._with_trailing_condition(condition, steps))
 
     def _with_order(self, clause: Clause, steps: tuple[Step, ...], before: Step | None) -> list[Linked] | None:
         """Return the steps of a clause and of the "before ..." or "after ..." that follows it; None if the two are separate.
@@ -231,13 +231,13 @@ class Sentences(Tours):
             steps: Its steps.
             before: The step before them.
         """
-        after, later = self.clauses[self.next], self._peek(1)
+        after, later = self.clauses[self.next_index], self._peek(1)
         if after.marker == "BEFORE" and is_event(after.lexemes):
             self._take()
-            return self._ended(clause, steps)  # "take a picture before the bus leaves"
+            return self._linked_steps(clause, steps)  # "take a picture before the bus leaves"
         leads = later is not None and later.link == "," and not later.marker
         if after.link == "and" and leads:
-            return self._ended(clause, steps)  # "take a picture, and after panning left, go home"
+            return self._linked_steps(clause, steps)  # "take a picture, and after panning left, go home"
         if after.link not in {"", ",", "and"} or not steps:
             return None
         self._take()
@@ -268,13 +268,13 @@ class Sentences(Tours):
 
 
 def _as_command(lexemes: tuple[Lexeme, ...]) -> tuple[Lexeme, ...]:
-    """Return the command for a participle at the beginning: "count the cars" for "(after you have) counted the cars"."""
+    """Return a clause with its initial participle as a command: "count the cars" for "(after you have) counted the cars"."""
     command = command_of(lexemes[0])
     return lexemes if command is None else (command, *lexemes[1:])
 
 
 def _is_meanwhile(clause: Clause) -> bool:
-    """Return whether "while" says what the speaker does meanwhile: "while I make a brew"."""
+    """Return whether a "while" clause says what the speaker does meanwhile: "while I make a brew"."""
     if clause.marker != "WHILE":
         return False
     seen = ("SEE", "SEE-ING", "VISIBLE", "VIEWNOUN", "PICTURE", "NUM", "PRESET", "HOME", "DEG", "NOT")
@@ -301,7 +301,7 @@ def _adverbial_order(clause: Clause) -> Unclear | None:
 
 
 def _arrival(source: Source, clause: Clause) -> GoToPreset | None:
-    """Return the step that goes to the preset at which a clause says to arrive: "once you're at the gate"."""
+    """Return the step that goes to the preset at which the camera must first arrive: "once you're at the gate"."""
     match = full_match(
         "(SELF|CAMERA|it|DET CAMERA)* ((BE|CARRY|get_to|reach|reached|arrive) (at|on|to|in)?|at|on|in) (?P<place>_+)",
         clause.lexemes,
@@ -310,7 +310,7 @@ def _arrival(source: Source, clause: Clause) -> GoToPreset | None:
     return GoToPreset(place) if place is not None else None
 
 
-def _merged(steps: list[Step]) -> list[Step]:
+def _with_merged_conditions(steps: list[Step]) -> list[Step]:
     """Merge "go to A if there is" and "to B if there is not" into one condition with two branches."""
     if len(steps) < 2:
         return steps
@@ -328,10 +328,10 @@ def _merged(steps: list[Step]) -> list[Step]:
     return steps
 
 
-def _presence(clause: Clause, step: Step) -> Step:
-    """Return the count for "look for a skateboard, and if there is one, ...", which only asks whether there is one."""
+def _as_presence_count(clause: Clause, step: Step) -> Step:
+    """Return a search as a count if only the presence matters: "look for a skateboard, and if there is one, ..."."""
     if isinstance(step, AtPlaces) and len(step.body) == 1:
-        return replace(step, body=(_presence(clause, step.body[0]),))
+        return replace(step, body=(_as_presence_count(clause, step.body[0]),))
     is_search = isinstance(step, ZoomTo) and any(x.word in _SEARCHING for x in clause.lexemes[:3])
     return Count((step.thing,)) if is_search and isinstance(step, ZoomTo) and not step.thing.definite else step
 

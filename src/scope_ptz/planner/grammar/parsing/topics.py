@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scope_ptz.planner.grammar.execution.answer_sentences import continued, noun
+from scope_ptz.planner.grammar.execution.answer_sentences import noun, with_lower_initial
 from scope_ptz.planner.grammar.instruction_tree import Ask, Mention, Step
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
@@ -12,7 +12,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, Clause, Source
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of, things_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
-from scope_ptz.planner.grammar.parsing.parts.scopes import place_after, without_view
+from scope_ptz.planner.grammar.parsing.parts.scopes import split_trailing_place, without_view
 
 _BARE_COUNT = (
     r"(FILLER|FIRSTLY|COMMA|and|AND|TELL|me|us)* (HOWMANY|(what|which|WHQ) (number|total|count)|"
@@ -36,7 +36,7 @@ def topic_count(source: Source, clause: Clause, after: Clause | None) -> Clause 
     whole = without_sum(clause.lexemes)
     added = clause.lexemes[len(whole) :]  # "cones and barriers put together, how many?"
     bare, _ = without_view(whole)
-    words, _ = place_after(source, bare)
+    words, _ = split_trailing_place(source, bare)
     if things_of(source, words) is None:
         return None
     scope = tuple(x for x in (*clause.lexemes, *after.lexemes) if x.has("FULL"))
@@ -45,7 +45,7 @@ def topic_count(source: Source, clause: Clause, after: Clause | None) -> Clause 
 
 
 def topic_step(source: Source, clause: Clause, after: Clause | None) -> tuple[Step, bool] | None:
-    """Return the step of a thing that the next clause asks about, and whether that clause is part of it; None for others."""
+    """Return the step for a thing that the next clause asks about, and whether the step covers that clause; None for others."""
     if after is None or not _is_topic(source, clause) or after.marker or not after.lexemes:
         return None
     thing = thing_of(source, clause.lexemes)
@@ -53,14 +53,14 @@ def topic_step(source: Source, clause: Clause, after: Clause | None) -> tuple[St
         return None
     if after.is_question and (asked := full_match(_BARE_QUESTION, after.lexemes)) is not None:
         article = "" if clause.lexemes[0].has("DET") else "the "
-        subject = f"{article}{continued(text_of(source, clause.lexemes))}"
+        subject = f"{article}{with_lower_initial(text_of(source, clause.lexemes))}"
         verb = "are" if noun(subject, 2) == subject else "is"
         return Ask(f"{text_of(source, asked['asked'])} {verb} {subject}?"), True
     is_asked = match_start(
         "(FILLER|COMMA|AND|TELL|if|whether|me)* (BE|DOV|HAVEV|MODAL|can|WHQ _{1,4}) (it|they|them|PRON)", after.lexemes
     )
     if is_asked and after.is_question:
-        return Mention(replace(thing, text=continued(thing.text))), False
+        return Mention(replace(thing, text=with_lower_initial(thing.text))), False
     return None
 
 

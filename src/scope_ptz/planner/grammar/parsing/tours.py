@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     ZoomTo,
 )
 from scope_ptz.planner.grammar.parsing.compose import compose
-from scope_ptz.planner.grammar.parsing.loops import Loops
+from scope_ptz.planner.grammar.parsing.loops import LoopReader
 from scope_ptz.planner.grammar.parsing.parts.clause import Clause, Source, trimmed
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
@@ -27,7 +27,7 @@ _LOOKS = (Ask, Count, Read, Snap)
 """Steps that are carried out at each of several presets visited one by one."""
 
 
-class Tours(Loops):
+class TourReader(LoopReader):
     """Reads tours, such as "the gate and the yard, and count the cars at each", and "three times: pan left, take a picture"."""
 
     def _tour(self, clause: Clause, steps: tuple[Step, ...]) -> list[Linked] | None:
@@ -37,7 +37,7 @@ class Tours(Loops):
         size = 0  # number of further presets in the list that the clause begins
         while (other := self._peek(size)) is not None and _lists_place(self.reader.source, other):
             size += 1
-        listed = self.clauses[self.next : self.next + size]
+        listed = self.clauses[self.next_index : self.next_index + size]
         act = self._peek(size)
         is_each = any(x.has("EVERY") for x in clause.lexemes)
         is_in_turn = any(x.has("INTURN") for part in (clause, *listed) for x in part.lexemes)
@@ -53,12 +53,16 @@ class Tours(Loops):
         if any(isinstance(step, Move | ZoomTo | Track) for step in each):
             return [Linked(clause.link, Unclear("Shall I do that at each of them, or only at the last one?"))]
         if not all(isinstance(step, _LOOKS) for step in each):
-            return [*self._ended(clause, tuple(visits)), *(Linked(act.link, step) for step in each)]
+            return [*self._linked_steps(clause, tuple(visits)), *(Linked(act.link, step) for step in each)]
         rest: list[Step] = []
         while not rest and (more := self._peek()) is not None and more.link == "and" and not more.marker:
             steps = self._read(self._take())
             (each if all(isinstance(step, _LOOKS) for step in steps) else rest).extend(steps)
-        return [*self._ended(clause, tuple(visits)), Linked(",", EachTime(tuple(each))), *(Linked("and", step) for step in rest)]
+        return [
+            *self._linked_steps(clause, tuple(visits)),
+            Linked(",", EachTime(tuple(each))),
+            *(Linked("and", step) for step in rest),
+        ]
 
     def _lists_pictures(self, steps: tuple[Step, ...]) -> bool:
         """Return whether the next clauses state the subjects of pictures: "two pictures, one of the barn and one of the silo"."""
@@ -73,8 +77,8 @@ class Tours(Loops):
             for clause in listed
         )
 
-    def _times_of_all(self, clause: Clause) -> Step | None:
-        """Return the repetition of "three times: pan left 20 and count the cars"."""
+    def _repeated_list(self, clause: Clause) -> Step | None:
+        """Return the repetition for "three times: pan left 20 and count the cars"; None for other clauses."""
         match = full_match(
             (
                 r"(FILLER|(do|execute|perform|carry_out|run) (DET following|this|that|it)?|REPEAT|REPEAT SELF)* "
@@ -89,7 +93,7 @@ class Tours(Loops):
             return None
         times = round(match["number"][0].value) if match["number"] else 2 if match.has("twice") else 3
         body: list[Step] = []
-        while self.next < len(self.clauses) and (not body or self.clauses[self.next].link not in {"."}):
+        while self.next_index < len(self.clauses) and (not body or self.clauses[self.next_index].link not in {"."}):
             body = compose(self._linked(), body)
         return Repeat(tuple(body), max(1, min(times, 50)))
 

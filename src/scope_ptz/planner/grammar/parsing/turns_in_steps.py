@@ -16,13 +16,13 @@ from scope_ptz.planner.grammar.instruction_tree import (
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn of a move that has a step size; None if there is none."""
+    """Return the turn of a move if it has a step size; otherwise None."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None
 
 
-def stepped(step: Step) -> Step:
+def split_into_steps(step: Step) -> Step:
     """Split a move with a step size: "90 degrees in 30 degree steps" is three moves, "in 30 degree steps" alone is one."""
     turn = _step_size(step)
     if turn is None or turn.step is None or not isinstance(step, Move):
@@ -40,12 +40,12 @@ def stepped(step: Step) -> Step:
     return Repeat((single,), min(times, 24)) if times > 1 else single
 
 
-def stepped_loop(step: Loop | Repeat) -> Step:
+def split_loop_into_steps(step: Loop | Repeat) -> Step:
     """Split the move with a step size in a loop: each iteration makes one step, and the whole move limits the loop."""
     turn = _step_size(step.body[0])
     if turn is None or not isinstance(step.body[0], Move):
         return step
-    inner = stepped(step.body[0])
+    inner = split_into_steps(step.body[0])
     single = inner.body[0] if isinstance(inner, Repeat) else inner
     body = (single, *step.body[1:])
     if isinstance(step, Loop) and isinstance(inner, Repeat) and step.bound is None:

@@ -19,13 +19,13 @@ from scope_ptz.serve.mcp.pictures import (
     MAX_PICTURE_BYTES,
     PICTURE_WIDTH,
     UNTRUSTED_META,
-    fitting_jpeg,
+    convert_to_limited_jpeg,
+    encode_limited_jpeg,
     image_content,
-    stored_jpeg,
 )
 from scope_ptz.serve.mcp.run_progress import follow
 from scope_ptz.serve.mcp.tool import (
-    Call,
+    CallContext,
     McpTool,
     ToolArguments,
     camera_property,
@@ -34,7 +34,7 @@ from scope_ptz.serve.mcp.tool import (
     remove_titles,
     reply,
 )
-from scope_ptz.serve.mcp.untrusted import PictureText, enclose_in_markers, mark_schema, mark_texts, truncate
+from scope_ptz.serve.mcp.untrusted import PictureText, enclose_in_markers, mark_picture_text, mark_schema, truncate
 from scope_ptz.serve.site.pairs import Pairs
 from scope_ptz.serve.site.run_handle import RunHandle
 from scope_ptz.serve.site.start_runs import finished_call, start_tool_call
@@ -56,7 +56,7 @@ class _CommonArguments(ToolArguments):
     picture: bool = True
 
 
-class OneCamera(ToolArguments):
+class CameraArguments(ToolArguments):
     """The arguments of a tool for one camera."""
 
     camera: str = Field(max_length=120)
@@ -83,10 +83,10 @@ def camera_tools(cameras: Sequence[str], pairs: Pairs) -> list[McpTool]:
 
 
 def _camera_tool(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> McpTool:
-    reads = tool is GET_PRESETS
+    is_read_only = tool is GET_PRESETS
 
-    async def run(call: Call, arguments: dict[str, Any]) -> CallToolResult:
-        return await (_read_presets(call, arguments) if reads else _run(tool, call, arguments))
+    async def run(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
+        return await (_read_presets(call, arguments) if is_read_only else _run(tool, call, arguments))
 
     return McpTool(
         name=tool.name,
@@ -95,13 +95,13 @@ def _camera_tool(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> McpTool:
         input_schema=_input_schema(tool, cameras, pairs),
         output_schema=_output_schema(tool),
         annotations=ToolAnnotations(
-            read_only_hint=reads,  # every other call takes control and stores a run, even if it does not move the camera
+            read_only_hint=is_read_only,  # every other call takes control and stores a run, even if it does not move the camera
             destructive_hint=False,
             idempotent_hint=tool.repeatable,
-            open_world_hint=not reads,  # pictures show whatever is in front of the camera
+            open_world_hint=not is_read_only,  # pictures show whatever is in front of the camera
         ),
-        needs_operator=not reads,
-        kind="read" if reads else "command",
+        needs_operator=not is_read_only,
+        kind="read" if is_read_only else "command",
         run=run,
     )
 
@@ -114,13 +114,13 @@ def _description(tool: Tool) -> str:
 def _input_schema(tool: Tool, cameras: Sequence[str], pairs: Pairs) -> dict[str, Any]:
     schema = tool.schema()["function"]["parameters"]
     common: dict[str, Any] = {"camera": camera_property(cameras)}
-    extra: dict[str, Any] = {}
+    optional: dict[str, Any] = {}
     if tool.perceives and len(pairs.names) > 1:
-        extra["pair"] = {"type": "string", "enum": list(pairs.names), "description": "Models to use; by default the first."}
+        optional["pair"] = {"type": "string", "enum": list(pairs.names), "description": "Models to use; by default the first."}
     if tool is not GET_PRESETS:
-        extra["picture"] = {"type": "boolean", "default": True, "description": "Whether the result contains a picture."}
+        optional["picture"] = {"type": "boolean", "default": True, "description": "Whether the result contains a picture."}
     required = ["camera", *schema.get("required", ())]
-    return {**schema, "properties": {**common, **schema["properties"], **extra}, "required": required}
+    return {**schema, "properties": {**common, **schema["properties"], **optional}, "required": required}
 
 
 def _output_schema(tool: Tool) -> dict[str, Any]:
@@ -131,22 +131,22 @@ def _output_schema(tool: Tool) -> dict[str, Any]:
     return remove_titles(mark_schema(schema)) if tool.perceives else schema
 
 
-async def _run(tool: Tool, call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _run(tool: Tool, call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     common = parse_arguments(
         _CommonArguments, tool.name, {name: arguments[name] for name in _CommonArguments.model_fields if name in arguments}
     )
-    own = {name: value for name, value in arguments.items() if name not in _CommonArguments.model_fields}
+    tool_arguments = {name: value for name, value in arguments.items() if name not in _CommonArguments.model_fields}
     station = call.site.station(common.camera)
-    parse_call(tool.name, own)
-    handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, own, common.pair))
+    parse_call(tool.name, tool_arguments)
+    handle = await follow(call, station, start_tool_call(call.site, call.client, station, tool.name, tool_arguments, common.pair))
     called = finished_call(handle)
-    more = await _pictures(call, station, handle, called, inline=common.picture)
-    return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *more, failed=_has_failed(called))
+    pictures = await _pictures(call, station, handle, called, inline=common.picture)
+    return reply(_text(tool, station, handle, called), _data(tool, station, handle, called), *pictures, failed=_has_failed(called))
 
 
-async def _read_presets(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _read_presets(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     """List the presets. Like ``GET /cameras/{camera}/presets``, this needs no control, and viewers are permitted."""
-    parsed = parse_arguments(OneCamera, GET_PRESETS.name, arguments)
+    parsed = parse_arguments(CameraArguments, GET_PRESETS.name, arguments)
     station = call.site.station(parsed.camera)
     context = ToolContext(await station.camera(), NoPerception(_NO_PERCEPTION), NoImages())
     result = await GET_PRESETS.run(context, GET_PRESETS.arguments())
@@ -174,7 +174,7 @@ def _data(tool: Tool, station: Station, handle: RunHandle, called: Called) -> di
         "camera": station.name,
         "run": handle.id,
         "pose": PoseModel.of(called.pose.pose()).model_dump(),
-        "result": None if outcome.result is None else mark_texts(outcome.result, perceived=tool.perceives),
+        "result": None if outcome.result is None else mark_picture_text(outcome.result, perceives=tool.perceives),
         "error": error,
         "fault": called.fault,
     }
@@ -189,21 +189,23 @@ def _text(tool: Tool, station: Station, handle: RunHandle, called: Called) -> st
     return f"{head} After the call, {pose_text(Arrival(called.pose.pose()))}.\n{enclose_in_markers(report)}"
 
 
-async def _pictures(call: Call, station: Station, handle: RunHandle, called: Called, *, inline: bool) -> list[ContentBlock]:
+async def _pictures(call: CallContext, station: Station, handle: RunHandle, called: Called, *, inline: bool) -> list[ContentBlock]:
     """Return a call's picture, and links to its stored pictures. A panorama is always returned as a link."""
     result = called.outcome.result
     if result is None:
         return []
     names = [name for name in (*(result.get("frames") or ()), result.get("file")) if name]
-    last = names[-1] if names else None
-    links: list[ContentBlock] = [] if last is None else [picture_link(handle.id, last)]
-    if not inline or (last is not None and is_panorama(last)):
+    last_name = names[-1] if names else None
+    links: list[ContentBlock] = [] if last_name is None else [picture_link(handle.id, last_name)]
+    if not inline or (last_name is not None and is_panorama(last_name)):
         return links
-    if last is None:
+    if last_name is None:
         frame = await (await station.camera()).frame()
-        jpeg = await to_thread.run_sync(lambda: fitting_jpeg(frame.image, MAX_PICTURE_BYTES, PICTURE_WIDTH))
+        jpeg = await to_thread.run_sync(lambda: encode_limited_jpeg(frame.image, MAX_PICTURE_BYTES, PICTURE_WIDTH))
     else:
-        jpeg = await stored_jpeg(await stored_picture(call.site, handle.id, last), MAX_PICTURE_BYTES, PICTURE_WIDTH)
+        jpeg = await convert_to_limited_jpeg(
+            await stored_picture(call.site, handle.id, last_name), MAX_PICTURE_BYTES, PICTURE_WIDTH
+        )
     return [*links, image_content(jpeg)]
 
 

@@ -12,10 +12,10 @@ from pydantic import BaseModel, Field
 
 from scope_ptz.errors import ToolCallError
 from scope_ptz.serve.http.models import Identifier, Instruction
-from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, PICTURE_WIDTH, image_content, stored_jpeg
+from scope_ptz.serve.mcp.pictures import MAX_PICTURE_BYTES, PICTURE_WIDTH, convert_to_limited_jpeg, image_content
 from scope_ptz.serve.mcp.reports import PLANNER_OUTCOMES, RunReport, run_report
 from scope_ptz.serve.mcp.run_progress import follow
-from scope_ptz.serve.mcp.tool import Call, McpTool, ToolArguments, input_schema, output_schema, parse_arguments, reply
+from scope_ptz.serve.mcp.tool import CallContext, McpTool, ToolArguments, input_schema, output_schema, parse_arguments, reply
 from scope_ptz.serve.mcp.tools.camera_tools import is_panorama, picture_link, run_link
 from scope_ptz.serve.mcp.untrusted import enclose_in_markers
 from scope_ptz.serve.site.start_runs import start_instruction, start_tool_call
@@ -30,8 +30,8 @@ MAX_WAIT_S = 30.0
 MAX_LINES = 10
 """Maximum number of steps and answers in a report's plain text. The structured result contains all of them."""
 
-_EFFECTS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False, open_world_hint=True)
-_READS = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=True)
+_HAS_EFFECTS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False, open_world_hint=True)
+_READ_ONLY = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=True)
 
 
 class Ask(ToolArguments):
@@ -89,36 +89,37 @@ class Conversation(BaseModel):
 
 def run_tools(cameras: Sequence[str]) -> list[McpTool]:
     """Return the tools for instructions, runs and conversations."""
-    report = output_schema(RunReport)
+    report_schema = output_schema(RunReport)
     return [
         McpTool(
             "ask", "Give an instruction",
             "Run an instruction in plain language, such as 'sweep the scene and count all cars', and return when it has ended. "
             "The camera's own planner decides on the steps. For work that may take longer than a minute, use start_run.",
-            input_schema(Ask, cameras), report, _EFFECTS, needs_operator=True, kind="run", run=_ask,
+            input_schema(Ask, cameras), report_schema, _HAS_EFFECTS, needs_operator=True, kind="run", run=_ask,
         ),
         McpTool(
             "start_run", "Start long work",
             "Start an instruction, or a call of one camera tool such as track_object or a count with view='full', and return "
             "immediately. Follow it with run_status, and end it with cancel_run.",
-            _start_schema(cameras), report, _EFFECTS, needs_operator=True, kind="run", run=_start,
+            _start_schema(cameras), report_schema, _HAS_EFFECTS, needs_operator=True, kind="run", run=_start,
         ),
         McpTool(
             "run_status", "State of a run",
             "Return the state of a run: its steps so far and, when it has ended, its outcome, answer or result, and pictures.",
-            input_schema(RunStatus, cameras), report, _READS, needs_operator=False, kind="read", run=_status,
+            input_schema(RunStatus, cameras), report_schema, _READ_ONLY, needs_operator=False, kind="read", run=_status,
         ),
         McpTool(
             "cancel_run", "Cancel a run",
             "Cancel a run and stop its camera. A run that has ended does not change.",
-            input_schema(CancelRun, cameras), report,
-            _EFFECTS.model_copy(update={"idempotent_hint": True}), needs_operator=True, kind=None, run=_cancel,
+            input_schema(CancelRun, cameras), report_schema,
+            _HAS_EFFECTS.model_copy(update={"idempotent_hint": True}), needs_operator=True, kind=None, run=_cancel,
         ),
         McpTool(
             "start_conversation", "Start a conversation",
             "Start a conversation about a camera. Instructions with its handle can refer to earlier ones ('and the other one?').",
             input_schema(StartConversation, cameras), output_schema(Conversation),
-            _EFFECTS.model_copy(update={"open_world_hint": False}), needs_operator=True, kind="command", run=_start_conversation,
+            _HAS_EFFECTS.model_copy(update={"open_world_hint": False}),
+            needs_operator=True, kind="command", run=_start_conversation,
         ),
     ]  # fmt: skip
 
@@ -130,7 +131,7 @@ def _start_schema(cameras: Sequence[str]) -> dict[str, Any]:
     return schema
 
 
-async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _ask(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     parsed = parse_arguments(Ask, "ask", arguments)
     station, fields = call.site.station(parsed.camera), parsed.model_dump(exclude={"picture"})
     handle = await follow(call, station, start_instruction(call.site, call.client, **fields))
@@ -139,7 +140,7 @@ async def _ask(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     return await _run_result(call, handle.id, picture=parsed.picture)
 
 
-async def _start(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _start(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     parsed = parse_arguments(StartRun, "start_run", arguments)
     if (parsed.instruction is None) == (parsed.tool is None):
         raise ToolCallError("Wrong arguments for start_run: give either instruction or tool.")
@@ -155,7 +156,7 @@ async def _start(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     return await _run_result(call, handle.id, picture=False)
 
 
-async def _status(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _status(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     parsed = parse_arguments(RunStatus, "run_status", arguments)
     handle = call.site.runner.find(parsed.run)
     if handle is not None and parsed.wait_s > 0:
@@ -164,7 +165,7 @@ async def _status(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     return await _run_result(call, parsed.run, picture=handle is None or handle.done.is_set())
 
 
-async def _cancel(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _cancel(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     parsed = parse_arguments(CancelRun, "cancel_run", arguments)
     if (handle := call.site.runner.find(parsed.run)) is not None:
         handle.cancel()
@@ -173,27 +174,33 @@ async def _cancel(call: Call, arguments: dict[str, Any]) -> CallToolResult:
     return await _run_result(call, parsed.run, picture=False)
 
 
-async def _start_conversation(call: Call, arguments: dict[str, Any]) -> CallToolResult:
+async def _start_conversation(call: CallContext, arguments: dict[str, Any]) -> CallToolResult:
     parsed = parse_arguments(StartConversation, "start_conversation", arguments)
     site = call.site
     camera, pair = site.station(parsed.camera).name, site.pairs.check(parsed.pair)
     title = parsed.title.encode("utf-8", "replace").decode()
-    add = partial(add_conversation, site.journal.store.database, camera=camera, pair=pair, owner=call.client.name, title=title)
-    row = await site.journal.in_thread(add)
-    text = f"Started the conversation {row.id} about {camera}. Pass conversation='{row.id}' to ask or start_run."
-    return reply(text, Conversation(conversation=row.id, camera=row.camera, pair=row.pair, title=row.title))
+    add = partial(add_conversation, site.library.store.database, camera=camera, pair=pair, owner=call.client.name, title=title)
+    conversation = await site.library.in_thread(add)
+    text = f"Started the conversation {conversation.id} about {camera}. Pass conversation='{conversation.id}' to ask or start_run."
+    return reply(
+        text,
+        Conversation(conversation=conversation.id, camera=conversation.camera, pair=conversation.pair, title=conversation.title),
+    )
 
 
-async def _run_result(call: Call, run: str, *, picture: bool) -> CallToolResult:
+async def _run_result(call: CallContext, run: str, *, picture: bool) -> CallToolResult:
     """Return a run's state with links and, if requested, its last picture."""
     report = await run_report(call.site, run)
     content: list[ContentBlock] = [run_link(run)]
     names = [uri.partition(f"{run}/")[2] for uri in report.pictures]
     content += [picture_link(run, name) for name in names if is_panorama(name)]
-    views = [name for name in names if not is_panorama(name)]
-    if picture and views:
-        stored = await stored_picture(call.site, run, views[-1])
-        content += [picture_link(run, views[-1]), image_content(await stored_jpeg(stored, MAX_PICTURE_BYTES, PICTURE_WIDTH))]
+    plain_pictures = [name for name in names if not is_panorama(name)]
+    if picture and plain_pictures:
+        stored = await stored_picture(call.site, run, plain_pictures[-1])
+        content += [
+            picture_link(run, plain_pictures[-1]),
+            image_content(await convert_to_limited_jpeg(stored, MAX_PICTURE_BYTES, PICTURE_WIDTH)),
+        ]
     failed = not report.running and report.outcome not in (*PLANNER_OUTCOMES, "cancelled", UNFINISHED)
     return reply(_text(report), report, *content, failed=failed)
 

@@ -87,10 +87,10 @@ class EvaluationFolder:
         Raises:
             OutputError: The record cannot be written.
         """
-        new = self.path / f".{RECORD_FILE}.new"
+        new_file = self.path / f".{RECORD_FILE}.new"
         try:
-            new.write_text(record.model_dump_json() + "\n", "utf-8")
-            new.replace(self.path / RECORD_FILE)
+            new_file.write_text(record.model_dump_json() + "\n", "utf-8")
+            new_file.replace(self.path / RECORD_FILE)
         except OSError as error:
             raise OutputError(f"The evaluation cannot be written to {self.path}: {error.strerror}.") from error
 
@@ -139,11 +139,19 @@ class EvaluationFolder:
         ``part`` and ``name`` come from a request, so they are compared with the existing names and never become part of a path.
         """
         folder = next(
-            (each for each in (self.report / known for known in ("tasks", "frames", "tables")) if each.name == part), None
+            (candidate for candidate in (self.report / known for known in ("tasks", "frames", "tables")) if candidate.name == part),
+            None,
         )
         if folder is None or not folder.is_dir():
             return None
-        return next((each for each in folder.iterdir() if each.name == name and each.is_file() and not each.is_symlink()), None)
+        return next(
+            (
+                candidate
+                for candidate in folder.iterdir()
+                if candidate.name == name and candidate.is_file() and not candidate.is_symlink()
+            ),
+            None,
+        )
 
 
 def modification_time_s(path: Path) -> float:

@@ -29,7 +29,7 @@ FOLDER = "evaluations"
 KILL_AFTER_S = 20.0
 """Seconds that a cancelled evaluation has to write its log. If it is still running after that, it is killed."""
 NICENESS = 10
-"""Nice value for evaluation processes, so that live pictures have priority over them."""
+"""Nice value for evaluation processes, so that live video has priority over them."""
 
 ReportState = Literal["none", "making", "ready", "failed"]
 logger = logging.getLogger(__name__)
@@ -95,7 +95,7 @@ class Evaluations:
         """Return the ids of all evaluations, newest first."""
         if not self.root.is_dir():
             return []
-        return sorted((each.name for each in self.root.iterdir() if each.is_dir() and not each.is_symlink()), reverse=True)
+        return sorted((path.name for path in self.root.iterdir() if path.is_dir() and not path.is_symlink()), reverse=True)
 
     def folder(self, evaluation: str) -> EvaluationFolder:
         """Return an evaluation's folder.
@@ -288,14 +288,14 @@ class Evaluations:
             return "failed", self._report_failures[name]
         return ("ready" if folder.report_page() is not None else "none"), ""
 
-    def _signal(self, folder: EvaluationFolder, number: int) -> None:
+    def _signal(self, folder: EvaluationFolder, signal_number: int) -> None:
         process = self._processes.get(folder.path.name)
         if process is not None and process.poll() is None:
-            process.send_signal(number)
+            process.send_signal(signal_number)
         elif folder.is_locked() and (state := folder.state()) is not None:
             # Another server started this process. While the lock is held, the process exists, so its process id cannot be reused.
             with suppress(ProcessLookupError):
-                os.kill(state.pid, number)
+                os.kill(state.pid, signal_number)
 
     def _kill_later(self, folder: EvaluationFolder) -> None:
         deadline = time.monotonic() + KILL_AFTER_S

@@ -27,15 +27,16 @@ class InstalledSplit:
 @cache
 def installed_splits() -> tuple[InstalledSplit, ...]:
     """Return the installed splits."""
-    choices = []
+    installed = []
     for name in SPLITS:
         try:
             tasks = load_split(name)
         except InputError:
             continue
         counts = Counter(task.category for task in tasks)
-        choices.append(InstalledSplit(name, len(tasks), {each: counts[each] for each in CATEGORIES if counts[each]}))  # type: ignore[index]
-    return tuple(choices)
+        by_category = {category: counts[category] for category in CATEGORIES if counts[category]}  # type: ignore[index]
+        installed.append(InstalledSplit(name, len(tasks), by_category))
+    return tuple(installed)
 
 
 def missing_packages() -> str:

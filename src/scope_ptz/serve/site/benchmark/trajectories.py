@@ -28,7 +28,7 @@ class Trajectories:
     """
 
     def __init__(self) -> None:
-        self._open: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
+        self._cache: OrderedDict[tuple[str, str, float], SampleFiles] = OrderedDict()
         self._lock = threading.Lock()
 
     def trace(self, folder: EvaluationFolder, trial: Trial) -> Trace:
@@ -64,9 +64,9 @@ class Trajectories:
             raise TraceError("The evaluation has no log yet.")
         key = (folder.path.name, trial.sample, modification_time_s(log))
         with self._lock:
-            if key in self._open:
-                self._open.move_to_end(key)
-                return self._open[key]
+            if key in self._cache:
+                self._cache.move_to_end(key)
+                return self._cache[key]
             try:
                 sample = open_sample(log, trial.sample)
             except TraceError as error:
@@ -74,9 +74,9 @@ class Trajectories:
                     "The steps and pictures of this run are not in the log yet. The log is written after every few runs; if the "
                     "evaluation was interrupted, resume it to add them."
                 ) from error
-            self._open[key] = sample
-            while len(self._open) > MAX_CACHED_RUNS:
-                self._open.popitem(last=False)
+            self._cache[key] = sample
+            while len(self._cache) > MAX_CACHED_RUNS:
+                self._cache.popitem(last=False)
             return sample
 
 
@@ -89,8 +89,8 @@ def steps_of(trace: Trace) -> list[dict[str, Any]]:
         result = outcome.result or {}
         pictures = [
             {"name": name, "marks": len(marks_of(call_for_picture(trace, name), name))}
-            for name, at in names.items()
-            if at == position
+            for name, call_position in names.items()
+            if call_position == position
         ]
         steps.append(
             {

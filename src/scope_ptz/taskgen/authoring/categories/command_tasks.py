@@ -45,7 +45,7 @@ _SHAPES = (
     ("tilt", "shot", "home"),
     ("zoom", "turn", "shot", "preset"),
 )
-"""The shapes of commands: sequences of steps, to which random presets and amounts are added. A shot is a picture."""
+"""The shapes of commands: sequences of steps, to which random presets and amounts are added. "shot" takes a picture."""
 
 _OPENINGS = (
     "{M}.",
@@ -89,8 +89,8 @@ def _command_draft(places: ScenePlaces, shape: tuple[str, ...], start: str, rng:
     _step_phrases(program, rng)  # Published wordings depend on these random draws.
     variants = []
     for opening in _OPENINGS:
-        order = join_in_order(_step_phrases(program, rng), rng)
-        variants.append(opening.format(m=order, M=capitalise(order)))
+        moves = join_in_order(_step_phrases(program, rng), rng)
+        variants.append(opening.format(m=moves, M=capitalise(moves)))
     calls = tuple(required_call(c) for c in program) if picture_count else ()
     return command_draft(
         "multi_step_command",

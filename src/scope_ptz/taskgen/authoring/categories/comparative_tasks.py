@@ -49,12 +49,16 @@ def _two_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
         evidence_views = tuple(
             count_evidence(place, kind, number) for kind, number in ((first_kind, first_count), (second_kind, second_count))
         )
-        kind, expected, question = (_excess_question, _more_question, _fewer_question, _relation_question, _whether_more_question)[
-            n % 5
-        ](first, second, first_count, second_count)
+        question_type, expected, question = (
+            _excess_question,
+            _more_question,
+            _fewer_question,
+            _relation_question,
+            _whether_more_question,
+        )[n % 5](first, second, first_count, second_count)
         yield TaskDraft(
             category="comparative",
-            question_type=kind,
+            question_type=question_type,
             key=f"more:{'/'.join(sorted((first, second)))}",
             place=place,
             expected=expected,
@@ -62,7 +66,7 @@ def _two_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
             evidence=evidence_views,
             perception_calls=(count_call(first, place), count_call(second, place)),
             tags=("counts",),
-            weight=max(first_count, second_count),
+            object_count=max(first_count, second_count),
             answer_key=_answer_key(expected),
         )
 
@@ -150,7 +154,7 @@ def count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
 def _several_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
     """Yield questions about the most numerous of four kinds, and about the order of three kinds by number."""
     plain = [(kind, n) for kind, n in category_counts(place.truth) if kind.category not in GROUPS]
-    for size, most in ((3, 4), (4, 4)):
+    for size, max_groups in ((3, 4), (4, 4)):
         groups = [
             group
             for group in combinations(plain, size)
@@ -158,7 +162,7 @@ def _several_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskD
             and are_disjoint(place.truth, [kind for kind, _ in group])
         ]
         rng.shuffle(groups)
-        for group in groups[:most]:
+        for group in groups[:max_groups]:
             ranked = tuple(plural_noun(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
             shuffled = rng.sample(group, size)
             names = [plural_noun(kind) for kind, _ in shuffled]
@@ -173,7 +177,7 @@ def _several_kind_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskD
                 evidence=tuple(count_evidence(place, kind, n) for kind, n in shuffled),
                 perception_calls=tuple(count_call(name, place) for name in names),
                 tags=("counts",),
-                weight=sum(n for _, n in group),
+                object_count=sum(n for _, n in group),
                 answer_key=_answer_key(expected),
             )
 
@@ -210,20 +214,22 @@ def _distance_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft
             ranked = sorted(group, key=lambda n: n.thing.distance_m)
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
             if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _MIN_DISTANCE_RATIO:
-                names = [target.the for target in rng.sample(group, size)]
+                names = [target.with_the for target in rng.sample(group, size)]
                 yield from _drafts_by_distance(place, ranked, names, rng)
 
 
 def _drafts_by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], rng: random.Random) -> Iterator[TaskDraft]:
     options: Options = {target.name: () for target in ranked}
-    either = join_names(names, "or")
+    alternatives = join_names(names, "or")
     near = rng.random() < 0.5
     phrase, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
     if len(ranked) == 2:
         phrase = "closer to" if near else "farther from"
     picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
     choice = Choice(value=winner.name, options=options, picks=picks)
-    question = Question(identical_forms(f"which is {phrase} the camera, {either}?", f"what is {phrase} the camera: {either}?"))
+    question = Question(
+        identical_forms(f"which is {phrase} the camera, {alternatives}?", f"what is {phrase} the camera: {alternatives}?")
+    )
     yield _comparison_draft(
         place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, question, ranked, "distance"
     )
@@ -251,15 +257,15 @@ def _size_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
         ranked = sorted(group, key=lambda target: areas[target.name][0], reverse=True)
         if min(areas[ranked[0].name]) < _MIN_AREA_RATIO * max(max(areas[target.name]) for target in ranked[1:]):
             continue
-        either = join_names([target.the for target in rng.sample(group, len(group))], "or")
+        alternatives = join_names([target.with_the for target in rng.sample(group, len(group))], "or")
         expected = Choice(
             value=ranked[0].name, options={target.name: () for target in ranked}, picks=("largest", "biggest", "most")
         )
         question = Question(
             identical_forms(
-                f"which looks largest in the picture: {either}?",
-                f"which takes up the most room in the picture: {either}?",
-                f"which appears biggest in the frame: {either}?",
+                f"which looks largest in the picture: {alternatives}?",
+                f"which takes up the most room in the picture: {alternatives}?",
+                f"which appears biggest in the frame: {alternatives}?",
             )
         )
         yield _comparison_draft(place, "largest", expected, question, ranked, "size")
@@ -273,7 +279,7 @@ def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tupl
 
 
 def _comparison_draft(
-    place: TaskPlace, kind: str, expected: Choice | Ordering, question: Question, things: list[NamedThing], tag: str
+    place: TaskPlace, question_type: str, expected: Choice | Ordering, question: Question, things: list[NamedThing], tag: str
 ) -> TaskDraft:
     """Return a draft that compares single objects in one view."""
     ids = "/".join(sorted(target.thing.instance.id for target in things))
@@ -282,14 +288,14 @@ def _comparison_draft(
     lookup = "how far away is" if tag == "distance" else "where is"
     return TaskDraft(
         category="comparative",
-        question_type=kind,
+        question_type=question_type,
         key=f"{tag}:{ids}",
         place=place,
         expected=expected,
         question=question,
         evidence=(evidence_view(place, expected, tuple(word for target in things for word in target.words), items, whole=False),),
-        perception_calls=tuple(query_call(f"{lookup} {target.the}?", place) for target in things),
+        perception_calls=tuple(query_call(f"{lookup} {target.with_the}?", place) for target in things),
         tags=(tag,),
-        weight=len(things),
+        object_count=len(things),
         answer_key=_answer_key(expected),
     )

@@ -66,6 +66,6 @@ def _count_draft(place: TaskPlace, kind: Kind, count: int) -> TaskDraft:
         evidence=(evidence_view(place, expected, object_words(kind), [place.truth.item(t, True) for t in things], whole=True),),
         perception_calls=(count_call(plural_noun(kind), place),),
         tags=(scope_of(place),),
-        weight=count,
+        object_count=count,
         answer_key=str(count),
     )

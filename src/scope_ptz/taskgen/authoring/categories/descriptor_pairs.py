@@ -93,12 +93,15 @@ def _colour_check_drafts(place: TaskPlace, rng: random.Random) -> Iterator[TaskD
                 expected=expected,
                 question=Question(
                     (
-                        (f"is {target.the} {asked_colour}?", f"whether {target.the} is {asked_colour}"),
-                        (f"is it true that {target.the} is {asked_colour}?", f"if it is true that {target.the} is {asked_colour}"),
+                        (f"is {target.with_the} {asked_colour}?", f"whether {target.with_the} is {asked_colour}"),
+                        (
+                            f"is it true that {target.with_the} is {asked_colour}?",
+                            f"if it is true that {target.with_the} is {asked_colour}",
+                        ),
                     )
                 ),
                 evidence=(evidence_view(place, expected, target.words, [place.truth.item(target.thing, colour)], whole=False),),
-                perception_calls=(query_call(f"what colour is {target.the}?", place),),
+                perception_calls=(query_call(f"what colour is {target.with_the}?", place),),
                 tags=("verification",),
                 answer_key="yes" if expected.value else "no",
             )

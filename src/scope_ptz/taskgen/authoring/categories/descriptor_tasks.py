@@ -48,11 +48,11 @@ _SYNONYMS = {
     "phone": ("mobile", "mobile phone"),
     "broom": ("brush",),
 }
-Values = Mapping[tuple[str, str], Sequence[str]]
+AttributeValues = Mapping[tuple[str, str], Sequence[str]]
 """The attribute values in the scenes, by category and attribute."""
 
 
-def attribute_values(things: Sequence[SceneThing]) -> Values:
+def attribute_values(things: Sequence[SceneThing]) -> AttributeValues:
     """Return the attribute values of the given objects, by category and attribute."""
     values_by_key: dict[tuple[str, str], set[str]] = {}
     for thing in things:
@@ -85,14 +85,14 @@ def _is_equivalent(one: str, other: str, category: str) -> bool:
     return short == long or long.endswith(f" {short}")
 
 
-def drafts(place: TaskPlace, nouns: frozenset[str], values: Values, rng: random.Random) -> list[TaskDraft]:
+def drafts(place: TaskPlace, nouns: frozenset[str], values: AttributeValues, rng: random.Random) -> list[TaskDraft]:
     """Return drafts that ask for attributes of the objects at a place."""
     return [
         *_attribute_drafts(place, values), *_list_drafts(place, nouns, rng), *descriptor_pairs.drafts(place, nouns, rng),
     ]  # fmt: skip
 
 
-def _attribute_drafts(place: TaskPlace, values: Values) -> Iterator[TaskDraft]:
+def _attribute_drafts(place: TaskPlace, values: AttributeValues) -> Iterator[TaskDraft]:
     """Yield questions about one attribute of one object."""
     named = [*unique_things(place.truth, coloured=False, min_pixels=300), *named_things(place.truth, 300)]
     if not place.swept:
@@ -140,12 +140,12 @@ def _state_drafts(place: TaskPlace, target: NamedThing) -> Iterator[TaskDraft]:
         if {"lit", "unlit"} & set(pair) and "light" in facts and set(target.name.split()) & COLOUR_WORDS:
             continue  # its colour is that of its light, so its name reveals that it is lit
         min_pixels = _CONTENT_PX if {"full", "empty"} & set(pair) else _STATE_PX
-        shows = (
+        shows_state = (
             not target.thing.cut
             and target.thing.pixels >= min_pixels
             and target.thing.instance.category not in _INDISTINCT_STATE_CATEGORIES
         )
-        if state in pair and not named and shows:
+        if state in pair and not named and shows_state:
             # The order of the two states must be the same in every build, and vary between objects.
             first, second = pair[:: 1 if sum(map(ord, target.thing.instance.id)) % 2 else -1]
             forms = (
@@ -155,7 +155,7 @@ def _state_drafts(place: TaskPlace, target: NamedThing) -> Iterator[TaskDraft]:
             yield _choice_draft(place, target, "state", Choice(value=str(state), options=answer_options(pair)), forms)
 
 
-def _other_attribute_drafts(place: TaskPlace, target: NamedThing, values: Values) -> Iterator[TaskDraft]:
+def _other_attribute_drafts(place: TaskPlace, target: NamedThing, values: AttributeValues) -> Iterator[TaskDraft]:
     """Yield questions about the kind, material and load of an object, and about what a person carries."""
     category = target.thing.instance.category
     for key, usual_forms in _ATTRIBUTE_FORMS.items():
@@ -230,7 +230,7 @@ _ATTRIBUTE_FORMS: dict[str, tuple[tuple[str, str], ...]] = {
 
 
 def _choice_draft(place: TaskPlace, target: NamedThing, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> TaskDraft:
-    words = {"n": target.the, "c": target.kind.category}
+    words = {"n": target.with_the, "c": target.kind.category}
     question = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
     item = place.truth.item(target.thing, expected.value)
     return TaskDraft(
@@ -256,17 +256,19 @@ def _list_drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) ->
     for number in (2, 3, 1):
         if len(present) < number or len(absent) < 4 - number:
             continue
-        chosen, rest = present[:number], absent[: 4 - number]
-        four = [*chosen, *rest]
-        rng.shuffle(four)
-        names = [with_article(singular_noun(kind)) for kind in four]
-        expected = NameSet(value=tuple(singular_noun(k) for k in chosen), options={singular_noun(k): () for k in four})
-        items = [place.truth.item(t, True) for k in chosen for t in (place.truth.all_of(k) or ())[:1]]
+        chosen_present, chosen_absent = present[:number], absent[: 4 - number]
+        candidates = [*chosen_present, *chosen_absent]
+        rng.shuffle(candidates)
+        names = [with_article(singular_noun(kind)) for kind in candidates]
+        expected = NameSet(
+            value=tuple(singular_noun(k) for k in chosen_present), options={singular_noun(k): () for k in candidates}
+        )
+        items = [place.truth.item(t, True) for k in chosen_present for t in (place.truth.all_of(k) or ())[:1]]
         listed = join_names(names, "or")
         yield TaskDraft(
             category="descriptor",
             question_type="which-of",
-            key=f"which-of:{'/'.join(sorted(singular_noun(k) for k in four))}",
+            key=f"which-of:{'/'.join(sorted(singular_noun(k) for k in candidates))}",
             place=place,
             expected=expected,
             question=Question(
@@ -275,9 +277,9 @@ def _list_drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) ->
                     (f"what of the following is there: {listed}?", f"what of the following is there: {listed}"),
                 )
             ),
-            evidence=(evidence_view(place, expected, object_words(*four), items, whole=True),),
-            perception_calls=tuple(query_call(f"are there any {plural_noun(k)}?", place) for k in four),
+            evidence=(evidence_view(place, expected, object_words(*candidates), items, whole=True),),
+            perception_calls=tuple(query_call(f"are there any {plural_noun(k)}?", place) for k in candidates),
             tags=("list",),
-            weight=4,
+            object_count=4,
             answer_key="/".join(expected.value),
         )

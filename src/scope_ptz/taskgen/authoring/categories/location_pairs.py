@@ -31,7 +31,7 @@ def drafts(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng
     yield from _conditional_location_drafts(place, named, nouns, rng)
 
 
-def corner_options() -> Options:
+def quarter_options() -> Options:
     """Return the quarters of the frame as answer options."""
     return {
         f"{level} {side}": (f"{level}-{side}", f"{other} {side}", f"{other}-{side}")
@@ -91,10 +91,10 @@ def _conditional_location_drafts(
     for (one, side, level), absent in zip([p for p in located if None not in p[1:]], missing, strict=False):
         value = Choice(
             value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}",
-            options=corner_options(),
+            options=quarter_options(),
             subject=answer_words(one.kind)[:2],
         )
-        none = NoneThere(subject=answer_words(absent)[:2], claims=all_wordings(corner_options()))
+        none = NoneThere(subject=answer_words(absent)[:2], claims=all_wordings(quarter_options()))
         evidence = evidence_view(place, value, one.words, [place.truth.item(one.thing, value.value)], whole=False)
         twin = _conditional_location_draft(place, one.name, value, evidence, value.value)
         yield replace(

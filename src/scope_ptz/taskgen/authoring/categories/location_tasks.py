@@ -8,7 +8,7 @@ from itertools import combinations
 
 from scope_ptz.bench.tasks.expected import Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.taskgen.authoring.categories import location_pairs
-from scope_ptz.taskgen.authoring.categories.location_pairs import corner_options
+from scope_ptz.taskgen.authoring.categories.location_pairs import quarter_options
 from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, query_call
 from scope_ptz.taskgen.authoring.noun_phrases import answer_words, join_names, object_words, plural_noun, singular_noun, with_the
 from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
@@ -49,23 +49,23 @@ def _half_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraf
                 target,
                 f"half-{axis}",
                 expected,
-                _half_forms(target.the, axis),
+                _half_forms(target.with_the, axis),
             )
 
 
-def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
+def _half_forms(name: str, axis: int) -> tuple[tuple[str, str], ...]:
     first, second = _SIDES[axis]
     if axis == 0:
         return (
-            (f"on which side of the picture is {the}?", f"on which side of the picture {the} is"),
-            (f"in which half of the frame is {the}, {second} or {first}?", f"in which half of the frame {the} is"),
-            (f"is {the} in the {first} or the {second} half of the picture?",
-             f"whether {the} is in the {first} or the {second} half of the picture"),
+            (f"on which side of the picture is {name}?", f"on which side of the picture {name} is"),
+            (f"in which half of the frame is {name}, {second} or {first}?", f"in which half of the frame {name} is"),
+            (f"is {name} in the {first} or the {second} half of the picture?",
+             f"whether {name} is in the {first} or the {second} half of the picture"),
         )  # fmt: skip
     return (
-        (f"is {the} in the {first} or the {second} half of the picture?",
-         f"whether {the} is in the {first} or the {second} half of the picture"),
-        (f"is {the} above or below the middle of the frame?", f"whether {the} is above or below the middle of the frame"),
+        (f"is {name} in the {first} or the {second} half of the picture?",
+         f"whether {name} is in the {first} or the {second} half of the picture"),
+        (f"is {name} above or below the middle of the frame?", f"whether {name} is above or below the middle of the frame"),
     )  # fmt: skip
 
 
@@ -74,17 +74,17 @@ def _quarter_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskD
         side, level = place.truth.side(target.thing, 0), place.truth.side(target.thing, 1)
         if side is None or level is None:
             continue
-        expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=corner_options())
+        expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=quarter_options())
         yield _location_draft(
             place,
             target,
             "quarter",
             expected,
             (
-                (f"in which quarter of the picture is {target.the}?", f"in which quarter of the picture {target.the} is"),
+                (f"in which quarter of the picture is {target.with_the}?", f"in which quarter of the picture {target.with_the} is"),
                 (
-                    f"where in the frame is {target.the}: top left, top right, bottom left or bottom right?",
-                    f"which quarter of the frame holds {target.the}",
+                    f"where in the frame is {target.with_the}: top left, top right, bottom left or bottom right?",
+                    f"which quarter of the frame holds {target.with_the}",
                 ),
             ),
         )
@@ -95,13 +95,13 @@ def _relation_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Rand
         order = place.truth.sort_by_position((target.thing, other.thing), 0, 0.08)
         if order is None or target.kind.category == other.kind.category:
             continue
-        left = order[0] is target.thing
+        is_left = order[0] is target.thing
         expected: Relation | YesNo
         if rng.random() < 0.6:
             kind, expected = (
                 "beside",
                 Relation(
-                    value="forward" if left else "backward",
+                    value="forward" if is_left else "backward",
                     subject=(target.name,),
                     object=(other.name,),
                     forward=("left",),
@@ -110,20 +110,21 @@ def _relation_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Rand
             )
             question = Question(
                 (
-                    (f"on which side of {other.the} is {target.the}?", f"on which side of {other.the} {target.the} is"),
-                    (f"is {target.the} to the left or to the right of {other.the}?",
-                     f"whether {target.the} is to the left or to the right of {other.the}"),
+                    (f"on which side of {other.with_the} is {target.with_the}?",
+                     f"on which side of {other.with_the} {target.with_the} is"),
+                    (f"is {target.with_the} to the left or to the right of {other.with_the}?",
+                     f"whether {target.with_the} is to the left or to the right of {other.with_the}"),
                 )
             )  # fmt: skip
         else:
             kind, side = "is-beside", rng.choice(("left", "right"))
-            expected = YesNo(value=(side == "left") == left)
+            expected = YesNo(value=(side == "left") == is_left)
             question = Question(
                 (
-                    (f"is {target.the} to the {side} of {other.the}?",
-                     f"whether {target.the} is to the {side} of {other.the}"),
-                    (f"does {target.the} appear to the {side} of {other.the}?",
-                     f"whether {target.the} appears to the {side} of {other.the}"),
+                    (f"is {target.with_the} to the {side} of {other.with_the}?",
+                     f"whether {target.with_the} is to the {side} of {other.with_the}"),
+                    (f"does {target.with_the} appear to the {side} of {other.with_the}?",
+                     f"whether {target.with_the} appears to the {side} of {other.with_the}"),
                 )
             )  # fmt: skip
         items = [place.truth.item(n.thing) for n in (target, other)]
@@ -137,7 +138,7 @@ def _relation_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Rand
             evidence=(evidence_view(place, expected, (*target.words, *other.words), items, whole=False),),
             perception_calls=(query_call(question.forms[0][0], place),),
             tags=("relation",),
-            answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
+            answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if is_left else "right",
         )
 
 
@@ -192,9 +193,9 @@ def _order_drafts(place: TaskPlace, named: list[NamedThing], rng: random.Random)
                 expected=expected,
                 question=question,
                 evidence=(evidence_view(place, expected, tuple(w for n in triple for w in n.words), items, whole=False),),
-                perception_calls=tuple(query_call(f"where is {n.the}?", place) for n in triple),
+                perception_calls=tuple(query_call(f"where is {n.with_the}?", place) for n in triple),
                 tags=("order",),
-                weight=3,
+                object_count=3,
                 answer_key="/".join(value) if kind == "row" else value[0],
             )
 
@@ -231,18 +232,18 @@ def _half_count_drafts(place: TaskPlace) -> Iterator[TaskDraft]:
                 ),
                 perception_calls=(count_call(f"{many} in the {name} half", place),),
                 tags=("half",),
-                weight=number,
+                object_count=number,
                 answer_key=str(number),
             )
 
 
 def _location_draft(
-    place: TaskPlace, target: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]
+    place: TaskPlace, target: NamedThing, question_type: str, expected: Choice, forms: tuple[tuple[str, str], ...]
 ) -> TaskDraft:
     return TaskDraft(
         category="location",
-        question_type=kind,
-        key=f"{kind}:{target.thing.instance.id}",
+        question_type=question_type,
+        key=f"{question_type}:{target.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),

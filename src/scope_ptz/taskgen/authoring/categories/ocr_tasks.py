@@ -16,14 +16,14 @@ from scope_ptz.taskgen.authoring.zoom_targets import MIN_TARGET_PX, close_up_pla
 from scope_ptz.taskgen.facts.robust import ids_with_parts
 
 MAX_TEXT_CHARS = 80
-"""Maximum length of an expected text, in characters."""
+"""Maximum length of the expected text, in characters."""
 
 _NOTICEABLE_TEXT_PX = 5.0
 """Minimum height of capitals, in pixels, for a person to notice that there is text to zoom in on."""
 
 
 def drafts(place: TaskPlace) -> list[TaskDraft]:
-    """Return drafts about texts that are legible in a view, or after zooming in; none for a sweep."""
+    """Return drafts about text that is legible in a view, or after zooming in; none for a sweep."""
     if place.swept:
         return []
     named = [
@@ -43,7 +43,7 @@ def _legible_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskD
 
 
 def _zoomed_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
-    """Yield drafts about texts that are not legible in a view, but are legible after zooming in."""
+    """Yield drafts about text that is legible only after zooming in."""
     if any("zoom_factor" in call.arguments for call in place.calls):
         return  # tasks do not zoom in twice
     for target in named:
@@ -51,38 +51,38 @@ def _zoomed_drafts(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDr
         has_lettering = any(text.parent in part_ids for text in place.scene.file.texts)
         if target.positional or not has_lettering or place.truth.texts_on(target.thing.instance):
             continue
-        close = close_up_place(place, target.thing, target.thing.instance)
-        if close is None:
+        close_up = close_up_place(place, target.thing, target.thing.instance)
+        if close_up is None:
             continue
-        texts = texts_to_read(target, close)
+        texts = texts_to_read(target, close_up)
         expected = expected_text(target, texts)
         if texts and expected is not None:
             call = ProgramCall(tool="zoom_to_object", arguments={"description": target.name})
-            yield _text_draft(place, target, expected, texts, close, (call,))
+            yield _text_draft(place, target, expected, texts, close_up, (call,))
 
 
 def order_lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
-    """Return texts sorted from top to bottom if they are lines of one text; otherwise None."""
+    """Return pieces of text from top to bottom if they are lines of the same text; otherwise None."""
     if not texts:
         return None
     by_text = {t.text.text.strip(): t for t in texts}
     order = sorted(by_text.values(), key=lambda t: t.box[1] + t.box[3])
     for upper, lower in pairwise(order):
         height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
-        shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
+        overlap = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
         is_side_by_side = upper.box[3] - lower.box[1] > height / 2
-        narrow = shared < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
-        if is_side_by_side or narrow or lower.box[1] - upper.box[3] > _MAX_LINE_GAP * height:
+        has_little_overlap = overlap < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
+        if is_side_by_side or has_little_overlap or lower.box[1] - upper.box[3] > _MAX_LINE_GAP * height:
             return None
     return tuple(order)
 
 
 _MAX_LINE_GAP = 3.0
-"""Maximum gap between lines of one text, as a multiple of their height."""
+"""Maximum gap between lines of the same text, as a multiple of their height."""
 
 
 def select_prices(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
-    """Return the prices among the texts of a price card. The card's other texts are part of the name that a question gives it."""
+    """Return the prices on a price card. Questions use the rest of its text as the card's name."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
@@ -102,7 +102,7 @@ def expected_text(target: NamedThing, texts: tuple[TextSighting, ...] | None) ->
 
 
 def texts_to_read(target: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
-    """Return the lines of text on an object (for a price card, only the price); None if they are not one text."""
+    """Return the lines of text on an object (for a price card, only the price); None if they do not belong together."""
     readable = order_lines(place.truth.texts_on(target.thing.instance))
     box = next((s.box for s in place.truth.first_sample.sightings if s.instance.number == target.thing.instance.number), None)
     if readable and not all(is_on_object(box, text) for text in readable):
@@ -111,7 +111,7 @@ def texts_to_read(target: NamedThing, place: TaskPlace) -> tuple[TextSighting, .
 
 
 def is_on_object(box: BoxTuple | None, text: TextSighting) -> bool:
-    """Return whether the middle of a text is inside the box of an object, so that the text visibly belongs to the object."""
+    """Return whether the centre of text is inside the box of an object, so that the text visibly belongs to the object."""
     x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
     return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
 
@@ -155,7 +155,8 @@ _PRICES: tuple[_Forms, _Forms] = (
         ("which price does a close-up of {n} show?", "the price that a close-up of {n} shows"),
     ),
 )
-"""Questions about lettering, number plates and prices: first for texts that are legible in the view, then for others."""
+"""Questions about lettering, number plates and prices: first for text that is legible in the view, then for text that becomes
+legible by zooming in."""
 
 
 def _text_draft(
@@ -163,27 +164,27 @@ def _text_draft(
     target: NamedThing,
     expected: Text,
     texts: tuple[TextSighting, ...],
-    close: TaskPlace,
+    reading_place: TaskPlace,
     zoom: tuple[ProgramCall, ...],
 ) -> TaskDraft:
     plate = str(target.thing.instance.attributes.get("plate", ""))
-    is_plate, price = expected.accepted == (plate,), target.kind.category == "price card"
-    forms = (_PLATES if is_plate else _PRICES if price else _WRITING)[bool(zoom)]
-    forms = tuple((direct.format(n=target.the), clause.format(n=target.the)) for direct, clause in forms)
-    question = f"what is the number plate of {target.the}?" if is_plate else f"what does {target.the} say?"
+    is_plate, is_price = expected.accepted == (plate,), target.kind.category == "price card"
+    forms = (_PLATES if is_plate else _PRICES if is_price else _WRITING)[bool(zoom)]
+    forms = tuple((direct.format(n=target.with_the), clause.format(n=target.with_the)) for direct, clause in forms)
+    question = f"what is the number plate of {target.with_the}?" if is_plate else f"what does {target.with_the} say?"
     # The evidence items are measured in the view in which the text is legible.
-    items = [close.truth.text_item(t) for t in texts]
+    items = [reading_place.truth.text_item(t) for t in texts]
     return TaskDraft(
         category="ocr",
-        question_type=("plate-" if is_plate else "price-" if price else "") + ("close-up" if zoom else "in-view"),
+        question_type=("plate-" if is_plate else "price-" if is_price else "") + ("close-up" if zoom else "in-view"),
         key=f"text:{target.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(evidence_view(close, expected, target.words, items, whole=False),),
+        evidence=(evidence_view(reading_place, expected, target.words, items, whole=False),),
         perception_calls=(*zoom, query_call(question, place)),
         needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
         tags=("text",),
-        weight=len(texts),
+        object_count=len(texts),
         answer_key=expected.accepted[0],
     )

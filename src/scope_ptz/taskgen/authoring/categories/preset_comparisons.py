@@ -71,7 +71,7 @@ def _comparisons(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
             ),
             needs=("preset",),
             tags=("two-views",) if len(places) == 2 else ("three-views",),
-            weight=sum(certain),
+            object_count=sum(certain),
             answer_key=best,
         )
 

@@ -29,7 +29,7 @@ _SUMS = (
     "Taking the {p} view and the {q} view together, how many {many} are there? None of them is in both.",
     "I want one figure: the {many} seen from the {p} preset plus the other ones seen from the {q} preset.",
 )
-_GAPS = (
+_DIFFERENCES = (
     "How many more {many} are there in the {p} view than in the {q} view?",
     "By how many does the number of {many} at the {p} preset exceed that at the {q} preset?",
     "Look at the presets {p} and {q}: how many more {many} does the first one show?",
@@ -77,18 +77,23 @@ def _count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
 
 def _total_drafts(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
     """Yield questions about the sum of, or the difference between, the counts of one kind at two presets."""
-    there = dict(countable_kinds(two.truth))
+    second_counts = dict(countable_kinds(two.truth))
     start = comparison_start(one, two)
     for kind, n in countable_kinds(one.truth):
-        m = there.get(kind)
+        m = second_counts.get(kind)
         if m is None:
             continue
         many = plural_noun(kind)
         program = (preset_call(p), count_call(many, one), preset_call(q), count_call(many, two))
-        seen = (_count_evidence(one, kind, n), _count_evidence(two, kind, m))
+        evidence = (_count_evidence(one, kind, n), _count_evidence(two, kind, m))
         # An object that is visible in both views would be counted twice in a sum.
-        same = {t.number for t in one.truth.discernible_objects if kind.fits(t)} & {t.number for t in two.truth.discernible_objects}
-        question_types = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
+        in_both = {t.number for t in one.truth.discernible_objects if kind.fits(t)} & {
+            t.number for t in two.truth.discernible_objects
+        }
+        question_types = [
+            *([("sum", n + m, _SUMS)] if not in_both else []),
+            *([("difference", n - m, _DIFFERENCES)] if n > m else []),
+        ]
         for question_type, value, texts in question_types:
             yield TaskDraft(
                 category="multi_step_reasoning",
@@ -97,11 +102,11 @@ def _total_drafts(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[Ta
                 place=start,
                 expected=Number(value=value, unit=answer_words(kind)),
                 instructions=tuple(t.format(many=many, p=p, q=q) for t in texts),
-                evidence=seen,
+                evidence=evidence,
                 program=program,
                 needs=("preset",),
                 tags=("two-views",),
-                weight=n + m,
+                object_count=n + m,
                 answer_key=str(value),
             )
 
@@ -115,7 +120,7 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
         if min(n, m) < 2 or not are_disjoint(place.truth, (one, two)):
             continue
         first, second = plural_noun(one), plural_noun(two)
-        if _is_only_one_alive(one, two):
+        if _is_only_one_living(one, two):
             continue
         together = Question(
             (
@@ -143,15 +148,15 @@ def drafts_within_view(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
                     evidence=(_count_evidence(place, one, n), _count_evidence(place, two, m)),
                     perception_calls=(count_call(first, place), count_call(second, place)),
                     tags=("arithmetic",),
-                    weight=n + m,
+                    object_count=n + m,
                     answer_key=str(value),
                 )
             )
     return result
 
 
-def _is_only_one_alive(one: Kind, two: Kind) -> bool:
-    """Return whether only one of two kinds is alive. A question that combines their counts would sound unnatural."""
+def _is_only_one_living(one: Kind, two: Kind) -> bool:
+    """Return whether only one of two kinds is living. A question that combines their counts would sound unnatural."""
     return (one.category in _LIVING_CATEGORIES) != (two.category in _LIVING_CATEGORIES)
 
 
@@ -184,7 +189,7 @@ def _branch_drafts(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Rand
             behaviour=Behaviour(final=final),
             needs=("preset",),
             tags=("condition",),
-            weight=n,
+            object_count=n,
             answer_key=end,
         )
 
@@ -203,8 +208,8 @@ def _check_drafts(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[
         things = one.truth.all_of(present) or ()
         there = YesNo(value=True, affirms=answer_words(present)[:2])
         none = NoneThere(subject=answer_words(missing)[:2])
-        seen = evidence_view(one, there, object_words(present), [one.truth.item(things[0], True)], whole=False)
-        twin = _check_draft(one, p, present, there, seen, (yes, no), places)
+        evidence = evidence_view(one, there, object_words(present), [one.truth.item(things[0], True)], whole=False)
+        twin = _check_draft(one, p, present, there, evidence, (yes, no), places)
         yield replace(
             _check_draft(one, p, missing, none, evidence_view(one, none, object_words(missing), whole=True), (yes, no), places),
             question_type="check-none",
@@ -217,7 +222,7 @@ def _check_draft(
     p: str,
     kind: Kind,
     expected: YesNo | NoneThere,
-    seen: EvidenceView,
+    evidence: EvidenceView,
     end_presets: tuple[str, str],
     places: ScenePlaces,
 ) -> TaskDraft:
@@ -232,7 +237,7 @@ def _check_draft(
         place=start,
         expected=expected,
         instructions=tuple(text.format(**words) for text in _CHECKS),
-        evidence=(seen,),
+        evidence=(evidence,),
         program=(preset_call(p), count_call(plural_noun(kind), one), preset_call(end)),
         behaviour=Behaviour(final=TaskPlace(one.scene, one.start, (), preset_position(places.presets[end])).final),
         needs=("preset",),
@@ -259,9 +264,9 @@ def _either_view_drafts(
     if start.start == q:
         return  # the start view would answer the question without a move
     for kind, (present, place) in zip(absent, shown, strict=False):
-        texts = (plural_noun(kind), plural_noun(present))
+        plurals = (plural_noun(kind), plural_noun(present))
         yes = YesNo(value=True, affirms=answer_words(present)[:2])
-        first = place.truth.all_of(present) or ()
+        things = place.truth.all_of(present) or ()
         twin = TaskDraft(
             category="multi_step_reasoning",
             question_type="either",
@@ -269,8 +274,8 @@ def _either_view_drafts(
             place=start,
             expected=yes,
             instructions=tuple(t.format(p=p, q=q, one=with_article(singular_noun(present))) for t in _EITHER_VIEW_FORMS),
-            evidence=(evidence_view(place, yes, object_words(present), [place.truth.item(first[0], True)], whole=False),),
-            program=(preset_call(p), count_call(texts[1], one), preset_call(q), count_call(texts[1], two)),
+            evidence=(evidence_view(place, yes, object_words(present), [place.truth.item(things[0], True)], whole=False),),
+            program=(preset_call(p), count_call(plurals[1], one), preset_call(q), count_call(plurals[1], two)),
             needs=("preset",),
             tags=("presence",),
             answer_key="yes",
@@ -287,7 +292,7 @@ def _either_view_drafts(
                 evidence_view(one, none, object_words(kind), [], whole=True),
                 evidence_view(two, none, object_words(kind), [], whole=True),
             ),
-            program=(preset_call(p), count_call(texts[0], one), preset_call(q), count_call(texts[0], two)),
+            program=(preset_call(p), count_call(plurals[0], one), preset_call(q), count_call(plurals[0], two)),
             needs=("preset",),
             tags=("none-there", "two-views"),
             twin=twin,

@@ -60,14 +60,14 @@ def command_draft(
     )
 
 
-def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield drafts of all types in turn. Close-up and tracking drafts are about the places in ``pool``."""
+def drafts(places: ScenePlaces, target_places: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield drafts of all types in turn. Close-up and tracking drafts are about ``target_places``."""
     streams = [
         _move_drafts(places, rng),
         _preset_drafts(places, rng),
         _pan_drafts(places, rng),
-        _close_up_drafts(pool),
-        _tracking_drafts(pool),
+        _close_up_drafts(target_places),
+        _tracking_drafts(target_places),
         _sweep_drafts(places),
         _move_drafts(places, rng),
         _other_command_drafts(places, rng),
@@ -82,7 +82,9 @@ def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> It
                 yield draft
 
 
-def _adjustment_draft(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
+def _adjustment_draft(
+    places: ScenePlaces, name: str, call: ProgramCall, question_type: str, rng: random.Random
+) -> TaskDraft | None:
     start = places.place_at_preset(name)
     destination = apply_adjustment(start.at, call)
     if destination is None:
@@ -90,7 +92,7 @@ def _adjustment_draft(places: ScenePlaces, name: str, call: ProgramCall, kind: s
     end = TaskPlace(start.scene, name, (call,), destination)
     instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite_forms(" and ".join(call_phrases(call, rng)))))
     return command_draft(
-        "single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs
+        "single_call", question_type, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs
     )
 
 
@@ -197,8 +199,8 @@ def _other_command_drafts(places: ScenePlaces, rng: random.Random) -> Iterator[T
             yield command_draft("single_call", "list", "presets", start, instructions, calls, behaviour, (), ("presets",))
 
 
-def _close_up_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
-    for place in pool:
+def _close_up_drafts(target_places: list[TaskPlace]) -> Iterator[TaskDraft]:
+    for place in target_places:
         if not place.is_start_view and place.preset is None:
             continue
         current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
@@ -209,10 +211,10 @@ def _close_up_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             instructions = tuple(
                 t
                 for w in (
-                    f"zoom in on {target.the}",
-                    f"get a close-up of {target.the}",
-                    f"frame {target.the}",
-                    f"centre {target.the} and zoom in on it",
+                    f"zoom in on {target.with_the}",
+                    f"get a close-up of {target.with_the}",
+                    f"frame {target.with_the}",
+                    f"centre {target.with_the} and zoom in on it",
                 )
                 for t in polite_forms(w)
             )
@@ -230,9 +232,9 @@ def _close_up_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
             )
 
 
-def _tracking_drafts(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+def _tracking_drafts(target_places: list[TaskPlace]) -> Iterator[TaskDraft]:
     """Yield commands to follow a moving object that is the only one of its kind and is still in view 1.5 s later."""
-    for n, place in enumerate(pool):
+    for n, place in enumerate(target_places):
         current_place = TaskPlace(place.scene, place.preset or place.start, (), place.at)
         at_start = current_place.truth.samples[0]
         later = current_place.truth.read_truth(
@@ -291,6 +293,6 @@ def _sweep_drafts(places: ScenePlaces) -> Iterator[TaskDraft]:
                 evidence=(evidence_view(place, expected, object_words(kind), items, whole=True),),
                 perception_calls=(count_call(many, place),),
                 tags=("full",),
-                weight=number,
+                object_count=number,
                 answer_key=str(number),
             )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural
-from scope_ptz.planner.grammar.execution.answer_sentences import continued
+from scope_ptz.planner.grammar.execution.answer_sentences import with_lower_initial
 from scope_ptz.planner.grammar.instruction_tree import (
     Ask,
     AtPlaces,
@@ -22,7 +22,7 @@ from scope_ptz.planner.grammar.parsing.parts.noun_phrases import PROPERTIES, is_
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
-from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, place_after
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, split_trailing_place
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
@@ -43,18 +43,18 @@ _IDENTITIES = (
     "(((number|licence|license|registration|reg) plate|numberplate|registration) (of|off|on|from)|"
     "(plate|registration|reg|serial|fleet) (number (off|on|from)|number_of))"
 )
-"""Texts that identify a thing: "I need the number plate of the blue lorry"."""
+"""Text that identifies a thing: "I need the number plate of the blue lorry"."""
 
 
-def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> str | None:
+def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, has_question_mark: bool) -> str | None:
     """Return the question that "barrier open?", "driver wearing a helmet?" and "excavator colour?" stand for; None for others."""
     if (question := _identity_question(source, lexemes)) is not None:
         return question
     wanted = full_match("(give (me|us) the)? (?P<what>FREE (of|on) DET _+)", lexemes)
     if wanted and wanted["what"][0].word in PROPERTIES and not search(f"{_NO_TOPIC}|COMMA|BE", lexemes):
-        return f"What is the {continued(text_of(source, wanted['what']))}?"  # "give me the colour of the van"
+        return f"What is the {with_lower_initial(text_of(source, wanted['what']))}?"  # "give me the colour of the van"
     if (
-        not asked
+        not has_question_mark
         or search(_NO_TOPIC, lexemes)
         or not match_start("(DET|EVERY)? FREE{1,3}", lexemes)
         or search("SELF|NUM DEG|COMMA", lexemes)
@@ -63,17 +63,17 @@ def _verbless_question(source: Source, lexemes: Sequence[Lexeme], *, asked: bool
     text = text_of(source, lexemes)
     if lexemes[-1].word in PROPERTIES and 1 < len(lexemes) < 6:
         article = "" if lexemes[0].has("DET") else "the "
-        return f"What is {article}{continued(text)}?"
+        return f"What is {article}{with_lower_initial(text)}?"
     if lexemes[0].word in PROPERTIES and match_start("_ (of|on|for) _", lexemes):
-        return f"What is the {continued(text)}?"
+        return f"What is the {with_lower_initial(text)}?"
     subject = 1 if lexemes[0].has("DET", "EVERY") else 0
     for x in lexemes[subject + 1 : subject + 4]:
         if x.word in _STATES or (x.word.endswith("ing") and x.has("FREE")) or x.word in {"wearing", "holding", "carrying"}:
             return f"{text}?"
     if full_match("FREE{1,3}", lexemes) and is_plural(lexemes[-1].word) and is_noun_phrase(lexemes):
-        return f"Are there any {continued(text)}?"  # "people (at the gate)?"
+        return f"Are there any {with_lower_initial(text)}?"  # "people (at the gate)?"
     if full_match("FREE{1,2}", lexemes) and is_noun(lexemes[-1].word) and is_noun_phrase(lexemes):
-        return f"Is there any {continued(text)}?"  # "queue (at the gate)?"
+        return f"Is there any {with_lower_initial(text)}?"  # "queue (at the gate)?"
     return None
 
 
@@ -88,14 +88,14 @@ def _identity_question(source: Source, lexemes: Sequence[Lexeme]) -> str | None:
 def _with_options_at_place(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read "barrier at the gate: up or down?" as a question at the preset; None for other clauses."""
     match = full_match("(?P<thing>_+) COLON (?P<options>_+ OR _+)", lexemes)
-    rest, places = place_after(source, match["thing"]) if match else ((), None)
+    rest, places = split_trailing_place(source, match["thing"]) if match else ((), None)
     if match is None or not places or search(_NO_TOPIC, rest):
         return None
     return AtPlaces(places, (Ask(f"{text_of(source, rest)}: {text_of(source, match['options'])}?"),))
 
 
 def _described(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step:
-    """Return the request to describe something; at a preset, the whole view is described."""
+    """Return the request to describe something, or everything in view at a preset."""
     if places := places_of(source, lexemes):
         return AtPlaces(places, (Ask("describe", view),))
     return Ask(f"describe {text_of(source, lexemes)}", view)
@@ -108,7 +108,7 @@ def _is_personal(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def question_step(
-    source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], view: View | None, *, asked: bool
+    source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], view: View | None, *, has_question_mark: bool
 ) -> Step | tuple[Step, ...] | None:
     """Read questions, direct or after "tell me"."""
     lexemes = tuple(lexemes) if completes_question(lexemes) else trimmed(lexemes, "COMMA", "FILLER", "QUOTE")
@@ -117,7 +117,7 @@ def question_step(
     if not lexemes:
         return None
     scope: View | None = "full" if has_full_scope(lexemes) else view
-    end = "?" if asked else ""
+    end = "?" if has_question_mark else ""
     if match := full_match(rf"(DESCRIBE|DESCRIBE-ING|list) {ME} (?P<rest>_*)", lexemes):
         if lexemes[0].has("DESCRIBE", "DESCRIBE-ING") and places_of(source, match["rest"]):
             return _described(source, match["rest"], scope)
@@ -188,45 +188,57 @@ def question_step(
             return Ask(text_of(source, rest) + end, scope, embedded=True)
         if match_start("about", rest):
             return Ask(text_of(source, rest) + end, scope, embedded=True)
-    return _untold_question(source, lexemes, bare, scope, asked=asked)
+    return _question_without_tell_me(source, lexemes, bare, scope, has_question_mark=has_question_mark)
 
 
-def _untold_question(
-    source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], scope: View | None, *, asked: bool
+def _question_without_tell_me(
+    source: Source, lexemes: Sequence[Lexeme], bare: Sequence[Lexeme], scope: View | None, *, has_question_mark: bool
 ) -> Step | tuple[Step, ...] | None:
     """Read questions without "tell me", whole or shortened: "is it open?", "over five trucks in view?", "barrier open?"."""
-    end = "?" if asked else ""
+    end = "?" if has_question_mark else ""
     if lexemes[0].word == "see":
         return None  # "(would it be possible to) see the orchard at full zoom?" is a command
     if lexemes[0].word == "whether" and not search(_NO_TOPIC, lexemes):
         return Ask(text_of(source, lexemes) + end, scope, embedded=True)  # "I was wondering whether it is open"
-    if asked and match_start("(SOMEONE|NOONE|everyone|everybody|nothing|something) _", lexemes):
+    if has_question_mark and match_start("(SOMEONE|NOONE|everyone|everybody|nothing|something) _", lexemes):
         return Ask(text_of(source, lexemes) + end, scope)
-    if asked and match_start("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM _", lexemes) and not search(_NO_TOPIC, lexemes):
-        return Ask(f"Are there {continued(text_of(source, lexemes))}?", scope)  # "over five trucks in view?"
+    if (
+        has_question_mark
+        and match_start("(ATLEAST|MORETHAN|FEWERTHAN|ATMOST|EXACTLY) NUM _", lexemes)
+        and not search(_NO_TOPIC, lexemes)
+    ):
+        return Ask(f"Are there {with_lower_initial(text_of(source, lexemes))}?", scope)  # "over five trucks in view?"
     if search("between (DET)? PRESET (PRESETNOUN)? and (DET)? PRESET", lexemes) and is_question(lexemes):
         return Unclear(
             "I can look at one place and then the other, but I cannot answer that for both at once. What shall I look for?"
         )
-    if not asked and match_start("(FILLER|COMMA)* (NOONE|nothing)", lexemes):
+    if not has_question_mark and match_start("(FILLER|COMMA)* (NOONE|nothing)", lexemes):
         raise NotUnderstoodError(lexemes)  # "nothing moving over there" is a remark or a condition, not a question
     if is_question(lexemes) and not _is_personal(lexemes):
-        is_indirect = not asked and (lexemes[0].has("WHQ") or lexemes[0].word == "how")
+        is_indirect = not has_question_mark and (lexemes[0].has("WHQ") or lexemes[0].word == "how")
         return Ask(text_of(source, lexemes) + end, scope, embedded=is_indirect)  # "I need to know what colour it is"
-    tag = full_match("(?P<statement>_+) COMMA (BE|DOV|HAVEV|MODAL|can|do) (not)? (PRON|it|there|they)", lexemes) if asked else None
+    tag = (
+        full_match("(?P<statement>_+) COMMA (BE|DOV|HAVEV|MODAL|can|do) (not)? (PRON|it|there|they)", lexemes)
+        if has_question_mark
+        else None
+    )
     if tag and tag["statement"][0].word != "it" and not search(f"NOT|not|{_NO_TOPIC}", tag["statement"]):
         return Ask(f"whether {text_of(source, tag['statement'])}?", scope, embedded=True)  # "the gate is open, isn't it?"
-    if asked and (placed := _with_options_at_place(source, lexemes)) is not None:
+    if has_question_mark and (placed := _with_options_at_place(source, lexemes)) is not None:
         return placed
-    if asked and (search("COLON", lexemes) or match_start("(DET)? FREE+ of ", lexemes)) and not search(_NO_TOPIC, lexemes):
+    if (
+        has_question_mark
+        and (search("COLON", lexemes) or match_start("(DET)? FREE+ of ", lexemes))
+        and not search(_NO_TOPIC, lexemes)
+    ):
         return Ask(text_of(source, lexemes) + "?", scope)  # "display case: open or shut?"
     is_choice = len(lexemes) > 3 and lexemes[-2].has("OR") and lexemes[-1].word in _STATES and lexemes[-3].word in _STATES
-    question = _verbless_question(source, lexemes, asked=asked or is_choice)
+    question = _verbless_question(source, lexemes, has_question_mark=has_question_mark or is_choice)
     if question is not None:
         return Ask(question, scope)
     if match := full_match(r"(what|how) about (?P<thing>_+)|(and) (?P<other>_+)", bare):
         thing = thing_of(source, match["thing"] or match["other"])
-        return WhatAbout(thing) if thing and asked else None
+        return WhatAbout(thing) if thing and has_question_mark else None
     if match := full_match(
         (
             r"(i|we) (am|are) (FIND-ING|looking for) (?P<thing>_+)|there (should|must|might|ought to|has to) be "

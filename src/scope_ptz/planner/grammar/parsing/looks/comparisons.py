@@ -24,7 +24,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import NotUnderstoodError, S
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
-from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, place_after, without_view
+from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, split_trailing_place, without_view
 
 if TYPE_CHECKING:
     from scope_ptz.tools.arguments import View
@@ -80,16 +80,16 @@ def comparison_step(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadM
     if (asked := full_match("((FILLER|COMMA)* WHQ BE it COMMA)? (?P<asked>_+?) ((COMMA)? (or|OR) not)?", lexemes)) is not None:
         lexemes = tuple(asked["asked"])  # "which is it, more girls or more boys?", "fewer cars than vans, or not?"
     return (
-        _same_thing_at_two(source, lexemes)
+        _same_thing_at_two_presets(source, lexemes)
         or ranking_step(source, lexemes)
-        or _presets(source, lexemes)
+        or _preset_comparison(source, lexemes)
         or _before_after(source, lexemes, read_moves)
-        or _things(source, lexemes)
+        or _thing_comparison(source, lexemes)
         or preset_presence_step(source, lexemes)
     )
 
 
-def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+def _preset_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read comparisons of presets."""
     listing = r"(COMMA|COLON|DASH|between|out of|of|at|OPEN)* (?P<places>_+?) (CLOSE)?"
     patterns = (
@@ -181,7 +181,7 @@ def _presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     return None
 
 
-def _same_thing_at_two(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
+def _same_thing_at_two_presets(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
     """Read "compare vans at the gate with vans in the yard"."""
     head = r"(COMPARE (DET|COUNTNOUN)*|(WHQ BE)? (DET)? difference (in|between) (DET|COUNTNOUN)*)"
     second = r"(with|to|AND|against) (DET|those|COUNTNOUN)* (?P<again>_+?)?? (at|in|on) (?P<other>_+)"
@@ -252,7 +252,7 @@ def _before_after(source: Source, lexemes: Sequence[Lexeme], read_moves: ReadMov
 _HALVES = {"left": "right", "top": "bottom", "upper": "lower"}
 
 
-def _halves(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | None:
+def _half_comparison(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Step | None:
     """Read "which half of the picture has more cars?" and "which side has more people, left or right?"."""
     match = full_match(
         rf"{_SKIP} (on|in)? (WHQ|which) (half|side|SIDE) (of DET (PICTURE|VIEWNOUN|frame|FREE))? {_SHOWS} {_WAY} (?P<thing>_+?) "
@@ -271,13 +271,13 @@ def _halves(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> Ste
     return Compare(first, second, _comparison(match["way"]), view)
 
 
-def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
+def _thing_comparison(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     """Read comparisons of the counts of two things in one view."""
     words, view = without_view(lexemes)
     if has_full_scope(lexemes):
         view = "full"
         words = tuple(x for x in words if not x.has("FULL"))
-    words, places = place_after(source, words)
+    words, places = split_trailing_place(source, words)
     patterns = (
         (
             rf"{_SKIP} (WHQ BE it COMMA)? {_SEE}? (any)? {_WAY} (?P<first>_+?) (than|THAN|or|OR|ORMORE|ORFEWER) (there BE|the|more|"
@@ -310,7 +310,7 @@ def _things(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         rf"{_SKIP} (by HOWMANY|HOWMANY) DOV DET (?P<first>_+?) outnumber DET (?P<second>_+)",
         rf"{_SKIP} (DOV|BE) (the)? (?P<first>_+?) outnumber (the)? (?P<second>_+)",
     )
-    if (halves := _halves(source, words, view)) is not None:
+    if (halves := _half_comparison(source, words, view)) is not None:
         return AtPlaces(places, (halves,)) if places else halves
     sides = r"(on|at|in|to|near|by) _+?"
     if match := full_match(

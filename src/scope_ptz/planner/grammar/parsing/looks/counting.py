@@ -19,7 +19,13 @@ from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.lexing.morphology import verb_forms
 from scope_ptz.planner.grammar.parsing.calculations import without_sum
 from scope_ptz.planner.grammar.parsing.parts.clause import ME, SKIP, Source, text_of, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import described, is_noun, is_noun_phrase, thing_of, things_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import (
+    is_noun,
+    is_noun_phrase,
+    thing_of,
+    things_of,
+    without_function_words,
+)
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import place_of, places_of
 from scope_ptz.planner.grammar.parsing.parts.scopes import has_full_scope, without_view
@@ -64,7 +70,7 @@ def count_step(source: Source, lexemes: Sequence[Lexeme], view: View | None) -> 
     ):
         part = _WITH_PART.get(match["rest"][0].word)
         if part is None:
-            return _count_those(source, (*match["whole"], *match["rest"]), view)
+            return _count_with_predicate(source, (*match["whole"], *match["rest"]), view)
         whole = thing_of(source, trimmed(match["whole"], "VISIBLE"))  # "of the people in view, how many wear a hat?"
         return Count((Thing(f"{whole.text} {part} {text_of(source, match['rest'][1:])}"),), view) if whole and whole.text else None
     compared = full_match(
@@ -147,15 +153,15 @@ def _counted(
         return AtPlaces(places, (Count((Thing("people"),), view),))  # "how many on the boardwalk?"
     if how is not None and match_start("(in|on|at) DET FREE", rest):
         return Count((Thing(f"people {text_of(source, rest)}"),), view)  # "how many in the queue?"
-    if how is not None and (those := _count_those(source, rest, view)):
+    if how is not None and (those := _count_with_predicate(source, rest, view)):
         return those
     if things := things_of(source, rest):
         return Count(things, view)
     return None
 
 
-def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> Step | None:
-    """Read "how many cars are in the left lane" or "... are red" as a count of a longer description."""
+def _count_with_predicate(source: Source, rest: Sequence[Lexeme], view: View | None) -> Step | None:
+    """Read "how many cars are in the left lane" or "... are red" as a count whose description includes the predicate."""
     if match := full_match(
         r"(?P<part>_+?) (does|do|has|have) (?P<whole>_+?) (have|got|show|contain)|(?P<part>_+?) (has|have) (?P<whole>DET PRESET)",
         rest,
@@ -175,7 +181,9 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
         return None
     words, verb = trimmed(match["rest"], "FILLER"), match["verb"]
     if words[:1] and words[0].word == "been" and len(words) > 1:
-        return Count((Thing(described(f"{thing.text} {text_of(source, words[1:])}")),), view)  # "... have been left in the shed"
+        return Count(
+            (Thing(without_function_words(f"{thing.text} {text_of(source, words[1:])}")),), view
+        )  # "... have been left in the shed"
     text = text_of(source, words)
     negated = match.has("not")
     if any(x.has("PAN", "TILT", "ZOOM", "IF", "DEG", "THEN") for x in words) or search("(COMMA|AND) WHQ", words):
@@ -196,7 +204,7 @@ def _count_those(source: Source, rest: Sequence[Lexeme], view: View | None) -> S
     adjective = (
         len(words) == 1 and (words[0].has("FREE") or words[0].word in {"open", "shut"}) and not text.endswith("ing") and not negated
     )
-    description = described(f"{text} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{text}")
+    description = without_function_words(f"{text} {thing.text}" if adjective else f"{thing.text} {'not ' if negated else ''}{text}")
     return Count((Thing(description),), view) if looks_like_description(description) else None
 
 

@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     pass
 
 
-def look_step(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> Step | tuple[Step, ...] | None:
+def look_step(source: Source, lexemes: Sequence[Lexeme], *, has_question_mark: bool) -> Step | tuple[Step, ...] | None:
     """Return the step of a clause that looks at the scene; None for other clauses.
 
     Args:
         source: The instruction.
         lexemes: The clause.
-        asked: Whether a question mark ends the clause.
+        has_question_mark: Whether a question mark ends the clause.
     """
     bare, view = without_view(lexemes)
     for read in (picture_step, check_places_step, _sweep):
         if (step := read(source, lexemes)) is not None:
             return step
     if (
-        asked
+        has_question_mark
         and (match := full_match(r"(FILLER|SEE|SHOW|any|got)* (ANY|DET) (?P<thing>_+?) (VISIBLE|there|here|about|anywhere)*", bare))
         and (lexemes[0].has("SEE", "ANY") or lexemes[0].word == "got")
         and not any(x.has("PICTURE", "CLOSER", "SNAP") for x in bare)
@@ -52,7 +52,7 @@ def look_step(source: Source, lexemes: Sequence[Lexeme], *, asked: bool) -> Step
     for read in (track_step, close_up_step):
         if (step := read(source, bare)) is not None:
             return step
-    return question_step(source, lexemes, bare, view, asked=asked)
+    return question_step(source, lexemes, bare, view, has_question_mark=has_question_mark)
 
 
 def _sweep(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:

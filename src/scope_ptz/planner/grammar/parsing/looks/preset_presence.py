@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from scope_ptz.planner.grammar.instruction_tree import FirstWith, PresetRef, Step, Thing, WhichPreset
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import Source, trimmed
-from scope_ptz.planner.grammar.parsing.parts.noun_phrases import people, thing_of
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import people_description, thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import places_of
 
 _SKIP = "(FILLER|FIRSTLY|LEADFILLER|TELL|me|us|SELF|if|whether|IF|COMMA|check|see)*"
 _THERE = "(in (PRON|it|them|VIEWNOUN)|on (PRON|it|them)|VISIBLE|NOW|FILLER)*"
-"""Words after a thing that only restate that it is at the preset: "which presets have people in them"."""
+"""Words after a thing that only repeat that it is at the preset: "which presets have people in them"."""
 
 _ANY_PRESET = (
     r"(ANY|any|either|one|any_of_the|either_of_the|any_of|any_of_these) (of)? (DET|SELF|NUM|PRON|saved|"
@@ -97,7 +97,7 @@ def _thing(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     ):
         return None
     if lexemes[0].has("SOMEONE"):
-        return people(source, lexemes[1:])
+        return people_description(source, lexemes[1:])
     if lexemes[0].word in _STORED or lexemes[0].has("PREP"):
         return None  # "which views do we have saved?"
     thing = thing_of(source, lexemes)

@@ -60,7 +60,7 @@ def ranking_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
     for pattern in _PATTERNS:
         if (match := full_match(pattern, words)) is None:
             continue
-        first = _first(match["way"]) if "way" in match.names else "more"
+        first = _leading_comparison(match["way"]) if "way" in match.names else "more"
         if "thing" in match.names:
             places, thing = _places(source, match["names"]), thing_of(source, trimmed(match["thing"], "VISIBLE"))
             if places is not None and thing is not None and thing.text:
@@ -70,7 +70,7 @@ def ranking_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
             return RankCounts(tuple(Tally(thing, view=view) for thing in things), first)
     for pattern in _MOST_OF:
         if (match := full_match(pattern, words)) is not None and (things := _kinds(source, match["names"])) is not None:
-            first = _first(match["way"])
+            first = _leading_comparison(match["way"])
             if len(things) == 2:
                 return Compare(*things, first, view)
             return RankCounts(tuple(Tally(thing, view=view) for thing in things), first, winner=True)
@@ -82,8 +82,8 @@ _ORDER_WORDS = (
 )
 
 
-def _first(way: Sequence[Lexeme]) -> Comparison:
-    """Return whether an order begins with the most or with the fewest."""
+def _leading_comparison(way: Sequence[Lexeme]) -> Comparison:
+    """Return "more" if an order begins with the most, or "fewer" if it begins with the fewest."""
     return "fewer" if way[0].has("FEW") or way[0].word in _FEWEST_FIRST | {"fewer", "less"} else "more"
 
 

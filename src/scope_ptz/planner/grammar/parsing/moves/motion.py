@@ -14,8 +14,8 @@ from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Further, Mov
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.moves.special_turns import AXIS_TARGET, special_turn
 from scope_ptz.planner.grammar.parsing.moves.turn_words import (
+    ALLOWED_IN_TURNS,
     AXES,
-    SILENT_IN_TURNS,
     TURN_GERUNDS,
     TURN_VERBS,
     TurnParts,
@@ -25,7 +25,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DANGLING, DIRECTIONS,
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 HasClass = Callable[..., bool]
-"""Returns whether any of the words that add nothing, such as articles, belongs to one of the given classes."""
+"""Returns whether any word of a turn, besides its amounts and directions, belongs to one of the given classes."""
 
 _UNKNOWN_CARRIER = "FREE (it|her|him|DET CAMERA|DET VIEWNOUN|CAMERA)"
 """An unknown verb whose object is the camera, and which must therefore mean to move it: "lob it 15 degrees to the left"."""
@@ -49,11 +49,11 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
         return None
     if special := special_turn(lexemes):
         return special
-    found, silent, unread = find_parts(lexemes)
+    found, allowed, unread = find_parts(lexemes)
     has_verb = any(x.has(*TURN_VERBS, *TURN_GERUNDS, *(f"{verb}-ED" for verb in TURN_VERBS), "REVERSE") for x in lexemes)
     if not has_verb:  # "the one on the right" is not a turn
         unread += [
-            x for x in silent if x.word in {"on", "at", "in", "with", "across", "along", "is", "are", "that", "one", "of", "into"}
+            x for x in allowed if x.word in {"on", "at", "in", "with", "across", "along", "is", "are", "that", "one", "of", "into"}
         ]
     unread += [x for x in lexemes if x.word == "one" and not match_start("one DEG", lexemes[lexemes.index(x) :])]
     named = search("CAMERA (?P<number>NUM)(?! (DEG|X))", lexemes)
@@ -66,7 +66,7 @@ def turn_step(lexemes: Sequence[Lexeme]) -> Step | None:
         unread = []
     if unread:
         raise NotUnderstoodError(unread)
-    step = _step(found, silent, lexemes)
+    step = _step(found, allowed, lexemes)
     return Repeat((step,), found.times) if found.times > 1 and isinstance(step, Move) else step
 
 
@@ -123,61 +123,63 @@ def _is_about_turning(lexemes: Sequence[Lexeme]) -> bool:
         for x in lexemes
     ) or (
         not any(x.has("PICTURE") for x in lexemes)
-        and all(x.has("NUM", *SILENT_IN_TURNS, "SAMEAMOUNT", "LITTLE", "LOT") for x in lexemes)
+        and all(x.has("NUM", *ALLOWED_IN_TURNS, "SAMEAMOUNT", "LITTLE", "LOT") for x in lexemes)
         and any(x.has("NUM", "LITTLE", "SAMEAMOUNT", "LOT") for x in lexemes)
     )
 
 
-def _step(found: TurnParts, silent: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step for a turn with the given parts."""
+def _step(found: TurnParts, allowed: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step for a turn, given its parts and its other allowed words."""
 
     def has(*classes: str) -> bool:
-        return any(x.has(*classes, *(f"{name}-ING" for name in classes)) for x in silent)
+        return any(x.has(*classes, *(f"{name}-ING" for name in classes)) for x in allowed)
 
-    has_verb = any(x.has(*TURN_VERBS, *TURN_GERUNDS) and not x.has(*DIRECTIONS) for x in silent) or (
+    has_verb = any(x.has(*TURN_VERBS, *TURN_GERUNDS) and not x.has(*DIRECTIONS) for x in allowed) or (
         len(lexemes) > 1 and has("LOWER")
     )
-    ways = list(dict.fromkeys(found.directions))
-    axes = {AXES[way][0] for way in ways}
-    if len(ways) > len(axes):
+    directions = list(dict.fromkeys(found.directions))
+    axes = {AXES[direction][0] for direction in directions}
+    if len(directions) > len(axes):
         return _CONTRADICTION
-    said_twice = len(found.amounts) > len(ways) and search("(NUM DEG?|LITTLE|LOT) COMMA (FILLER|MORE)* (NUM|LITTLE|LOT)", lexemes)
-    if said_twice or any(search(f"{way} COMMA (FILLER)* {way}", lexemes) for way in ways):
+    said_twice = len(found.amounts) > len(directions) and search(
+        "(NUM DEG?|LITTLE|LOT) COMMA (FILLER|MORE)* (NUM|LITTLE|LOT)", lexemes
+    )
+    if said_twice or any(search(f"{direction} COMMA (FILLER)* {direction}", lexemes) for direction in directions):
         return Unclear("How far shall I turn in all?")  # "left, left, left"
     if search("RIGHT (UP|DOWN)", lexemes) and not search("right (hand|side)", lexemes) and len(found.amounts) < 2:
         return Unclear("Shall I also turn right?")  # "tilt it right down"
-    if (has("TILT") and ways and "tilt" not in axes) or (has("PAN") and ways and "pan" not in axes):
+    if (has("TILT") and directions and "tilt" not in axes) or (has("PAN") and directions and "pan" not in axes):
         return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
     if found.aims:
         return Move(tuple(found.aims)) if not found.parts and found.target is None else _UNCLEAR_WAY
     if match_start("(FILLER|COMMA)* UP to NUM", lexemes):
         return Unclear("Is that the angle to tilt to, or the most I should turn by?")
     if found.target is not None:
-        return _target(found, ways, has, lexemes)
-    if not ways:
-        return _undirected(found, has, has_verb, lexemes)
+        return _absolute_turn(found, directions, has, lexemes)
+    if not directions:
+        return _turn_without_direction(found, has, has_verb, lexemes)
     amounts = found.amounts
     exact = [amount for amount in amounts if amount.kind == "degrees"]
-    if len(ways) == 1:
+    if len(directions) == 1:
         if len(set(exact)) > 1 or (len({amount.kind for amount in amounts}) > 1 and not exact):
             return Unclear("By how many degrees shall I turn?")
         amount = exact[0] if exact else amounts[0] if amounts else None
-        return Move((_turn(ways[0], amount, found),), has_verb)
-    if len(amounts) > len(ways):
+        return Move((_turn(directions[0], amount, found),), has_verb)
+    if len(amounts) > len(directions):
         return Unclear("By how many degrees shall I turn, and which way?")
-    return Move(_several(found, ways), has_verb)
+    return Move(_turns_about_two_axes(found, directions), has_verb)
 
 
-def _several(found: TurnParts, ways: list[str]) -> tuple[Part, ...]:
+def _turns_about_two_axes(found: TurnParts, directions: list[str]) -> tuple[Part, ...]:
     """Return the turns about two axes. A single amount applies to both; otherwise each direction takes the amount next to it."""
     amounts = found.amounts
     if len(amounts) < 2:
-        return tuple(_turn(way, amounts[0] if amounts else None, found) for way in ways)
-    return tuple(_turn(way, amount, found) for way, amount in zip(ways, amounts, strict=False))
+        return tuple(_turn(direction, amounts[0] if amounts else None, found) for direction in directions)
+    return tuple(_turn(direction, amount, found) for direction, amount in zip(directions, amounts, strict=False))
 
 
-def _turn(way: str, amount: Amount | None, found: TurnParts) -> Turn:
-    axis, sign = AXES[way]
+def _turn(direction: str, amount: Amount | None, found: TurnParts) -> Turn:
+    axis, sign = AXES[direction]
     step, count = found.step, found.count
     if found.divides and count and amount and amount.kind == "degrees":
         step = Amount("degrees", abs(amount.degrees) / count)
@@ -186,22 +188,22 @@ def _turn(way: str, amount: Amount | None, found: TurnParts) -> Turn:
     return Turn(axis, sign, amount, step, count)
 
 
-def _target(found: TurnParts, ways: list[str], has: HasClass, lexemes: Sequence[Lexeme]) -> Step:
+def _absolute_turn(found: TurnParts, directions: list[str], has: HasClass, lexemes: Sequence[Lexeme]) -> Step:
     """Return the step that turns to an absolute angle."""
     value = found.target or 0.0
-    if found.amounts or len(ways) > 1:
+    if found.amounts or len(directions) > 1:
         return Unclear("Is that the angle to turn to, or the angle to turn by?")
-    if ways and search("at NUM", lexemes):
+    if directions and search("at NUM", lexemes):
         return Unclear("Is that the angle to turn to, or the angle to turn by?")
-    axis: Literal["pan", "tilt"] = AXES[ways[0]][0] if ways else "tilt" if has("TILT", "TILTNOUN") else "pan"
-    if ways and AXES[ways[0]][1] < 0:
+    axis: Literal["pan", "tilt"] = AXES[directions[0]][0] if directions else "tilt" if has("TILT", "TILTNOUN") else "pan"
+    if directions and AXES[directions[0]][1] < 0:
         value = -abs(value)
-    if not ways and not has("TILT", "TILTNOUN", "PAN", "PANNOUN", "AIM", "TURN"):
+    if not directions and not has("TILT", "TILTNOUN", "PAN", "PANNOUN", "AIM", "TURN"):
         return Unclear("Is that number the pan angle in degrees, or the number of a preset?")
     return Move((Aim(axis, value),))
 
 
-def _undirected(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequence[Lexeme]) -> Step:
+def _turn_without_direction(found: TurnParts, has: HasClass, has_verb: bool, lexemes: Sequence[Lexeme]) -> Step:
     """Return the step of a turn without a direction: a signed angle ("pan 25"), or more of the previous turn ("another 10")."""
     amount = next(iter(found.amounts), None)
     axis: Literal["pan", "tilt"] = "tilt" if has("TILT", "TILTNOUN") or search("TILT", lexemes) else "pan"

@@ -76,7 +76,7 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         lexemes,
     ):
-        return GoToPreset(_ref(source, match, lexemes), _how(lexemes))
+        return GoToPreset(_ref(source, match, lexemes), _verb_kind(lexemes))
     if full_match(
         (
             r"(SWITCH|CARRY|back|FILLER|to|over|it|CAMERA|SHOW|me|take|us|DET|AIM)* (to)? (there|that one|that preset|"
@@ -90,7 +90,7 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
-    """Return the step of a clause that asks which presets there are; None for other clauses."""
+    """Return the step of a clause that asks for a list of the presets; None for other clauses."""
     if (
         full_match(
             (
@@ -121,7 +121,7 @@ def listing_step(lexemes: Sequence[Lexeme]) -> Step | None:
 
 
 def tour_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | tuple[Step, ...] | None:
-    """Return the step of "visit every preset": a tour whose actions come later; None for other clauses."""
+    """Return the step of "visit every preset", a tour without actions yet; None for other clauses."""
     if match := full_match(
         r"(SWITCH|CARRY|SHOW|SCAN|tour|through|to|at|FILLER)* (?P<places>(DET|EVERY)* _* PRESETNOUN EXCEPT _+)", lexemes
     ):
@@ -163,7 +163,7 @@ def _ref(source: Source, match: Any, lexemes: Sequence[Lexeme]) -> PresetRef:
     return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
 
 
-def _how(lexemes: Sequence[Lexeme]) -> Any:
+def _verb_kind(lexemes: Sequence[Lexeme]) -> Any:
     """Return the kind of verb with which a clause names a preset, as in ``GoToPreset.how``."""
     words = {x.word for x in lexemes}
     if words & {"use", "using"}:

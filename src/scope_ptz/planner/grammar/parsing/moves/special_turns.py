@@ -8,7 +8,7 @@ from typing import Literal
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Part, Step, Turn, Unclear
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.moves.returns import BACK_UP
-from scope_ptz.planner.grammar.parsing.moves.turn_words import SILENT_IN_TURNS, TURN_VERBS
+from scope_ptz.planner.grammar.parsing.moves.turn_words import ALLOWED_IN_TURNS, TURN_VERBS
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 
 AXIS_TARGET = (
@@ -31,7 +31,7 @@ _NO_CLOCK = Unclear(
 
 def special_turn(lexemes: Sequence[Lexeme]) -> Step | None:
     """Return the step of a turn that is not stated as a direction and an amount: "turn around", "level the camera"."""
-    glue = "(" + "|".join(x for x in SILENT_IN_TURNS) + "|that|so|you|are)*"
+    glue = "(" + "|".join(x for x in ALLOWED_IN_TURNS) + "|that|so|you|are)*"
     if (clock := full_match(f"{glue} (to|at|towards) SELF (?P<hour>NUM) (o_'_clock|o_clock) {glue}", lexemes)) is not None:
         return _to_hour(clock["hour"][0].value, lexemes)
     if search(CLOCK_POSITION, lexemes):

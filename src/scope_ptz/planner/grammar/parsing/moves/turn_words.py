@@ -18,7 +18,7 @@ TURN_VERBS = ("PAN", "TILT", "TURN", "CARRY", "DOACT", "AIM", "RAISE", "LOWER", 
 TURN_GERUNDS = tuple(f"{verb}-ING" for verb in TURN_VERBS)
 
 
-SILENT_IN_TURNS = (
+ALLOWED_IN_TURNS = (
     *TURN_VERBS, *TURN_GERUNDS, *(f"{verb}-ED" for verb in TURN_VERBS), "CAMERA", "VIEWNOUN", "PICTURE", "PRON", "DET", "AMOUNTISH",
     "MORE", "SIDE", "TURNNOUN", "FILLER", "SELF", "GLUE", "DIAGONALLY", "ATSAMETIME", "ABSOLUTE", "WHOLETHING", "COMMA",
     "PANNOUN", "TILTNOUN", "DEG", "LEADFILLER", "QUOTE", "INTURN", "AROUND", "FIRSTLY", "REVERSE", "BACK", "BUT",
@@ -107,8 +107,8 @@ class TurnParts:
 
 
 def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list[Lexeme]]:
-    """Return the parts of a turn, the other words that a turn may contain, and the words that it may not contain."""
-    found, silent, unread = TurnParts(), list[Lexeme](), list[Lexeme]()
+    """Return the parts of a turn, the other words that a turn may contain, and the words that no turn contains."""
+    found, allowed, unread = TurnParts(), list[Lexeme](), list[Lexeme]()
     i = 0
     while i < len(lexemes):
         rest = lexemes[i:]
@@ -116,27 +116,27 @@ def find_parts(lexemes: Sequence[Lexeme]) -> tuple[TurnParts, list[Lexeme], list
         verb_direction = (
             "UP" if first.has("RAISE", "RAISE-ING", "RAISE-ED") else "DOWN" if first.has("LOWER", "LOWER-ING", "LOWER-ED") else ""
         )
-        is_verb = not silent and not found.parts
+        is_verb = not allowed and not found.parts
         if verb_direction and (is_verb or not first.has(*DIRECTIONS)):
             found.parts.append(verb_direction)
-            silent.append(first)
+            allowed.append(first)
             i += 1
             continue
         match, name = next(((m, name) for name, pattern in _CHUNKS if (m := match_start(pattern, rest)) and m.size), (None, ""))
         if match and not (first.has("TURNNOUN", "CARRY", "AIM", "TILT", "PAN", "TURN") and name in {"lot", "little"}):
             _add(found, name, match)
             i += match.size
-        elif first.has(*SILENT_IN_TURNS) and not first.has("NEGATED", "NOT", "NONE"):
-            silent.append(first)
+        elif first.has(*ALLOWED_IN_TURNS) and not first.has("NEGATED", "NOT", "NONE"):
+            allowed.append(first)
             i += 1
         else:
             unread.append(first)
             i += 1
-    return found, silent, unread
+    return found, allowed, unread
 
 
 def _add(found: TurnParts, name: str, match: Match) -> None:
-    """Add the part of a turn that a pattern found."""
+    """Add the part of a turn that a pattern matched."""
     value = match["number"][0].value if "number" in match.names and match["number"] else None
     if name == "shared":
         return  # a single amount always applies to all directions

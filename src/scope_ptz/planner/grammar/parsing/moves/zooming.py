@@ -95,7 +95,7 @@ r"(?P<percent>PERCENT)? X? ZOOMNOUN?"
 _NOT_CLEAR = Unclear("Shall I zoom in or out?")
 
 
-def _with_way(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+def _with_split_direction(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Split "in there" after "zoom" into a direction and a filler, as in "zoom in there as close as it goes"."""
     for i, x in enumerate(lexemes):
         if x.word in {"in_there", "in_here"} and 0 < i < len(lexemes) - 1 and lexemes[i - 1].has("ZOOM", "ZOOM-ING"):
@@ -110,7 +110,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
     Raises:
         NotUnderstoodError: The clause is about zooming, but contains words that were not understood.
     """
-    lexemes = _with_way(lexemes)
+    lexemes = _with_split_direction(lexemes)
     if search(
         r"(on|onto|upon|at) (?!(DET)? (ZOOM|ZOOMNOUN|(current|present) (VIEWNOUN|PICTURE))) (DET|PRON|FREE|PICTURE|"
         r"EVERY|SOMEONE)|(on|onto|upon) NUM|to (PRON|DET) (FREE|\Z)",
@@ -166,7 +166,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
         return None
     lexemes = _in_active_voice(lexemes)
     amounts: list[tuple[str, float]] = []
-    silent: list[Lexeme] = []
+    allowed: list[Lexeme] = []
     unread: list[Lexeme] = []
     i = 0
     while i < len(lexemes):
@@ -174,7 +174,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
         match, name = next(((m, name) for name, pattern in _CHUNKS if (m := match_start(pattern, rest)) and m.size), (None, ""))
         if rest[0].has("RESETZOOM", "WIDE", "TIGHT"):
             amounts.append(("limit", 0.0))
-            silent.append(rest[0])
+            allowed.append(rest[0])
             i += 1
         elif (match and not rest[0].has("DOUBLE", "TRIPLE")) or (match and i):
             if name != "nothing":
@@ -185,7 +185,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
             or rest[0].word in {"present", "current"}
             or (rest[0].has("UP", "DOWN") and _has_zoom_noun(lexemes))
         ) and not rest[0].has("NEGATED", "NOT", "NONE"):
-            silent.append(rest[0])
+            allowed.append(rest[0])
             i += 1
         else:
             unread.append(rest[0])
@@ -194,7 +194,7 @@ def zoom_step(lexemes: Sequence[Lexeme]) -> Step | None:
         unread.append(lexemes[-1])
     if unread:
         raise NotUnderstoodError(unread)
-    step = _step(amounts, silent, lexemes)
+    step = _step(amounts, allowed, lexemes)
     has_verb = bool(amounts) or any(x.has(*_VERBS, *(f"{verb}-ING" for verb in _VERBS)) for x in lexemes)
     return replace(step, has_verb=has_verb) if isinstance(step, Move) else step
 
@@ -222,7 +222,7 @@ def _has_zoom_noun(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def _view_limit(lexemes: Sequence[Lexeme]) -> int:
-    """Return the direction of "as wide as possible" (-1) and "as close as you can" (+1); 0 for other words."""
+    """Return -1 for "as wide as possible", +1 for "as close as you can", and 0 for other words."""
     match = search(AS_FAR_AS, lexemes)
     word = match["extent"][0].word if match else ""
     return -1 if word == "wide" else 1 if word in {"close", "tight", "near"} else 0
@@ -239,23 +239,25 @@ def _amount(name: str, match) -> tuple[str, float]:  # type: ignore[no-untyped-d
     return ("factor" if name in {"to factor", "steps"} else name), value
 
 
-def _step(amounts: list[tuple[str, float]], silent: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
-    """Return the step for a zoom, given its amounts and its other words."""
-    verbs = next((x for x in silent if x.has("DOUBLE", "TRIPLE", "QUADRUPLE", "HALVE")), None)
-    inwards = any(x.has(*_INWARDS, *(f"{c}-ING" for c in _INWARDS)) for x in silent)
-    outwards = any(x.has(*_OUTWARDS, *(f"{c}-ING" for c in _OUTWARDS)) for x in silent)
-    if outwards and any(x.has("OUT") for x in silent) and all(x.has("TIGHT", "OUT") or not x.has(*_INWARDS) for x in silent):
+def _step(amounts: list[tuple[str, float]], allowed: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> Step:
+    """Return the step for a zoom, given its amounts and its other allowed words."""
+    verbs = next((x for x in allowed if x.has("DOUBLE", "TRIPLE", "QUADRUPLE", "HALVE")), None)
+    inwards = any(x.has(*_INWARDS, *(f"{c}-ING" for c in _INWARDS)) for x in allowed)
+    outwards = any(x.has(*_OUTWARDS, *(f"{c}-ING" for c in _OUTWARDS)) for x in allowed)
+    if outwards and any(x.has("OUT") for x in allowed) and all(x.has("TIGHT", "OUT") or not x.has(*_INWARDS) for x in allowed):
         inwards = False  # "full zoom out"
-    if search(r"BACK (IN|OUT)", lexemes) or (any(x.has("BACK") for x in silent) and outwards):
+    if search(r"BACK (IN|OUT)", lexemes) or (any(x.has("BACK") for x in allowed) and outwards):
         inwards = inwards and bool(search("BACK IN", lexemes))
     has_zoom_noun = _has_zoom_noun(lexemes)
-    inwards = inwards or _view_limit(lexemes) > 0 or lexemes[0].word == "up" or (has_zoom_noun and any(x.has("UP") for x in silent))
-    outwards = outwards or _view_limit(lexemes) < 0 or (has_zoom_noun and any(x.has("DOWN") for x in silent))
+    inwards = (
+        inwards or _view_limit(lexemes) > 0 or lexemes[0].word == "up" or (has_zoom_noun and any(x.has("UP") for x in allowed))
+    )
+    outwards = outwards or _view_limit(lexemes) < 0 or (has_zoom_noun and any(x.has("DOWN") for x in allowed))
     if search("(pull|bring|take|ease|wind|ZOOM) _* BACK|(BACK|ease) DET? ZOOMNOUN (off|BACK)", lexemes) and not inwards:
         outwards = True  # "pull the zoom back"
     if inwards and outwards:
         return _NOT_CLEAR
-    if any(x.has("RESETZOOM") for x in silent):
+    if any(x.has("RESETZOOM") for x in allowed):
         return Move((Zoom("out"),))
     times = 1
     if (

@@ -1,4 +1,4 @@
-"""The clause: a part of an instruction with one verb, and the error for a clause that cannot be read."""
+"""The parts of an instruction that have one verb (clauses), and the error for a clause that cannot be read."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Source:
     """The text of an instruction, and the presets of the camera if they are known.
 
     Attributes:
-        has_moved: Whether an earlier clause moves the camera. If so, "the people on the bridge" are looked for in the new view.
+        has_moved: Whether an earlier clause moves the camera. If so, "the people on the bridge" are expected in the new view.
     """
 
     text: str
@@ -93,7 +93,7 @@ def text_of(source: Source, lexemes: Sequence[Lexeme]) -> str:
 
 
 def command_of(lexeme: Lexeme) -> Lexeme | None:
-    """Return the command for a past form or participle: "count" for "counted". None for other words and for base forms."""
+    """Return the command for a past form or participle ("count" for "counted"); None for other words and base forms."""
     verb = next((name for name in VERBS if lexeme.has(f"{name}-ED")), None)
     return None if verb is None or lexeme.has(*VERBS) else lexeme.reworded(verb.lower(), verb)
 

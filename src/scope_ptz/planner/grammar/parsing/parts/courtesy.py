@@ -1,4 +1,4 @@
-"""Courtesy: the words around a command or question that make it polite and change nothing."""
+"""Strip courtesy: the words around a command or question that make it polite but do not change its meaning."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _OPENERS = "|".join((
     "DET (FREE|next|MORE)? (job|task|thing|step|order|request) (WRAPPER|for SELF|FILLER)* BE (to)?(?! (not|FREE|ADVERB))",
     "(FILLER|LEADFILLER(?! NUM)|FIRSTLY|COMMA|QUOTE|AND|BUT|INSTEAD|PURPOSE)",
 ))  # fmt: skip
-"""Openers that add nothing to a command: courtesy, who wants it, and "what I need is"."""
+"""Openers that add nothing to a command: courtesy, the person who wants it, and "what I need is"."""
 
 
 def is_polite(lexemes: Sequence[Lexeme]) -> bool:
@@ -87,7 +87,7 @@ _MEANT_IN_QUESTIONS = frozenset({
 
 
 def completes_question(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the last word belongs to a question, although it adds nothing to a command: "is it open today?"."""
+    """Return whether the last word matters in a question, although it adds nothing to a command: "is it open today?"."""
     if len(lexemes) < 3 or lexemes[-1].word not in _MEANT_IN_QUESTIONS or lexemes[-2].has("COMMA", "DASH"):
         return False
     words = [x for x in lexemes if not x.has("FILLER", "COMMA", "TELL", "SELF", "FIRSTLY")]

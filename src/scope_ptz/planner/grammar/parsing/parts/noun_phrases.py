@@ -45,7 +45,7 @@ _RELATIVE = (
     (re.compile(r" (?:in|on) (?:it|them)$", re.IGNORECASE), ""),
     (re.compile(r"^(?:me |us )?(?:all )?(?:of )?(?:the |these |those )?(?=\w)", re.IGNORECASE), ""),
 )
-"""Parts of descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
+"""Patterns in descriptions with their replacements: relative clauses become phrases, and other function words are dropped."""
 
 PROPERTIES = frozenset({
     "colour", "color", "state", "status", "number", "type", "make", "price", "text", "name", "size", "height", "condition", "plate",
@@ -54,7 +54,7 @@ PROPERTIES = frozenset({
 """Nouns for a property of a thing. They end a shortened question, such as "excavator colour?"."""
 
 
-def described(text: str) -> str:
+def without_function_words(text: str) -> str:
     """Return a description without function words and without the verb of its relative clause.
 
     For example "people that aren't wearing helmets" becomes "people not wearing helmets".
@@ -86,8 +86,8 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     while first < len(lexemes) - 1 and lexemes[first].has(*_DETERMINERS) and not lexemes[first].has("SOMEONE", "NUM"):
         first += 1
     definite = any(x.word in _DEFINITE for x in lexemes[:first])
-    text = described(text_of(source, lexemes[first:]))
-    core = described(text_of(source, trimmed(lexemes[first:], *_AROUND_NOUN_PHRASE)))
+    text = without_function_words(text_of(source, lexemes[first:]))
+    core = without_function_words(text_of(source, trimmed(lexemes[first:], *_AROUND_NOUN_PHRASE)))
     is_read = looks_like_description(text) or looks_like_description(core)
     return Thing(text, definite=definite) if is_read else None
 
@@ -169,7 +169,7 @@ def is_noun(word: str) -> bool:
 
 
 def _is_command(lexemes: Sequence[Lexeme], i: int) -> bool:
-    """Return whether the word at a position of a description is an imperative verb that does not follow a determiner."""
+    """Return whether the word at a position is an imperative verb that does not follow a determiner."""
     lexeme = lexemes[i]
     if not lexeme.has(*_COMMANDS) or lexeme.has("FREE", "PREP", "DET") or is_noun(lexeme.word):
         return False
@@ -238,7 +238,7 @@ def _is_separate(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> bool:
     return not any(x.has("PREP", "REL") or x.word.endswith("ing") for x in before[1:])
 
 
-def people(source: Source, rest: Sequence[Lexeme]) -> Thing:
+def people_description(source: Source, rest: Sequence[Lexeme]) -> Thing:
     """Return "people in the lane" for "anyone in the lane"."""
     rest = trimmed(rest, "VISIBLE", "FILLER", "BE")
-    return Thing(described(" ".join(["people", text_of(source, rest)]).strip()))
+    return Thing(without_function_words(" ".join(["people", text_of(source, rest)]).strip()))

@@ -51,7 +51,7 @@ class Match:
 
 
 class _Pattern:
-    """A pattern that is not compiled until some lexemes might match it."""
+    """A pattern that is compiled only when some lexemes might match it."""
 
     def __init__(self, source: str) -> None:
         self._source, self._is_compiled = source, False
@@ -72,7 +72,7 @@ class _Pattern:
 
     @cached_property
     def anywhere(self) -> re.Pattern[str]:
-        """The regular expression that begins at any lexeme."""
+        """The regular expression, to be searched for from any lexeme."""
         self._is_compiled = True
         return re.compile(f"(?:(?<= )|^)(?:{_regular_expression(self._source)})")
 
@@ -104,7 +104,7 @@ def _regular_expression(pattern: str) -> str:
 
 @lru_cache(maxsize=2048)
 def _rendered(lexemes: tuple[Lexeme, ...]) -> tuple[str, dict[int, int], frozenset[str]]:
-    """Return the text that patterns are matched against, the number of lexemes before each offset, and all words and classes."""
+    """Return the text to match patterns against, the number of lexemes before each offset, and all words and classes."""
     text, offsets = [], {0: 0}
     names: set[str] = set()
     size = 0

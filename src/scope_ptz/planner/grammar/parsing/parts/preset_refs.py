@@ -32,6 +32,10 @@ EVERY_PLACE = (
 _OCCUPANCY = frozenset(
     {"empty", "full", "clear", "busy", "quiet", "crowded", "packed", "deserted", "occupied", "vacant", "blocked"}
 )
+_STILL = re.compile(
+    r"\bwithout (?:moving|panning|turning)\b|\b(?:do not|don['’]?t|never) move\b|\bfrom here\b|\bstay (?:here|put|where)\b",
+    re.IGNORECASE,
+)
 _PREPOSITIONS_OF_PLACES = frozenset(
     {"at", "in", "on", "inside", "of", "off", "into", "onto", "around", "round", "outside", "across"}
 )
@@ -70,19 +74,26 @@ def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | Non
     return place_of(source, match["place"] or match["asked"])
 
 
-def place_asked_about(lexemes: Sequence[Lexeme]) -> PresetRef | None:
+def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
     """Return the only preset that a question names, if the name cannot be that of a thing in the current view.
 
     Names of several words ("bus-bay") and words that are in no lexicon ("debarker") are taken for the preset. A preset after
     a preposition such as "near" only says where something is.
     """
+    if _STILL.search(source.text):
+        return None
     found = [i for i, x in enumerate(lexemes) if x.has("PRESET")]
     if len(found) != 1:
         return None
     name = lexemes[found[0]]
+    mentions = sum(x.preset == name.preset for x in lexemes_of(source.text, source.presets))
+    if source.has_moved and mentions > 1:
+        return None  # "go to the bus bay and zoom in: is the bus bay full?" asks about the new view
     before = [x for x in lexemes[: found[0]] if not x.has("DET") or x.has("PREP")]
     if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES:
         return None
+    if before and before[-1].has("FREE") and lexemes[found[0] - 1] is before[-1]:
+        return None  # "at Freight yard" is not the preset "yard"
     is_unmistakable = "_" in name.word or lexicon().concept(name.word) is None
     return PresetRef(name.preset, explicit=True) if is_unmistakable else None
 

@@ -13,7 +13,7 @@ _NAME = re.compile(r"[A-Za-z]")
 _OPTIONAL = ("?", "*", "{0", "{,")
 
 Requirement = bool | str | tuple[str, tuple["Requirement", ...]]
-"""True if nothing is needed, False if nothing can match, a required name, or ("all" | "any", requirements)."""
+"""A required name; or "all" or "any" with a tuple of requirements; or True if nothing is required, False if nothing can match."""
 
 
 def requirement_of(pattern: str) -> Requirement:
@@ -22,7 +22,7 @@ def requirement_of(pattern: str) -> Requirement:
 
 
 def is_met(requirement: Requirement, names: Set[str]) -> bool:
-    """Return whether names of words and classes meet a requirement."""
+    """Return whether the given words and classes meet a requirement."""
     if isinstance(requirement, bool):
         return requirement
     if isinstance(requirement, str):
@@ -32,7 +32,7 @@ def is_met(requirement: Requirement, names: Set[str]) -> bool:
 
 
 def _alternatives(tokens: Iterator[re.Match[str]]) -> Requirement:
-    """Read alternatives up to the end of the pattern or of the current group."""
+    """Return the requirement of the alternatives up to the end of the pattern or of the current group."""
     branches: list[list[Requirement]] = [[]]
     for token in tokens:
         text = token[0]
@@ -49,10 +49,10 @@ def _alternatives(tokens: Iterator[re.Match[str]]) -> Requirement:
             branches[-1][-1:] = [True]
         elif _NAME.match(text):
             branches[-1].append(text)
-    return _joined("any", [_joined("all", branch) for branch in branches])
+    return _combined("any", [_combined("all", branch) for branch in branches])
 
 
-def _joined(kind: str, parts: list[Requirement]) -> Requirement:
+def _combined(kind: str, parts: list[Requirement]) -> Requirement:
     is_any = kind == "any"
     if is_any and True in parts:
         return True

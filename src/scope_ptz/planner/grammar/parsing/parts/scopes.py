@@ -1,4 +1,4 @@
-"""Strip adjuncts from a clause: the part of the scene, the place, repetitions and durations."""
+"""Strip adjuncts from a clause: the view, the place, repetitions and durations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FIXED_TO_THINGS = frozenset({
     "sign", "signs", "text", "word", "words", "writing", "written", "letters", "lettering", "logo", "number", "name", "label",
     "notice", "poster", "lock", "padlock", "handle", "says", "say", "printed", "painted", "colour", "color",
 })  # fmt: skip
-"""Words for parts of a thing and for writing on it: "the sign on the gate" is not a thing at the preset "gate"."""
+"""Words for things fixed to other things: in "the sign on the gate", "gate" is not the preset."""
 
 _PARTS_OF_DAY = frozenset({"morning", "afternoon", "evening", "arvo", "minute", "moment", "time", "week"})
 _PARTICLES = frozenset({"over", "up", "off", "out", "down", "away", "in"})
@@ -44,7 +44,7 @@ SECONDS = (
 
 
 def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | None]:
-    """Strip the words for the part of the scene from a clause. Return the rest and that part: "current", "full" or None."""
+    """Strip the words for the view from a clause. Return the rest and the view: "current", "full" or None."""
     view: View | None = None
     lexemes = trimmed(lexemes, *_TRIVIAL)
     if seen := full_match(
@@ -76,12 +76,12 @@ def has_full_scope(lexemes: Sequence[Lexeme]) -> bool:
     return any(x.has("FULL") for x in lexemes)
 
 
-def place_before(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
+def split_leading_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
     """Return a clause without the preset that begins it ("at the gate, count ..."), and that preset, or None if there is none."""
     for size in range(min(len(lexemes) - 1, 12), 0, -1):
         head, rest = lexemes[:size], lexemes[size:]
         if head[0].has("FILLER", "LEADFILLER", "COMMA", "FIRSTLY"):
-            return place_before(source, lexemes[1:])
+            return split_leading_place(source, lexemes[1:])
         lead = full_match(
             (
                 r"(at|from|in|on|using|starting from|starting at|with (DET)? CAMERA (on|at)|for|SWITCH-ING|between) "
@@ -98,9 +98,9 @@ def _is_part_of_noun(rest: Sequence[Lexeme]) -> bool:
     return bool(rest) and rest[0].has("AND", "FREE", "PREP") and not rest[0].has("PAN")
 
 
-def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
+def split_trailing_place(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], tuple[PresetRef, ...] | None]:
     """Return a clause without the preset that ends it ("count the cars at the gate"), and that preset, or None."""
-    lexemes = _without_time(trimmed(lexemes, *_TRIVIAL))
+    lexemes = _without_present_time(trimmed(lexemes, *_TRIVIAL))
     for size in range(min(len(lexemes) - 1, 14), 1, -1):
         tail = lexemes[len(lexemes) - size :]
         before = lexemes[len(lexemes) - size - 1]
@@ -130,8 +130,8 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
             or (
                 preposition == "on"
                 and not source.has_moved
-                and _can_be_on(lexemes[: len(lexemes) - size])
-                and not _is_thing(places)
+                and _allows_place_after_on(lexemes[: len(lexemes) - size])
+                and not _any_names_a_thing(places)
             )
         )
         nouns = (
@@ -142,7 +142,7 @@ def place_after(source: Source, lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme
     return lexemes, None
 
 
-def _without_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+def _without_present_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Return lexemes without trailing words that refer to the present: "... on the bridge at the minute", "... this morning"."""
     lexemes = tuple(lexemes)
     if len(lexemes) > 3 and lexemes[-1].word in {"yet", "still", "already"}:
@@ -155,7 +155,7 @@ def _without_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     return lexemes[:-1] if len(lexemes) > 2 and lexemes[-1].has("NOW") and lexemes[-1].word in _AT_PRESENT else lexemes
 
 
-def _can_be_on(before: Sequence[Lexeme]) -> bool:
+def _allows_place_after_on(before: Sequence[Lexeme]) -> bool:
     """Return whether "on" after these words introduces a place: "people on the bridge", unlike "signs on the bridge"."""
     if any(x.word in _FIXED_TO_THINGS for x in before):
         return False
@@ -166,12 +166,12 @@ def _can_be_on(before: Sequence[Lexeme]) -> bool:
     )
 
 
-def _is_thing(places: Sequence[PresetRef]) -> bool:
-    """Return whether the name of a preset is also the name of a thing that can be in the picture: "the signs on the gantry"."""
+def _any_names_a_thing(places: Sequence[PresetRef]) -> bool:
+    """Return whether the name of any preset is also the name of a thing that can be in the picture: "the signs on the gantry"."""
     return any(lexicon().concept(place.name.replace("-", " ")) is not None for place in places)
 
 
-def without_times(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:
+def without_repetitions(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:
     """Strip the number of repetitions from a clause. Return the rest, the number, and whether a comma precedes it."""
     match = full_match(rf"(?P<body>_*?) {_TIMES}", lexemes)
     if not match or not match.has("times"):

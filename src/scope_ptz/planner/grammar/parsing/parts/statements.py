@@ -48,8 +48,8 @@ def subject_of(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     return ()
 
 
-def without_time_ahead(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Strip the time until an event from the end of lexemes: "we start loading in five minutes"."""
+def without_future_time(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
+    """Strip a future time such as "in five minutes" from the end of lexemes: "we start loading in five minutes"."""
     match = full_match("(?P<body>_+) in (AMOUNTISH|DET)* (NUM|FRACTION|DET)+ (MINUTES|HOURS) (FILLER)*", lexemes)
     return tuple(match["body"]) if match else tuple(lexemes)
 
@@ -76,7 +76,7 @@ def is_comment(lexemes: Sequence[Lexeme]) -> bool:
 
 
 def is_event(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether the words after "before" only say what happens later: "I forget", "the ferry leaves"."""
+    """Return whether the words after "before" state an event, not a command: "I forget", "the ferry leaves"."""
     if full_match("SELF (CARRY|SWITCH|KEEP|HALT|leave|finish|close) (on|off|along|up|down|live|on_air)? (FILLER)*", lexemes):
         return True  # "we move on"
     if any(x.has(*_COMMANDS, "NUM", "DEG") for x in lexemes):
@@ -90,7 +90,7 @@ def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
     if lexemes and _is_pronoun(lexemes[0]):
         yield 1
     for end, lexeme in enumerate(lexemes[:_MAX_SUBJECT], 1):
-        has_is = end < len(lexemes) and lexemes[end].word == "'s" and (end > 1 or _is_described(lexemes[end + 1 :]))
+        has_is = end < len(lexemes) and lexemes[end].word == "'s" and (end > 1 or _is_only_adjective(lexemes[end + 1 :]))
         if has_is and "NOUN" in parts_of_speech(lexeme.word):
             yield end  # "the stock check's at noon"
             return
@@ -104,8 +104,8 @@ def _subject_ends(lexemes: Sequence[Lexeme]) -> Iterator[int]:
             yield end
 
 
-def _is_described(lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether an adjective is all that follows: "(dust's) thick", unlike "(dust's) edge"."""
+def _is_only_adjective(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are a single adjective: "(dust's) thick", unlike "(dust's) edge"."""
     return len(lexemes) == 1 and lexemes[0].has("FREE") and "ADJ" in parts_of_speech(lexemes[0].word)
 
 

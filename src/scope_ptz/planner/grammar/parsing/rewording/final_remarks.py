@@ -1,80 +1,126 @@
-"""Take a remark off the end of the text of an instruction: a reason, news or a complaint, which asks for nothing."""
+"""Take remarks off the text of an instruction: reasons, news and complaints at its end or beginning, which ask for nothing."""
 
 from __future__ import annotations
 
 import re
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.asides import may_withdraw
+from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
+from scope_ptz.planner.grammar.parsing.parts.questions import is_question
+from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
-_OPINIONS = r"(?:think|thought|reckon|bet|guess|suspect|hope|believe|heard|swear|promised|told \w+)"
-_SUBJECTS = (
-    r"(?:i|we|he|she|they|it|someone|somebody|some \w+(?:'s)? ?\w*|(?:the|my|our|their|an?) \w+(?: \w+)?|one of (?:the|my|our) \w+)"
-)
-_BE_OR_HAVE = r"(?:'s|'re|'m|'ve|'d| is| are| am| was| were| has| have| had| will| never| always| keeps?| only| just| really)"
-_SAID = (
-    r"(?: (?:reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained))"
-)
+_REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
-    rf"(?:i'm sure |i am sure |honestly |apparently )?(?:{_SUBJECTS}(?:{_BE_OR_HAVE}|{_SAID}| {_OPINIONS} {_SUBJECTS})"
-    r"|(?:he|she|they|it) \w+s? |(?:looks|seems|sounds|feels) like |boss is |i'm done"
-    rf"|all i'm (?:getting|seeing) is|(?-i:[A-Z][a-z]+)(?:{_SAID}|'s| is| has)|(?-i:Driver|Boss|Gaffer|Foreman"
-    rf"|Chief){_SAID}) ?\b[\w', -]*",
+    r"(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
+    r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
+    r"|(?:the |my )?(?:boss|gaffer|foreman|chief|manager|supervisor|client) wants .+|"
+    rf"all (?:i'm|we're) (?:getting|seeing) is .+|(?:looks|seems|sounds|feels) .+|(?:boss|gaffer) is .+|i'm done.*|i "
+    rf"(?:can't|cannot) remember if .+|(?:i'm|i am) trying to (?:establish|find out|work out|see) .+|(?:gotta|got to) .+"
+    rf"|(?-i:[A-Z][a-z]+)(?: (?:{_REPORTING})|'s| is| has) .+|some \w+ \w+'s .+|(?:i|we|it) (?:\w+ )?wants .+|its "
+    rf"(?:got|been|getting) .+",
     re.IGNORECASE,
 )
-"""A statement by its subject and verb: "I'm sure we're two short today", "Dave reckons it's getting too high"."""
+"""Statements that ``is_statement`` does not recognise: "Dave reckons it's getting too high", "looks funny from here"."""
 
+_COMMAND = (
+    r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn\w*|rotat\w*|swing\w*|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
+    r"|snap\w*|count\w*|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check\w*|look(?:ing)? (?:at|for|up|down"
+    r"|left|right|in|over)"
+    r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
+    r"|pictures?|photos?|stills?|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
+)
+_DIRECTION = (
+    r"(?:to the|on the|pan|turn|go|look|bit|touch|said|the) (?:left|right)|(?:left|right) (?:by|a bit|\d|side|one|hand)"
+    r"|(?:go|look|further|bit|touch|said) (?:up|down|in|out)"
+)
+_AT_AN_END = r"^(?:left|right|up|down|in|out)\b|(?<!me )(?<!it )(?<!us )(?<!is )\b(?:left|right|up|down)$"
+_RESTRICTION = (
+    r"ones|(?:that|this|which|red|other|next|last|big|small|the) one|especially|particularly|except|apart from|both"
+    r"|every|each|instead"
+    r"|actually|rather|means?|meant(?! to)|(?:i|we)(?:'d| would)? (?:want|need|like|prefer)(?! to see)|interested"
+    r"|after the|asking|talking"
+    r"|not (?:the|to|that|this|there|here|in|on)|isn't (?:the|that|this)"
+)
+_REQUEST = (
+    r"must|should(?! be (?:in|here|back|due|along|ready))|shall|ought|you|your|please|(?<!see )(?<!remember )"
+    r"(?<!wonder )if|unless|until"
+    r"|(?:know|tell|check|find out|ask) (?:how|what|whether|which|where|who|if|when)"
+)
+_WITHDRAWAL = (
+    r"wrong|mistake|error|thoughts|against|hold on|cancel\w*|forget|scratch|scrap|never mind|nvm|kidding|joking"
+    r"|changed|decided|limits?"
+    r"|forbidden|allowed|banned|private|secret|called off|don't|do not|didn't want|already"
+)
 _ASKED = re.compile(
-    r"^(?:it|that|this)\b.*\d|(?:\b(?:to the|pan|turn|go|look|bit|touch) left|\bleft (?:by|a bit|\d)|^left|left$)|\b"
-    r"(?:right|(?<!playing )(?<!set )up(?! to\b)|down|out|higher|lower|zoom\w*|pan\w*|tilt\w*|turn\w*|rotat\w*"
-    r"|swing\w*|point\w*|aim\w*|mov\w+|degrees?|home|presets?|times|"
-    r"pictures?|photos?|snaps?|shots?|stills?|pics?|images?|count\w*|(?<!lost )track\w*|follow\w*|read\w*|find\w*"
-    r"|check\w*|look\w*|see|seeing|"
-    r"show\w*|tell|know|camera|view|closer|wider|stop\w*|cancel\w*|forget|scratch|scrap|leave|wrong|mistake|instead|actually|mean\w*|"
-    r"rather|not|no|nobody|none|nothing|unless|if|but|until|when|while|whether|where|which|who|whose|how|what|then|or|"
-    r"should|must|shall|supposed|allowed|ought|can|could|would|want|wants|wanted|need\w*|like|prefer\w*|only interested|interested|"
-    r"error|thoughts|against|wait\w*|hold|off|asking|talking|ones|(?:the|that|this|which|red|other|next|last|big"
-    r"|small) one|especially|particularly|except|apart|both|every|each|any|please|you|your|there's|there|forbidden|limits?|"
-    r"banned|private|secret|please|joking|kidding|changed|decided|done|already)\b|n't\b",
-    re.IGNORECASE,
+    rf"{_AT_AN_END}|^(?:it|that|this)\b.*\d|\b(?:{_COMMAND}|{_DIRECTION}|{_RESTRICTION}|{_REQUEST}|{_WITHDRAWAL})\b", re.IGNORECASE
 )
 """Words with which a statement may ask for something, restrict what was asked, or take it back."""
 
+_HARMLESS = re.compile(
+    r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b", re.IGNORECASE
+)
 _NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
-_BOUNDARY = re.compile(r"(?:[,;.!?]| -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")
-_REASON = re.compile(r",? (?:as|because|'?cause|cos|coz|since) ", re.IGNORECASE)
+_BOUNDARY = re.compile(r"(?:[,;.!?]|(?<=\w) -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")
+_REASON = re.compile(
+    r",? (?:as|because|'?cause|cos|coz|since|given that|seeing as|now that|and i (?:only )?ask (?:only )?because) "
+    r"|[,?] (?:for|only) (?=i |we |he |she |they |the |my )|, (?=which (?:is|was|will|would|i|we|makes)\b)",
+    re.IGNORECASE,
+)
+_PURPOSE = re.compile(
+    r"(?P<done>.*(?:\d|\b(?:degrees|by \w+|picture|photo|pic|photograph|frame|zoom in on|show)\b).*?),? so (?:that )?"
+    r"(?P<aim>(?:i|we|those|the|they|he|she|my|our) .+)",
+    re.IGNORECASE,
+)
+"""A command with an amount or a thing, and what it is for: "tilt down by twelve, so that the bench comes into the picture"."""
+
 _EVENT = re.compile(
-    r" before (?:(?:the|my|our|his|her) \w+|\w+) (?:walks|comes|gets|turns|shows|leaves|goes|drives|pulls|arrives)"
-    r"(?: (?:in|back|here|up|out|off|away|past|by))*\s*[.!]*$",
+    r" before (?:(?:the|my|our|his|her) \w+|\w+) (?:walks|comes|gets|turns|shows|leaves|goes|drives|pulls|arrives|sails)"
+    r"(?: (?:in|back|here|up|out|off|away|past|by|at \w+))*\s*[.!]*$",
     re.IGNORECASE,
 )
 _IDIOMS = re.compile(
-    r"(?:,|[.?]| -+) (?:(?:i )?(?:don't|do not) like the look of (?:him|her|them|it|that)|(?:he|she|they|someone)"
-    r"(?:'s|'re| is| are) up to "
-    r"(?:something|no good)|(?:i|we)(?:'ve| have) a bet on|i keep losing (?:track|count)|i swear(?: to god)?"
-    r"|(?:my|me) eyes (?:aren't|are not|ain't) what they (?:used to be|were)|(?:he|she|they) never signed (?:out|in)"
-    r"|(?:i|we)(?:'ve| have)? lost (?:track|count)|(?:the |my )?boss is askin(?:g)?|last time (?:i|we) couldn't see "
-    r"(?:a thing|anything)"
-    r"|it's been (?:that|one of those|a) (?:sort|kind|type)? ?(?:of )?\w+|there's one just \w+ in|do i need (?:my|me|a|an) \w+"
-    r"|just wonderin(?:g)? (?:where|what|how|why) to [\w ]+|can (?:you|yer) count (?:them|em)|thanks a (?:million"
-    r"|bunch|lot)|i only sent \w+ \w+)[.!]*$",
+    r"(?:,|[.?]| -+) (?:(?:i )?(?:don't|do not) like the look of (?:him|her|them|it|that)|(?:i|we)(?:'ve| have)? lost "
+    r"(?:track|count)"
+    r"|i keep losing (?:track|count)|i swear(?: to god)?|there's one just \w+ in|do i need (?:my|me|a|an) \w+"
+    r"|just wonderin(?:g)? (?:where|what|how|why) to [\w ]+|can (?:you|yer|u) count (?:them|em)|thanks a (?:million|bunch|lot)"
+    r"|(?:need|want) to know (?:if|whether) (?:i|we) (?:should|need|have to|can) [\w ]+|can (?:you|u) see|trying to "
+    r"(?:work out|figure out|see|decide) (?:if|whether|what|which) [\w' ]+|do (?:you|u) (?:reckon|think|know))[.!?]*$",
     re.IGNORECASE,
 )
-_NEWS_BEFORE_QUESTION = re.compile(
-    r"(?P<news>[^?]+?)(?:, so|[.;]) (?P<question>(?:how many|is|are|what|which|has|have|any) [^.;]+\?*)", re.IGNORECASE
+_OCCASION = re.compile(
+    r"(?:good \w+[.!,] )?(?:for|ahead of|before|as(?! (?:soon|long|far|much))|since|because|given|in view of|due to"
+    r"|owing to|with) [^,]{3,90}?(?:,|(?= i (?:should|would|'d|need)))"
+    r" (?:and )?(?=(?:please|kindly|could|can|would|will|i need you|i would|i should|i'd|we need|go to|move to|zoom"
+    r"|pan|tilt|count|take|check)\b)",
+    re.IGNORECASE,
 )
-_PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|there|ones?)\b", re.IGNORECASE)
+_PAST_NEWS = re.compile(
+    r"(?P<news>[^,.;?!]*\b(?:yesterday|ago|earlier|last (?:night|week|month|time))\b[^,.;?!]*)[,.;!] "
+    r"(?:anyway,? |so )?(?P<rest>(?:count|pan|tilt|zoom|take|go to|how many|is|are|any)\b.+)",
+    re.IGNORECASE,
+)
+_LIMITING = re.compile(rf"\b(?:{_RESTRICTION}|{_REQUEST}|{_WITHDRAWAL})\b", re.IGNORECASE)
+_NEWS_BEFORE_QUESTION = re.compile(
+    r"(?P<news>[^?]+?)(?:, so|[.;]) (?P<rest>(?:how many|is|are|what|which|has|have|any|could you tell me) [^.;]+\?*)",
+    re.IGNORECASE,
+)
+_INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot)\b", re.IGNORECASE)
+_NEWS_BEFORE_REQUEST = re.compile(r"(?P<news>[^?.;]+), (?P<rest>(?:could|can|would|will) you (?:\w+ ){2}.+)", re.IGNORECASE)
+_PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 _MIN_WORDS = 3
 _MIN_NEWS = 6  # minimum number of words
 _MAX_REMARKS = 3
 
 
-def without_final_remark(text: str, presets: tuple[str, ...]) -> str:
-    """Return a text without the remark at its end.
+def without_remarks(text: str, presets: tuple[str, ...]) -> str:
+    """Return a text without the remarks at its end, and without the news or occasion at its beginning.
 
     A remark with a word for a command, a restriction or a withdrawal, or with the name of a preset, is kept, and so is one with a
     number after an instruction with a number: "pan left 20, Dave says thirty".
     """
-    text = _without_news_ahead(text, presets)
+    text = _without_beginning(text, presets)
     for _ in range(_MAX_REMARKS):
         shorter = _without_last(text, presets)
         if shorter == text:
@@ -86,36 +132,61 @@ def without_final_remark(text: str, presets: tuple[str, ...]) -> str:
 def _without_last(text: str, presets: tuple[str, ...]) -> str:
     """Return a text without the last of its remarks."""
     if idiom := _IDIOMS.search(text.replace("’", "'")):
-        return text[: idiom.start()] + ("?" if idiom[0].startswith("?") else "")
+        return text[: idiom.start()] + ("?" if "?" in idiom[0] else "")
     text = _EVENT.sub("", text)
+    if (purpose := _PURPOSE.fullmatch(text)) is not None and not _asks(_INTO_PICTURE.sub("", purpose["aim"]), presets):
+        return purpose["done"]
     for boundary in (*_BOUNDARY.finditer(text), *_REASON.finditer(text)):
-        tail = text[boundary.end() :].strip().rstrip(".!")
-        is_correction = _NUMBER.search(tail) is not None and _NUMBER.search(text[: boundary.start()]) is not None
-        if boundary.start() and not is_correction and _is_remark(tail, presets):
-            return text[: boundary.start()] + ("?" if boundary[0].startswith("?") else "")
+        said = text[: boundary.start()]
+        tail = re.sub(r"^which\b", "it", text[boundary.end() :].strip().rstrip(".!"), flags=re.IGNORECASE)
+        is_correction = _NUMBER.search(tail) is not None and _NUMBER.search(said) is not None
+        parts = [part.strip() for part in tail.split(",")]
+        if len(said.split()) > 1 and not is_correction and all(_is_remark(part, presets) for part in parts):
+            return said + ("?" if boundary[0].startswith("?") or text.rstrip().endswith("?") else "")
     return text
 
 
-def _without_news_ahead(text: str, presets: tuple[str, ...]) -> str:
+def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
     """Return "zoom in on the tile" for "one of the guests has complained, so zoom in on the tile".
 
     Before a question without pronouns, any words that ask for nothing are news.
     """
-    if (asked := _NEWS_BEFORE_QUESTION.fullmatch(text)) is not None and not _PRONOUNS.search(asked["question"]):
-        news = asked["news"].replace("’", "'")
-        is_news = len(news.split()) >= _MIN_NEWS and not _ASKED.search(re.sub(r"\bthere(?='s)", "", news))
-        if is_news and not _names_preset(news, presets):
-            return asked["question"]
-    news, link, rest = text.replace("’", "'").partition(", so ")
+    if (occasion := _OCCASION.match(text)) is not None and not _asks(occasion[0], presets):
+        return text[occasion.end() :]
+    if (past := _PAST_NEWS.fullmatch(text)) is not None and not _PRONOUNS.search(past["rest"]):
+        news = past["news"].replace("’", "'")
+        if is_statement(lexemes_of(news)) and not _LIMITING.search(news):
+            return past["rest"]  # "he went left an hour ago, count the cars"
+    for pattern in (_NEWS_BEFORE_QUESTION, _NEWS_BEFORE_REQUEST):
+        if (
+            (match := pattern.fullmatch(text)) is not None
+            and not _PRONOUNS.search(match["rest"])
+            and _is_news(match["news"], presets)
+        ):
+            return match["rest"]
+    news, link, rest = text.partition(", so ")
     return rest if link and len(rest.split()) >= _MIN_WORDS and _is_remark(news.strip(), presets) else text
 
 
-def _is_remark(statement: str, presets: tuple[str, ...]) -> bool:
-    is_long = len(statement.split()) >= _MIN_WORDS
-    is_statement = is_long and _STATEMENT.fullmatch(statement.replace("’", "'")) is not None
-    return is_statement and not _ASKED.search(statement.replace("’", "'")) and not _names_preset(statement, presets)
+def _is_news(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a text before a question or request is neither a command nor another question."""
+    lexemes = lexemes_of(text, presets)
+    if len(text.split()) < _MIN_NEWS or _asks(text, presets) or is_question(lexemes) or lexemes[0].has(*VERBS):
+        return False
+    return is_statement(lexemes) or not any(x.has(*VERBS) for x in lexemes)
 
 
-def _names_preset(text: str, presets: tuple[str, ...]) -> bool:
-    words = set(re.findall(r"\w+", text.lower()))
-    return any(words & set(re.findall(r"[^\W_]+", preset.lower())) for preset in presets)
+def _is_remark(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a text is a statement that asks for nothing."""
+    plain = text.replace("’", "'")
+    if len(plain.split()) < _MIN_WORDS or _asks(plain, presets):
+        return False
+    return _STATEMENT.fullmatch(plain) is not None or is_statement(lexemes_of(plain))
+
+
+def _asks(text: str, presets: tuple[str, ...]) -> bool:
+    """Return whether a text contains words that must not be ignored."""
+    plain = _HARMLESS.sub("", text.replace("’", "'"))
+    words = set(re.findall(r"\w+", plain.lower()))
+    names_preset = any(words & set(re.findall(r"[^\W_]+", preset.lower())) for preset in presets)
+    return names_preset or _ASKED.search(plain) is not None or may_withdraw(lexemes_of(plain))

@@ -10,6 +10,7 @@ _ENDS = {"lower": "down", "upper": "up", "left": "left", "right": "right"}
 _TURNED = {
     "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
 }  # fmt: skip
+_DONE = {"counted": "count", "checked": "check", "taken": "take", "read": "read"}
 _TENS = {"ten": 10, "five": 5, "twentie": 20, "fifteen": 15, "thirtie": 30}
 _DIRECTIONS = "left|right|up|down"
 _END = r"(?=\s*(?:[.,;!?]|$|and\b|then\b|please\b))"
@@ -20,6 +21,47 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (rf"\b((?:{_PICTURES})) of what(?:ever)? you(?:['’]re| are) (?:seeing|looking at)\b", r"\1"),
+    (r"^cent(?:er|re) and zoom (?:in )?on ", "zoom in on "),
+    (r"^wide as (?=it|you|she|possible)", "as wide as "),
+    (r"\bzoom (in|out), (?:maximum|max|full)\b", r"zoom all the way \1"),
+    (
+        r"\bset the pan(?: angle)? to (\d+) degrees to the (left|right)\b",
+        lambda match: f"set pan to {'-' if match[2].lower() == 'left' else ''}{match[1]} degrees",
+    ),
+    (r"^(?:last of all|finally|at the end),? ([^,.]+?), (?:but )?first ([^,.]+?)\W*$", r"first \2, then \1"),
+    (r"^([^,.]+?),? but (count|take|check|go) ([^,.]+?) first\W*$", r"\2 \3, then \1"),
+    (r"\b(more\b.*[?.] )go to the (?:busier|fuller) (?:one|of the two)\b", r"\1go there"),
+    (
+        r"^(?:don['’]?t|do not) ([^,.]+?) (?:till|until) you(?:['’]ve| have) (counted|checked|taken|read) ([^,.]+?)\W*$",
+        lambda match: f"{_DONE[match[2].lower()]} {match[3]}, then {match[1]}",
+    ),
+    (r"\bturn clear a?round\b", "turn around"),
+    (r"\b(take|get|grab) another wan\b", r"\1 another picture"),
+    (r"^(find (?:my|the|our) [\w ]+?) i left (?:it|them) (?:out )?(?:somewhere|by|near|at)\b.*$", r"\1"),
+    (r"\b(\d+) ([1-7])/([2-8])\b", lambda match: f"{int(match[1]) + int(match[2]) / int(match[3]):g}"),
+    (r"\b(one|a|\d) minutes? and (\w+) seconds\b", r"\1 minute \2 seconds"),
+    (r"\bone quarter turn\b", "a quarter turn"),
+    (r"\b(pan(?: the camera)? to [\w ]+?,? (?:and )?then )back to (?:zero|0)\b", r"\1pan to 0 degrees"),
+    (r"\brun (?:that|the) zoom ", "zoom "),
+    (r"\bcrank (?:it|her) (?:clear |right )(?:on )?(up|down)\b", r"tilt \1"),
+    (r"\bback it out\b", "zoom out"),
+    (r"^in to (?=\d)", "zoom in to "),
+    (r"\b(?:mosey|amble|wander|trundle|scoot|jog) (?:on )?(?:over |down |up |along )?to ", "go to "),
+    (r"^away to (?=the )", "go to "),
+    (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
+    (r"\bget in (?:nice and )?(?:close|tight) (?:on|to) ", "zoom in on "),
+    (r"^tight (?:in )?on ", "zoom in on "),
+    (r"\bframe up ", "zoom in on "),
+    (r"^(?:(?:have|take) a )?gander at ", "have a look at "),
+    (
+        r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+)[?,]\s*(?:zoom in on|find|show me) (?:it|him|her|them)\s*[.!]*$",
+        r"zoom in on \1",
+    ),
+    (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
+    (r"\b(photo|picture|still|snap|pic)\b(.*?) and do the same(?: thing)? there\b", r"\1\2 and take a picture"),
+    (r"\b(?:leave|park|put) the camera (?:at|on) whichever(?: one)? has (?:more|the most)\b", "go there"),
+    (r"\b(?:turn|spin|swing) (it |her |the camera )?right a?round(?! to)(?=,| please|\W*$)", "turn around"),
     (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
     (r"\bcloseup\b", "close-up"),
     (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),

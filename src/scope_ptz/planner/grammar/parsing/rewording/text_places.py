@@ -34,6 +34,21 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"in it| there| on it)?\?*$",
             r"which has more \3, \1 or \2?",
         ),
+        (rf"^(?:the )?({names})[,.] go\W*$", r"go to the \1"),
+        (rf"^(?:stick|put|get) (?:her|it|him|the camera) on (?:the )?({names})\b", r"go to the \1"),
+        (rf"\b(nip|pop|go|run) (?:over|up|down|across) (?:the )?(?=(?:{names})\b)", r"\1 over to the "),
+        (
+            rf"^more ([\w ]+?) where[,:]? (?:the )?({names}) or (?:the )?({names})\W*$|"
+            rf"^([\w -]+): (?:the )?({names}) (?:vs\.?|or|versus) (?:the )?({names}),? which has more\W*$",
+            lambda match: f"which has more {match[1] or match[4]}, {match[2] or match[5]} or {match[3] or match[6]}?",
+        ),
+        (
+            rf"^compare how many ([\w ]+?)(?: (?:is|are)(?: standing?| standin| there| parked)?)? (?:in|at|on) (?:the )?({names}) "
+            rf"(?:against|with|to|and|versus) (?:the )?({names})\W*$",
+            r"which has more \1, \2 or \3?",
+        ),
+        (rf"[.,] (?:never mind|forget|ignore|not) (?:about )?the ({names})\W*$", ""),
+        (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
         (rf"\bgo 2 (?=(?:the )?(?:{names})\b)", "go to "),
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),
         (
@@ -61,12 +76,12 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
 
 
 def _without_apostrophes(text: str, presets: tuple[str, ...]) -> str:
-    """Return a text with "kids pool" for "kids' pool" and "kid's pool", if a preset has that name."""
+    """Return a text with "kids pool" for "kids' pool" and "kid's pool", if a preset is named so."""
     for preset in presets:
-        words = re.findall(r"[^\W_]+", preset)
-        if len(words) > 1 and words[0].lower().endswith("s"):
-            stem = re.escape(words[0][:-1])
-            text = re.sub(rf"\b({stem})(?:s['’]|['’]s)(?= {re.escape(' '.join(words[1:]))}\b)", r"\1s", text, flags=re.IGNORECASE)
+        first, *rest = re.findall(r"[^\W_]+", preset) or [""]
+        if rest and first.isalpha():
+            stem = re.escape(first.lower().removesuffix("s"))
+            text = re.sub(rf"\b{stem}(?:s['’]|['’]s)(?= {re.escape(' '.join(rest))}\b)", first, text, flags=re.IGNORECASE)
     return text
 
 

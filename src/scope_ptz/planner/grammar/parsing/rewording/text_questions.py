@@ -47,7 +47,7 @@ QUESTIONS = (
         r"|area|place), ([^?]*)\?*$",
         r"\1 in the whole scene?",
     ),
-    (r"^looking all (?:around|round|over)(?: the \w+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (r"^looking all (?:around|round|over)(?: the \w+)?(?: and not only at [\w ]+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
     (
         r"^(anything|anyone|anybody|someone|somebody) (.+?) or am i (?:\w+ )?(?:hearing|seeing|imagining) things(?: again)?\?",
         r"\1 \2?",
@@ -66,15 +66,50 @@ QUESTIONS = (
         r"|she|it|they) ([^?,]+)\?$",
         lambda match: _about_topic(match),
     ),
-    # Counts
+    (r"^(what(?:['’]s| is) [^?,.]+?)[?,] ?can (?:you|u|ye) (?:read|see|make) it(?: out)?\?*$", r"\1?"),
+    (r"^which (?:places|spots|positions|views) can (?:this|the) camera (?:jump|go|move|switch) to\b.*$", "list the presets"),
+    (r",? if (?:you|ye|we|u) look (?:at|over|around|across) the (?:whole|entire) \w+", " in the whole scene"),
     (
-        r"\b(how m[ae]ny [^,.;?]+?) (?:have we(?: got)?|we(?:['’]ve)? got|have you got|have they(?: put out| got| "
+        r"^(?:please )?look (?:at|over|around|across) the (?:whole|entire) (?:scene|area|site|place) and "
+        r"((?:tell me|see|say|check) (?:whether|if) [^?.]+?)[?.]*$",
+        r"\1 in the whole scene",
+    ),
+    (r"\ball the way (?:a?round)(?: (?:us|you|here|the \w+))?(?=\W*$|,)", "all around"),
+    (r"\baround the (?:whole|entire) \w+(?=\W*$)", "all around"),
+    (r"\b(?:the whole|the entire) (?:place|site|area), all around\b", "all around"),
+    (r"^([\w' ]+?), (?:full|whole|entire) (?:scene|area|view|site), how many\?*$", r"how many \1 are there in the whole scene?"),
+    (r"\b(tell me) (?=(?:is|are|has|have|does) )", r"\1, "),
+    (r"^taking in the (?:whole|entire) (?:scene|area|site|place), ([^?,]+)(?:, or may i [^?]+)?\?*$", r"\1 in the whole scene?"),
+    (r"^((?:the )?[\w' ]+?) or ([\w' ]+?) (?:in|at|on) ((?:the )?[\w' -]+?),? (?:y/n|yes or no)\W*$", r"is there \1 or \2 at \3?"),
+    (r", the (\w+) one or the (\w+) one\?", r", \1 or \2?"),
+    (r"\b(preset positions|presets|positions|views) are (?:currently|presently) ", r"\1 are "),
+    (r"\b(?:on|across) the (?:whole|entire) (?:property|premises|estate|grounds|yard|site|farm|place)\b", "in the whole scene"),
+    (r"\b(in the whole scene), look (?:everywhere|all around|all over)\b", r"\1"),
+    # Counts
+    (r"^([\w ]+?) (in|at|on) (?:the )?([\w -]+), how many\W*$", r"how many \1 are \2 the \3?"),
+    (
+        r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
+        r"|track|snap|look|report)\b)"
+        r"([\w ]+)\W*$",
+        r"count the \1, then count the \2",
+    ),
+    (r"^((?:number of|how many)\b.*) in (picture|shot|frame)(?=\W*$)", r"\1 in the \2"),
+    (r"^(.*\b(?:count|how many)\b.*)[,.;] i (?:just |only )?want(?:ed)? to know how many [\w ]+\W*$", r"\1"),
+    (r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b", r"\1 are there"),
+    (r"\b(how m[ae]ny [\w ]+?) are left\b", r"\1 are there"),
+    (r"\b(how m[ae]ny [\w ]+?) is (?=still|in|at|on\b)", r"\1 are "),
+    (r"\bhead ?count (?:on|for) (?=the )", "head count of "),
+    (r"\b(count up) them (?=\w)", r"\1 the "),
+    (r"^count they (?=\w+ \w+)", "count the "),
+    (r"\bmore ([\w ]+?) round it(?: tonight| now)?,", r"more \1,"),
+    (
+        r"\b(how m[ae]ny [^,.;?]+?) (?:have (?:we|i)(?: still)?(?: got)?|we(?:['’]ve)? got|have you got|have they(?: put out| got| "
         r"left(?: out)?)|are you seeing|do you make it)(?= (?:at|in|on|down|up|over|out|by)\b|\W*$)",
         r"\1 are there",
     ),
     (r" (?:at|in) this (?:hour|time of (?:day|night|year))(?=\W|$)", ""),
     (r"^(?:need|i need|want)(?: a| the)? (?=number of\b)", ""),
-    (r"^(how many .*?\b(?:is|are)) (?:currently|presently|now) (?=\w)", r"\1 "),
+    (r"^(how many .*?\b(?:is|are)) (?:currently|presently|now|still) (?=\w)", r"\1 "),
     (
         r"^((?:so |now |and )?(?:how many|is|are|any|has|have|did|who|what)\b.*?) this (?:morning|afternoon|evening"
         r"|minute)(?=[?.!]*$)",
@@ -82,7 +117,7 @@ QUESTIONS = (
     ),
     (r"\bhi vis\b", "hi-vis"),
     (r"^total (?=(?:people|\w+s)\b)", "number of "),
-    (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan)\W*$", " all around"),
+    (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan| scene)\W*$", " all around"),
     (
         r",? (?:and )?not (?:just|only) (?:in |at |on )?(?:this|that) (?:part|bit|area|side|corner|section|end)"
         r"(?: of (?:it|the (?:picture|scene|view|frame|shot)))?",

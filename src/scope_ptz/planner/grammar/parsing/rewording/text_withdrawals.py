@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import re
+
 _PICTURE = r"(?:pic|photo|picture|still|shot|snap|image)"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
-_LEAVE_OUT = r"(?:no|skip|forget|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
-_LINK = r"(?:,| and| then|, and| and then|, then)"
+_LEAVE_OUT = (
+    r"(?:no|scratch|skip|strike|omit|forget|cancel|nvm|cut|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
+)
 
 WITHDRAWALS = (
+    (r"^i was (?:going|about) to ask (?:you )?(?:for|to) [^,]+, but that(?:['’]s| is) no longer (?:needed|necessary), so ", ""),
+    (
+        r"[;,]? (?:and |but )?(?:please )?(?:you must not|do not|don['’]?t) zoom in on (?:anyone|anybody|anything"
+        r"|people)\b[^.;]*\W*$",
+        " without zooming",
+    ),
+    (r"[;,.] (?:do not|don['’]?t) (?:change|touch|alter) (?:the )?pan (?:or|and) (?:the )?tilt\W*$", ""),
+    (r",? (?:and |but )?(?:don['’]?t|do not) go zoomin['’g]* in on (?:anybody|anyone|anything|them|it)\W*$", " without zooming"),
+    (r"^[^,.;]+[,.]+ *(?:nvm|never ?mind)\b[, ]*(?:don['’]?t|do not)?[, ]*(?=just\b)", ""),
     (
         rf"^(?:take|get|grab|make|snap) (?:a |the |one )?{_PICTURE}\b[,.]* +{_NO}{_LEAVE_OUT} (?:the |that "
         rf")?{_PICTURE}[,.]+ *(?:just|only) "
@@ -25,20 +37,40 @@ WITHDRAWALS = (
         "",
     ),
     (
-        rf"^(.+?){_LINK} (?:take|get|grab|make|snap) (?:a |the |one |me a |us a )?{_PICTURE}\b[,.]* +"
-        rf"{_NO}{_LEAVE_OUT} (?:the |that )?{_PICTURE}\W*$",
-        r"\1",
-    ),
-    (
-        rf"^(.+?){_LINK} (pan|tilt|zoom)\b[^,.;]*[,.;] *{_NO}{_LEAVE_OUT} the \2(?:ning|ting|ing)?"
-        r"(?:,? (?:just|only) (?:do )?the \w+)?\W*$",
-        r"\1",
-    ),
-    (
         r"(?<=, )(?:(?:actually|no|nah|wait|oh)[, ]+)+(?:leave (?:it|that|him|her|them)|never mind(?: that)?|forget "
         r"(?:it|that)),? +"
         r"(?=(?:just|only) \w)",
         "scratch that, ",
     ),
 )
-"""Patterns with the words that replace them: "go home and take a photo, actually no, leave the photo" is "go home"."""
+"""Patterns with the words that replace them."""
+
+_TAKING = rf"(?:take|get|grab|make|snap)\b.*\b{_PICTURE}\b|(?:photograph|{_PICTURE})\b"
+_PARTS = {
+    "pan": r"(?:pan|panning)\b",
+    "tilt": r"(?:tilt|tilting|tip)\b",
+    "zoom": r"(?:zoom|zooming)\b",
+    "picture": _TAKING,
+    "count": r"count\b",
+    "follow": r"follow\b",
+    "track": r"(?:track|follow)\b",
+}
+"""Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
+
+_LEFT_OUT = re.compile(
+    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actually|no|nah|nope|wait|sorry|oh|hang on)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
+    rf"(?P<what>pan|tilt|zoom|count|follow|track|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:do )?the \w+)?\W*",
+    re.IGNORECASE,
+)
+
+
+def without_part_left_out(text: str) -> str:
+    """Return "go home" for "go home and take a photo, actually no, leave the photo"; a text that takes nothing back "
+    "is unchanged."""
+    if (match := _LEFT_OUT.fullmatch(text.strip())) is None:
+        return text
+    what = match["what"].lower()
+    pattern = re.compile(_PARTS.get(what, _PARTS["picture"]), re.IGNORECASE)
+    parts = re.split(r"(?:,? and then |,? then |,? and |, |[.;] )", match["said"])
+    kept = [part for part in parts if not pattern.match(part.strip())]
+    return ", then ".join(kept) if kept and len(kept) == len(parts) - 1 else text

@@ -133,7 +133,7 @@ TASK_NOUNS = frozenset({
     "procedure", "survey", "inspection", "exercise", "trial", "patrol", "series", "programme", "program", "plan", "steps", "demo",
     "calibration",
 })  # fmt: skip
-"""The last words of headings that name what is done: "Backlash test:", "Morning round:"."""
+"""The last words of headings that name an activity: "Backlash test:", "Morning round:"."""
 
 
 STATEMENT = (
@@ -168,7 +168,7 @@ PLACE_LEAD = (
     r"PREP) to? (LEFT|RIGHT|UP|DOWN|FREE)|CAMERA NUM|(in|on|at|behind|between|near|under|beside|among) (DET|"
     r"NUM)* (FREE|PREP|DET|NUM|VISIBLE)+|(FILLER)* for (NUM|DET|FRACTION|AMOUNTISH)* (SECONDS|MINUTES)"
 )
-"""Places and durations that belong to the clause after the comma that follows them."""
+"""Places and durations that belong to the clause after the next comma."""
 
 
 WITHOUT_MOVING = (

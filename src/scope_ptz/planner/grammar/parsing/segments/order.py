@@ -13,7 +13,7 @@ _BEFORE_FIRST = ("PICTURE", "NUM", "DEG", "HOME", *DIRECTIONS, "IN", "OUT", "X",
 
 
 def in_order(clauses: Sequence[Clause]) -> list[Clause]:
-    """Return clauses in execution order: a clause that says "first" is moved ahead of the command before it.
+    """Return clauses in execution order, with a clause that says "first" moved ahead of the command before it.
 
     Raises:
         NotUnderstoodError: It is unclear which clauses come first, or which clauses they precede.

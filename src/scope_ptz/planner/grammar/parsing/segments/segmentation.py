@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, MOTION_VE
 from scope_ptz.planner.grammar.parsing.parts.courtesy import is_polite
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaries
+from scope_ptz.planner.grammar.parsing.segments.clause_boundaries import ClauseBoundaryDetector
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import (
     ENDS,
     HEADINGS,
@@ -61,13 +61,13 @@ def _without_courtesy_before_condition(lexemes: Sequence[Lexeme]) -> tuple[Lexem
     return tuple(kept)
 
 
-class _Splitter(ClauseBoundaries):
+class _Splitter(ClauseBoundaryDetector):
     def split(self) -> list[Clause]:
         i = 0
         while i < len(self.lexemes):
             i = self._step(i)
         self._close()
-        return self.out
+        return self.completed
 
     def _step(self, i: int) -> int:
         """Handle the lexeme at a position, and return the next position."""
@@ -76,7 +76,7 @@ class _Splitter(ClauseBoundaries):
         if (after := self._after_topic(i)) is not None:
             return after
         if "COLON" in ends and self._continues_after_colon(i):
-            self.now.append(lexeme)
+            self.words.append(lexeme)
             return i + 1
         if self._is_question() and match_start("OPEN (at|in|from|DET|PRESETNOUN)* PRESET PRESETNOUN? CLOSE", self.lexemes[i:]):
             self._close(True)
@@ -90,16 +90,16 @@ class _Splitter(ClauseBoundaries):
             lexeme.word == "next"
             and (
                 match_start("_ (to|FREE COLON)", self.lexemes[i:])
-                or (self.now and self.now[-1].has("DET") and match_start("_ FREE", self.lexemes[i:]))
+                or (self.words and self.words[-1].has("DET") and match_start("_ FREE", self.lexemes[i:]))
             )
         ):
             self._close()
             self.link = "." if self.link == "." else "then"
             return i + 1
         if (
-            self.now
+            self.words
             and lexeme.has("COMMA", "AND")
-            and search("(to|at) (PAN|TILT|PANNOUN|TILTNOUN) NUM DEG? \\Z", self.now)
+            and search("(to|at) (PAN|TILT|PANNOUN|TILTNOUN) NUM DEG? \\Z", self.words)
             and match_start("(PAN|TILT|ZOOM|TILTNOUN) NUM", self.lexemes[i + 1 :])
         ):
             return i + 1  # "point at pan 30, tilt -10"
@@ -115,7 +115,7 @@ class _Splitter(ClauseBoundaries):
             return i + 1  # "go to the yard to count the cars"
         if (after := self._after_order_word(i)) is not None:
             return after
-        if self.now and self._is_meanwhile(i):
+        if self.words and self._is_meanwhile(i):
             self._close()
             self.link = "and"
             return i + (2 if lexeme.word == "as" else 1)
@@ -124,22 +124,22 @@ class _Splitter(ClauseBoundaries):
             self.marker, self.opener = marker, lexeme
             return i + 1
         if lexeme.has("COMMA") and (
-            (self.marker not in {"AFTER", "WHEN"} and full_match(PLACE_LEAD, self.now))
-            or (self._is_amount() and any(x.has("STEPNOUN") for x in self.now))
+            (self.marker not in {"AFTER", "WHEN"} and full_match(PLACE_LEAD, self.words))
+            or (self._is_amount() and any(x.has("STEPNOUN") for x in self.words))
         ):
-            self.now.append(lexeme)
+            self.words.append(lexeme)
             return i + 1
-        if lexeme.has("COMMA") and len(self.now) == 1 and (self.now[0].word == "close_up" or self.now[0].has("EACHTIME")):
+        if lexeme.has("COMMA") and len(self.words) == 1 and (self.words[0].word == "close_up" or self.words[0].has("EACHTIME")):
             return i + 1  # "close-up, conveyor belt", "at each, count the people"
-        if lexeme.has("COMMA") and self.now and all(x.has("INTURN") for x in self.now):
-            self.order, self.now = tuple(self.now), []
+        if lexeme.has("COMMA") and self.words and all(x.has("INTURN") for x in self.words):
+            self.order_words, self.words = tuple(self.words), []
             return i + 1  # "one by one, go through the presets"
         if lexeme.has("COMMA", "DASH", "AND") and self._is_choice_of_presets(i):
-            self.now.append(lexeme)
+            self.words.append(lexeme)
             return i + 1
         if (
             self.marker in {"IFSO", "IFNOT"}
-            and not self.now
+            and not self.words
             and lexeme.has("COMMA")
             and i + 1 < len(self.lexemes)
             and self.lexemes[i + 1].has("AND")
@@ -150,21 +150,21 @@ class _Splitter(ClauseBoundaries):
         if (
             lexeme.has("BUT", "COMMA")
             and self._is_motion()
-            and self._awaits([x for x in self.lexemes[i + 1 :] if not x.has("BUT")])
+            and self._is_completed_by([x for x in self.lexemes[i + 1 :] if not x.has("BUT")])
         ):
-            self.now.append(lexeme)
+            self.words.append(lexeme)
             return i + 1  # "zoom in, but only a little"
-        if lexeme.word == "so" and self.now and i + 1 < len(self.lexemes) and self._is_verb(i + 1):
+        if lexeme.word == "so" and self.words and i + 1 < len(self.lexemes) and self._is_verb(i + 1):
             self.marker = "REASON" if self._is_reason_for(self.lexemes[i + 1]) else self.marker  # "bit of glare so tilt down"
             self._close()
             self.link = "and"
             return i + 1  # "the picture is too dark, so pan right"
-        if not self.out and lexeme.has("COMMA", "DASH") and full_match(_OPENER, self.now):
-            self.now = []
+        if not self.completed and lexeme.has("COMMA", "DASH") and full_match(_OPENER, self.words):
+            self.words = []
             return i + 1
         if lexeme.has(*SEPARATORS):
-            if not self.out and not self.marker and is_polite(self.now):
-                self.now = []
+            if not self.completed and not self.marker and is_polite(self.words):
+                self.words = []
                 return i + 1  # "do forgive me, could you zoom out?"
             after = i + 1
             while after < len(self.lexemes) and self.lexemes[after].has("COMMA", "AND", "DASH", "OPEN", "CLOSE"):
@@ -173,59 +173,59 @@ class _Splitter(ClauseBoundaries):
                 words = {x.word for x in self.lexemes[i:after]}
                 together = [x for x in self.lexemes[i:after] if x.has("ATSAMETIME")]
                 self._close()
-                self.now = together
+                self.words = together
                 self.link = self.link or (
                     "and" if together else "," if len(words) > 1 or lexeme.has("COMMA", "DASH", "OPEN", "CLOSE") else "and"
                 )
                 return after
-            if lexeme.has("DASH", "OPEN", "CLOSE") or (lexeme.has("COMMA") and (not self.now or after >= len(self.lexemes))):
+            if lexeme.has("DASH", "OPEN", "CLOSE") or (lexeme.has("COMMA") and (not self.words or after >= len(self.lexemes))):
                 return i + 1
-        elif self.now and self._begins_without_separator(i):
+        elif self.words and self._begins_without_separator(i):
             self._close()
             self.link = self.link or "and"
-        self.now.append(lexeme)
+        self.words.append(lexeme)
         return i + 1
 
     def _after_topic(self, i: int) -> int | None:
-        """Handle a separator after a label, a heading or words about the whole clause. Return the next position, or None."""
+        """Handle a separator after a label or heading. Return the next position, or None for other separators."""
         lexeme = self.lexemes[i]
         is_colon = lexeme.has("COLON")
         if is_colon and self._is_label(i):
             return i + 1
-        if is_colon and full_match("ABSOLUTE (FREE|PRESETNOUN|angles|pose)?", self.now):
-            self.now = self.now[:1]
+        if is_colon and full_match("ABSOLUTE (FREE|PRESETNOUN|angles|pose)?", self.words):
+            self.words = self.words[:1]
             return i + 1  # "absolute: pan 72 and tilt -9"
-        if is_colon and not self.out and full_match("(FILLER|DET)* FULL", self.now):
-            self.now.append(replace(lexeme, word=",", classes=frozenset({"COMMA"})))
+        if is_colon and not self.completed and full_match("(FILLER|DET)* FULL", self.words):
+            self.words.append(replace(lexeme, word=",", classes=frozenset({"COMMA"})))
             return i + 1  # "entire area: are there more vans than bikes?"
         in_order = r"COMMA INTURN FILLER* (STOP|COMMA|\Z)"
-        if lexeme.has("COMMA") and self.now and self._is_tour() and match_start(in_order, self.lexemes[i:]):
+        if lexeme.has("COMMA") and self.words and self._is_tour() and match_start(in_order, self.lexemes[i:]):
             return i + 1  # "gate, yard, in that order"
-        if lexeme.word == "reason" and match_start("_ COLON", self.lexemes[i:]) and (self.out or self.now):
+        if lexeme.word == "reason" and match_start("_ COLON", self.lexemes[i:]) and (self.completed or self.words):
             self._close()
             self.marker, self.opener = "REASON", lexeme
             return i + 2  # "pan left 38, reason: alarm on the door"
         if is_colon and self._is_heading(i):
-            self.now = []
+            self.words = []
             return i + 1
         return None
 
     def _is_heading(self, i: int) -> bool:
         """Return whether the words before a colon only open the instruction: "Steps:", "steward to camera two:", "Step test:"."""
-        if self.out or not self.now:
+        if self.completed or not self.words:
             return False
         if full_match(
             "(FILLER|WRAPPER)* ((do|make|run|start|begin|take) DET)? (FREE|quick|short|full)? (tour|patrol|round|rounds|circuit) "
             "(for us|FILLER)*",
-            self.now,
+            self.words,
         ):
             return True  # "do the rounds: ..."
-        if len(self.now) == 1 and (self.now[0].word in HEADINGS or self.now[0].has("FREE")):
+        if len(self.words) == 1 and (self.words[0].word in HEADINGS or self.words[0].has("FREE")):
             return True
-        if full_match("(FREE|DET|FILLER)* (to)? CAMERA NUM?|FREE{1,2} (TELL|SHOW|COUNT|time|report|check)", self.now):
+        if full_match("(FREE|DET|FILLER)* (to)? CAMERA NUM?|FREE{1,2} (TELL|SHOW|COUNT|time|report|check)", self.words):
             return True
-        names_task = self.now[-1].word in TASK_NOUNS and len(self.now) <= _MAX_HEADING_WORDS
-        return names_task and not any(x.has("PRESET", "NUM", *DIRECTIONS) for x in self.now) and self._begins(i + 1)
+        names_task = self.words[-1].word in TASK_NOUNS and len(self.words) <= _MAX_HEADING_WORDS
+        return names_task and not any(x.has("PRESET", "NUM", *DIRECTIONS) for x in self.words) and self._begins(i + 1)
 
     def _is_choice_of_presets(self, i: int) -> bool:
         """Return whether a separator follows presets to choose from: "gate or yard, which has more cars?"."""
@@ -233,26 +233,28 @@ class _Splitter(ClauseBoundaries):
         presets = "(DET)? PRESET (DET|COMMA|PRESET|AND|OR|THAN|with|to)* (AND|OR|THAN|with|to) DET? PRESET FILLER*"
         asked = "(AND|COMMA|TELL|me|us|FILLER|see)*"
         return bool(
-            full_match(f"{leads} {presets}", self.now)
+            full_match(f"{leads} {presets}", self.words)
             and match_start(f"_ {asked} (whichever|(WHQ|where) _{{0,4}} (SUPERLATIVE|LEADMORE))", self.lexemes[i:])
         )
 
     def _continues_after_colon(self, i: int) -> bool:
         """Return whether the words after the colon at a position belong to the same clause as those before it."""
-        if not self.now or (i + 1 < len(self.lexemes) and self._is_verb(i + 1)):
+        if not self.words or (i + 1 < len(self.lexemes) and self._is_verb(i + 1)):
             return False
         if self._is_question() and i + 1 < len(self.lexemes) and not self._begins(i + 1):
             return True  # "which of these can be seen: a clock or a bench?"
-        if full_match("(PRESET|DET|AND|OR|THAN|COMMA|PRESETNOUN)+", self.now) and any(x.has("AND", "OR", "THAN") for x in self.now):
+        if full_match("(PRESET|DET|AND|OR|THAN|COMMA|PRESETNOUN)+", self.words) and any(
+            x.has("AND", "OR", "THAN") for x in self.words
+        ):
             return True  # "tills or escalators: which has more shoppers?"
-        if is_noun_phrase(self.now) and match_start("_ (FREE|ADVERB|DET|PREP)+ OR _{1,4} QUESTION", self.lexemes[i:]):
+        if is_noun_phrase(self.words) and match_start("_ (FREE|ADVERB|DET|PREP)+ OR _{1,4} QUESTION", self.lexemes[i:]):
             return True  # "display case: open or shut?"
-        return self.now[0].has("COMPARE") or bool(
-            search("WHQ _* SUPERLATIVE|WHQ _* LEADMORE|(busier|quieter|fuller|emptier) with|(more|fewer) FREE \\Z", self.now)
+        return self.words[0].has("COMPARE") or bool(
+            search("WHQ _* SUPERLATIVE|WHQ _* LEADMORE|(busier|quieter|fuller|emptier) with|(more|fewer) FREE \\Z", self.words)
         )
 
     def _is_afterwards(self, i: int) -> bool:
-        """Return whether "after" follows "and" and stands before the last command, so that it means "afterwards"."""
+        """Return whether "after" means "afterwards", because it stands between "and" and the last command."""
         rest = self.lexemes[i + 1 :]
         is_last = not any(x.has("COMMA", "AND", "THEN", "COLON", "DASH") for x in rest)
         follows_and = self.lexemes[i - 1].has("AND") and not self._is_question()
@@ -261,10 +263,10 @@ class _Splitter(ClauseBoundaries):
     def _after_order_word(self, i: int) -> int | None:
         """Handle a word that states the order of commands, and return the next position; None for other words."""
         lexeme = self.lexemes[i]
-        if lexeme.word == "after" and self.out and not self.now and self._is_afterwards(i):
+        if lexeme.word == "after" and self.completed and not self.words and self._is_afterwards(i):
             self.link = "then"
             return i + 1  # "take a picture and after go home"
-        if lexeme.word == "after" and self.now and match_start("_ (COMMA|STOP|AND|THEN|\\Z)", self.lexemes[i:]):
+        if lexeme.word == "after" and self.words and match_start("_ (COMMA|STOP|AND|THEN|\\Z)", self.lexemes[i:]):
             return i + 1  # "..., and zoom out after"
         if self._is_ordinal_of_list(i):
             self._close()
@@ -279,11 +281,11 @@ class _Splitter(ClauseBoundaries):
 
     def _is_label(self, i: int) -> bool:
         """Return whether the words before the colon at a position name what follows it: "preset: yard", "tilt: -5"."""
-        if 0 < len(self.now) < 3 and self.now[-1].has("PRESETNOUN", "CAMERA"):
+        if 0 < len(self.words) < 3 and self.words[-1].has("PRESETNOUN", "CAMERA"):
             return True
-        if full_match("(close_up|COUNT|READ|TRACK|FIND|headcount|presence check|COUNTNOUN|LISTING)", self.now):
+        if full_match("(close_up|COUNT|READ|TRACK|FIND|headcount|presence check|COUNTNOUN|LISTING)", self.words):
             return True  # "close-up: padlock"
-        return bool(self.now) and self.now[-1].has("PAN", "TILT", "ZOOM") and bool(match_start("_ NUM", self.lexemes[i:]))
+        return bool(self.words) and self.words[-1].has("PAN", "TILT", "ZOOM") and bool(match_start("_ NUM", self.lexemes[i:]))
 
     def _is_ordinal_of_list(self, i: int) -> bool:
         """Return whether "second" or "third" at a position begins the next command of a list that begins with "first"."""
@@ -306,14 +308,14 @@ class _Splitter(ClauseBoundaries):
         ) or bool(match_start("as SELF (PAN|TILT|ZOOM|TURN)", rest))
 
     def _close(self, is_question: bool = False) -> None:
-        if self.out and not self.marker and self.now and all(x.has("FILLER", "COMMA") for x in self.now):
-            self.now = []
+        if self.completed and not self.marker and self.words and all(x.has("FILLER", "COMMA") for x in self.words):
+            self.words = []
             return
-        if self.now and self.order:
-            self.now, self.order = [*self.now, *self.order], ()
-        if self.now or self.marker in {"IFSO", "IFNOT"}:
-            self.out.append(Clause(self.link, self.marker, tuple(self.now), is_question, self.opener))
+        if self.words and self.order_words:
+            self.words, self.order_words = [*self.words, *self.order_words], ()
+        if self.words or self.marker in {"IFSO", "IFNOT"}:
+            self.completed.append(Clause(self.link, self.marker, tuple(self.words), is_question, self.opener))
             self.link = ""
-        elif self.out and is_question:
+        elif self.completed and is_question:
             pass
-        self.now, self.marker, self.opener = [], "", None
+        self.words, self.marker, self.opener = [], "", None

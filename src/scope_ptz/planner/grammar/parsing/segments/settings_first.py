@@ -24,17 +24,21 @@ _IF_ANY = ("one", "any", "some")
 
 
 def with_settings_first(clauses: Sequence[Clause]) -> list[Clause]:
-    """Return clauses with the moves placed before the question if the instruction says that they serve it."""
+    """Return clauses with the moves before the question if the instruction says that they are needed to answer it."""
     clauses = _without_empty_conditions(clauses)
     for start in range(1, len(clauses)):
-        asked, settings = clauses[:start], clauses[start:]
-        if settings[0].link in {".", ":", ","} and _is_asked(asked) and (served := _serving(asked, settings)):
-            return [replace(served[0], link=""), *served[1:], replace(asked[0], link="."), *asked[1:]]
+        question, settings = clauses[:start], clauses[start:]
+        if (
+            settings[0].link in {".", ":", ","}
+            and _is_unconditional_question(question)
+            and (reordered := _settings_for_question(question, settings))
+        ):
+            return [replace(reordered[0], link=""), *reordered[1:], replace(question[0], link="."), *question[1:]]
     return clauses
 
 
 def _without_empty_conditions(clauses: Sequence[Clause]) -> list[Clause]:
-    """Drop "if there is one" after a question that does not ask for yes or no, because its answer says if there is none."""
+    """Drop "if there is one" after a question that is not a yes-or-no question, because its answer says if there is none."""
     out: list[Clause] = []
     for i, clause in enumerate(clauses):
         ends = i + 1 == len(clauses) or clauses[i + 1].link in {".", ":"}
@@ -46,13 +50,13 @@ def _without_empty_conditions(clauses: Sequence[Clause]) -> list[Clause]:
     return out
 
 
-def _is_asked(clauses: Sequence[Clause]) -> bool:
+def _is_unconditional_question(clauses: Sequence[Clause]) -> bool:
     """Return whether clauses begin with a question and contain no condition."""
     first = clauses[0]
     return not any(clause.marker for clause in clauses) and (first.is_question or match_start(_ASKS, first.lexemes) is not None)
 
 
-def _serving(asked: Sequence[Clause], settings: Sequence[Clause]) -> list[Clause]:
+def _settings_for_question(question: Sequence[Clause], settings: Sequence[Clause]) -> list[Clause]:
     """Return the clauses that set the camera for a question; empty if their words do not say that they do."""
     settings = list(settings)
     if any(clause.marker or clause.is_question for clause in settings):
@@ -64,7 +68,7 @@ def _serving(asked: Sequence[Clause], settings: Sequence[Clause]) -> list[Clause
     elif settings[0].link == ":" and len(settings) > 1 and last.link in {"and", "then"} and full_match(_ONLY_LOOKS, last.lexemes):
         del settings[-1]  # "...: pan left 20 and look"
         is_needed = True
-    elif len(settings) == 1 and len(asked) == 1 and asked[0].is_question and (vantage := full_match(_VANTAGE, last.lexemes)):
+    elif len(settings) == 1 and len(question) == 1 and question[0].is_question and (vantage := full_match(_VANTAGE, last.lexemes)):
         return [replace(last, lexemes=last.lexemes if vantage.has("use") else tuple(vantage["place"]))]
     is_needed = is_needed or (
         settings[0].link == "."

@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.parsing.parts.courtesy import GLAD
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
 from scope_ptz.planner.grammar.parsing.parts.statements import is_event
 from scope_ptz.planner.grammar.parsing.segments.clause_starts import GERUNDS
-from scope_ptz.planner.grammar.parsing.segments.open_clause import OpenClause
+from scope_ptz.planner.grammar.parsing.segments.open_clause import SegmentationState
 
 _GOES = (
     "(FILLER|FIRSTLY|WRAPPER|SWITCH|CARRY|LEAVE|KEEP|HOMEWARD|BACK|TURN|CAMERA|SELF|PRON|it|DET|PRESETNOUN|PREP|GLUE)* "
@@ -23,7 +23,7 @@ _OCCASION = "DET? (?P<noun>FREE{1,3}) (shift|watch|run|patrol|break|check|round)
 PAST_VERBS = "|".join(f"{verb}-ED" for verb in VERBS)
 
 
-class SubordinateClauses(OpenClause):
+class SubordinateClauseDetector(SegmentationState):
     """Recognises the beginnings of subordinate clauses."""
 
     def _marker_at(self, i: int) -> str:
@@ -38,35 +38,35 @@ class SubordinateClauses(OpenClause):
             "",
         )
         rest = self.lexemes[i + 1 :]
-        if lexeme.word == "in_case" and self.now and not self._is_question():
+        if lexeme.word == "in_case" and self.words and not self._is_question():
             return "REASON"  # "pan left in case there is someone"
-        if lexeme.word == "on" and not self.now and match_start("(SEE-ING|FIND-ING) (ANY|SOMEONE|NUM)", rest):
+        if lexeme.word == "on" and not self.words and match_start("(SEE-ING|FIND-ING) (ANY|SOMEONE|NUM)", rest):
             return "WHEN"  # "on seeing a fox, take a picture"
         if (lexeme.word == "to" and self._has_purpose(rest)) or (lexeme.word == "for" and self._is_for_purpose(i)):
             return "REASON"
         if (
             lexeme.word == "with"
-            and not self.now
+            and not self.words
             and match_start("(ATLEAST|ATMOST|MORETHAN|FEWERTHAN|EXACTLY|NONE|no|NUM ORMORE|fewer|more)", rest)
         ):
             return "IF"
         if (
             lexeme.word in {"so_that", "so"}
-            and self.now
+            and self.words
             and match_start("(DET|SELF|PRON|FREE) _", rest)
             and self._only_explains(rest)
         ):
             return "REASON"
         if (
             not marker
-            or (lexeme.word == "should" and self.now)
-            or (lexeme.word == "as_the" and search("(as|close) _?? \\Z", self.now))
+            or (lexeme.word == "should" and self.words)
+            or (lexeme.word == "as_the" and search("(as|close) _?? \\Z", self.words))
         ):
             return ""  # "the zoom should be increased"
         if (
             marker in {"IF", "WHEN", "AFTER"}
             and match_start("(SELF|HAVEV)* (ZOOM|ZOOM-ING|ZOOM-ED) IN? (on|onto) (it|them)", rest)
-            and (self._is_question() or any(x.has("READ", "TELL", "TELL-S", "WHQ") for x in self.now))
+            and (self._is_question() or any(x.has("READ", "TELL", "TELL-S", "WHQ") for x in self.words))
         ):
             return ""  # "what does it say when you zoom in on it?"
         if (
@@ -74,7 +74,7 @@ class SubordinateClauses(OpenClause):
             and search(
                 f"(WRAPPER|would) (be|FREE|appreciate)+ \\Z|"
                 f"({GLAD}|great|good|nice|appreciated|kind|appreciate it|helpful|lovely) \\Z",
-                self.now,
+                self.words,
             )
             and match_start(f"SELF (MODAL|{PAST_VERBS})", rest)
         ):
@@ -82,8 +82,8 @@ class SubordinateClauses(OpenClause):
         if marker in {"IF", "WHEN"} and self._is_asking() and not lexeme.has("IFSO"):
             return ""  # "tell me if it is open"
         if (
-            any(x.has("LEADMORE", "COMPARE") for x in self.now)
-            and (self._is_question() or self.now[0].has("COMPARE"))
+            any(x.has("LEADMORE", "COMPARE") for x in self.words)
+            and (self._is_question() or self.words[0].has("COMPARE"))
             and marker in {"BEFORE", "AFTER", "IF", "WHEN"}
         ):
             return ""  # "are there more cars after panning left?"
@@ -115,7 +115,7 @@ class SubordinateClauses(OpenClause):
             if marker == "BEFORE" and is_event(rest[:end]):
                 return marker
             return marker if shot or (verbal and not match_start("DET|EVERY", rest)) else ""
-        if marker == "IFNOT" and lexeme.word == "else" and self.now and self.now[-1].has("SOMEONE", "WHQ", "NOONE"):
+        if marker == "IFNOT" and lexeme.word == "else" and self.words and self.words[-1].has("SOMEONE", "WHQ", "NOONE"):
             return ""
         if marker == "WHEN" and lexeme.word == "once" and not match_start("SELF|there|DET|PRON|it|FREE|SOMEONE|NUM", rest):
             return ""
@@ -123,11 +123,11 @@ class SubordinateClauses(OpenClause):
             return ""  # "zoom in until the truck fills the frame"
         if marker == "UNTIL" and self._is_motion() and match_start(UNTIL_LIMIT, self.lexemes[i:]):
             return ""  # "zoom in until you hit the limit"
-        if marker == "WHEN" and lexeme.word == "when" and not self.now and match_start("(DOV|BE|MODAL) ", rest):
+        if marker == "WHEN" and lexeme.word == "when" and not self.words and match_start("(DOV|BE|MODAL) ", rest):
             return ""  # "when does the shop close?"
-        if marker == "REASON" and not self.now and not rest:
+        if marker == "REASON" and not self.words and not rest:
             return ""
-        if marker == "REASON" and lexeme.word.startswith("as") and search("(SAMEAMOUNT|same|many|much) _{0,6} \\Z", self.now):
+        if marker == "REASON" and lexeme.word.startswith("as") and search("(SAMEAMOUNT|same|many|much) _{0,6} \\Z", self.words):
             return ""  # "is the number of cars the same as the number of vans?"
         return marker
 
@@ -136,12 +136,12 @@ class SubordinateClauses(OpenClause):
         rest = self.lexemes[i + 1 :]
         if self._is_motion() and match_start("DET (FREE|CLOSER|LITTLE|WIDER|good)+ (look|view|VIEWNOUN|PICTURE)", rest):
             return True
-        is_sized = any(x.has(*DIRECTIONS, "ZOOM") for x in self.now) and any(x.has("NUM", "LITTLE", "LOT") for x in self.now)
+        is_sized = any(x.has(*DIRECTIONS, "ZOOM") for x in self.words) and any(x.has("NUM", "LITTLE", "LOT") for x in self.words)
         if self._is_motion() and is_sized and match_start("DET FREE{1,3} (COMMA|STOP|AND|THEN|\\Z)", rest):
             return True  # "tilt up 15 for the owl box"
-        if not full_match(_GOES, self.now):
+        if not full_match(_GOES, self.words):
             return False
-        looks = not self.now[-1].has("HOME") and any(x.has("TELL", "FIND", "SCAN", "COUNT", "AIM") for x in self.lexemes[:i])
+        looks = not self.words[-1].has("HOME") and any(x.has("TELL", "FIND", "SCAN", "COUNT", "AIM") for x in self.lexemes[:i])
         occasion = match_start(_OCCASION, rest)  # "put it on the gate for the night shift", unlike "check the gate for vans"
         return not looks and occasion is not None and (rest[0].has("DET") or not occasion["noun"][-1].word.endswith("s"))
 
@@ -153,19 +153,19 @@ class SubordinateClauses(OpenClause):
         )
         if not match_start(verbs, rest) or self._is_question():
             return False
-        moves = any(x.has("PAN", "TILT", "TURN", "RAISE", "LOWER", *DIRECTIONS) for x in self.now)
-        sized_zoom = any(x.has("ZOOM", "ENLARGE", "WIDEN", "OUT", "WIDER") for x in self.now) and any(
-            x.has("NUM", "LITTLE", "LOT", "LIMIT", "PERCENT", "OUT", "WIDEN", "WIDER", "TWICE") for x in self.now
+        moves = any(x.has("PAN", "TILT", "TURN", "RAISE", "LOWER", *DIRECTIONS) for x in self.words)
+        sized_zoom = any(x.has("ZOOM", "ENLARGE", "WIDEN", "OUT", "WIDER") for x in self.words) and any(
+            x.has("NUM", "LITTLE", "LOT", "LIMIT", "PERCENT", "OUT", "WIDEN", "WIDER", "TWICE") for x in self.words
         )
-        pictures = any(x.has("PICTURE") for x in self.now) and any(x.has("TAKE", "SNAP") for x in self.now)
-        return not any(x.has("FREE") for x in self.now) and (moves or sized_zoom or pictures)
+        pictures = any(x.has("PICTURE") for x in self.words) and any(x.has("TAKE", "SNAP") for x in self.words)
+        return not any(x.has("FREE") for x in self.words) and (moves or sized_zoom or pictures)
 
     def _only_explains(self, rest: Sequence[Lexeme]) -> bool:
-        """Return whether the words after "so that" name a purpose, and neither an angle nor a thing to zoom in on."""
+        """Return whether the words after "so that" only state a purpose, without an angle or a thing to zoom in on."""
         end = next((i for i, x in enumerate(rest) if x.has("COMMA", "STOP", "QUESTION", "AND", "THEN")), len(rest))
         words = rest[:end]
-        zooms = any(x.has("ZOOM", "ZOOM-ING", "ENLARGE", "CLOSER") for x in self.now) and not (words and words[0].has("SELF"))
-        zooms = zooms and not any(x.has("NUM", "LIMIT", "LITTLE", "LOT", "PERCENT") for x in self.now)
+        zooms = any(x.has("ZOOM", "ZOOM-ING", "ENLARGE", "CLOSER") for x in self.words) and not (words and words[0].has("SELF"))
+        zooms = zooms and not any(x.has("NUM", "LIMIT", "LITTLE", "LOT", "PERCENT") for x in self.words)
         return (
             not zooms
             and bool(search("BE|MODAL|HAVEV|SHOW|SHOW-S", words))

@@ -1,13 +1,13 @@
-"""Select frames for streams with a lower frame rate than the camera's live picture."""
+"""Select frames for streams with a lower frame rate than the camera's live video."""
 
 from __future__ import annotations
 
 
-class Pace:
-    """Selects frames from the live picture for a stream with a lower frame rate.
+class FrameSelector:
+    """Selects frames from the live video for a stream with a lower frame rate.
 
     Args:
-        source_hz: Frame rate of the live picture in frames per second.
+        source_hz: Frame rate of the live video in frames per second.
         rate_hz: Maximum frame rate of the stream in frames per second; 0 for every frame.
     """
 
@@ -19,7 +19,7 @@ class Pace:
     def accepts(self, taken_s: float) -> bool:
         """Return whether the stream includes the frame taken at ``taken_s``.
 
-        Call this once for each frame, in order. A frame may be early by up to half a frame interval of the live picture. Otherwise,
+        Call this once for each frame, in order. A frame may be early by up to half a frame interval of the live video. Otherwise,
         a stream could not reach a rate that does not divide the camera's rate.
 
         Args:

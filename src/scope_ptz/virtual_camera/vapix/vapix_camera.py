@@ -9,7 +9,7 @@ from scope_ptz.virtual_camera.vapix.control_queue import ControlQueue
 RESOLUTIONS = ((1920, 1080), (1280, 720), (1024, 576), (800, 450), (640, 360), (480, 270), (320, 180), (160, 90))
 
 
-class VapixUnit:
+class VapixCamera:
     """A device together with the state that only VAPIX uses.
 
     Args:

@@ -7,7 +7,7 @@ import sys
 import threading
 from pathlib import Path
 
-from scope_ptz.camera.network.drive_watch import DriveWatch
+from scope_ptz.camera.network.dead_mans_switch import DeadMansSwitch
 from scope_ptz.errors import CameraError
 
 
@@ -25,7 +25,7 @@ class _Camera:
 
 def test_it_stops_after_the_timeout() -> None:
     camera = _Camera()
-    watch = DriveWatch("test", camera.stop)
+    watch = DeadMansSwitch("test", camera.stop)
     watch.arm(0.05)
     assert watch.is_armed
     assert camera.stopped.wait(5)
@@ -36,7 +36,7 @@ def test_it_stops_after_the_timeout() -> None:
 
 def test_it_does_not_stop_a_camera_that_was_stopped() -> None:
     camera = _Camera()
-    watch = DriveWatch("test", camera.stop)
+    watch = DeadMansSwitch("test", camera.stop)
     watch.arm(0.1)
     watch.disarm()
     watch.join()
@@ -45,7 +45,7 @@ def test_it_does_not_stop_a_camera_that_was_stopped() -> None:
 
 def test_it_tries_until_the_stop_arrives() -> None:
     camera = _Camera(failures=3)
-    watch = DriveWatch("test", camera.stop, retry_s=0.01)
+    watch = DeadMansSwitch("test", camera.stop, retry_s=0.01)
     watch.arm(0.01)
     assert camera.stopped.wait(5)
     assert camera.attempts == 4
@@ -53,7 +53,7 @@ def test_it_tries_until_the_stop_arrives() -> None:
 
 def test_it_gives_up_in_the_end() -> None:
     camera = _Camera(failures=10**6)
-    watch = DriveWatch("test", camera.stop, retry_s=0.01, give_up_s=1.0)
+    watch = DeadMansSwitch("test", camera.stop, retry_s=0.01, give_up_s=1.0)
     watch.arm(0.01)
     watch.join()
     assert not watch.is_armed
@@ -62,7 +62,7 @@ def test_it_gives_up_in_the_end() -> None:
 
 def test_a_renewed_drive_moves_the_deadline() -> None:
     camera = _Camera()
-    watch = DriveWatch("test", camera.stop)
+    watch = DeadMansSwitch("test", camera.stop)
     for _ in range(10):
         watch.arm(0.5)
         assert not camera.stopped.wait(0.05)
@@ -73,8 +73,8 @@ def test_a_renewed_drive_moves_the_deadline() -> None:
 
 def test_it_stops_at_the_end_of_the_process(tmp_path: Path) -> None:
     code = (
-        "import sys; from pathlib import Path; from scope_ptz.camera.network.drive_watch import DriveWatch\n"
-        "watch = DriveWatch('test', lambda: Path(sys.argv[1]).write_text('stopped'))\n"
+        "import sys; from pathlib import Path; from scope_ptz.camera.network.dead_mans_switch import DeadMansSwitch\n"
+        "watch = DeadMansSwitch('test', lambda: Path(sys.argv[1]).write_text('stopped'))\n"
         "watch.arm(10.0)\n"
         "raise RuntimeError('the program breaks')\n"
     )

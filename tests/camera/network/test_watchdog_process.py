@@ -12,7 +12,7 @@ from typing import Any
 from scope_ptz.camera.network.address import DeviceAddress
 from scope_ptz.camera.network.credentials import Credentials
 from scope_ptz.camera.network.http import DeviceHttp
-from scope_ptz.camera.network.stop_process import StopProcess, carry_out
+from scope_ptz.camera.network.watchdog_process import WatchdogProcess, stop_with_retries
 from scope_ptz.errors import CameraError
 
 SECRET = "pass through the pipe"
@@ -28,10 +28,10 @@ def write_note(http: DeviceHttp, details: Mapping[str, Any]) -> None:
     Path(details["note"]).write_text(f"{http.address} {http.credentials.user} {http.credentials.password}")
 
 
-def _process(folder: Path, failures: int = 0) -> StopProcess:
+def _process(folder: Path, failures: int = 0) -> WatchdogProcess:
     http = DeviceHttp(DeviceAddress("camera", 8080), Credentials("operator", SECRET))
     details = {"note": str(folder / "note"), "attempts": str(folder / "attempts"), "failures": failures}
-    return StopProcess(http, write_note, details)
+    return WatchdogProcess(http, write_note, details)
 
 
 def _wait_for(path: Path) -> str:
@@ -75,15 +75,15 @@ def test_it_tries_again_and_gives_up_in_the_end(tmp_path: Path) -> None:
     device = DeviceHttp(DeviceAddress("camera", 80), Credentials("operator", SECRET)).description()
     details = {"note": str(tmp_path / "note"), "attempts": str(tmp_path / "attempts"), "failures": 2}
     order = {"device": device, "function": [__name__, "write_note"], "details": details}
-    assert not carry_out(order, give_up_s=0.0)
-    assert carry_out(order, give_up_s=5.0)
+    assert not stop_with_retries(order, give_up_s=0.0)
+    assert stop_with_retries(order, give_up_s=5.0)
     assert (tmp_path / "attempts").read_text() == "3"
 
 
 def test_it_acts_when_the_program_is_killed(tmp_path: Path) -> None:
     code = (
         "import os, signal, sys; from pathlib import Path\n"
-        "from tests.camera.network.test_stop_process import _process\n"
+        "from tests.camera.network.test_watchdog_process import _process\n"
         "process = _process(Path(sys.argv[1])); process.arm()\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from time import monotonic
 
-from scope_ptz.camera.network.stop_process import StopProcess
+from scope_ptz.camera.network.watchdog_process import WatchdogProcess
 from scope_ptz.errors import CameraError
 
 LONGEST_PAUSE_S = 2.0
@@ -18,7 +18,7 @@ LONGEST_PAUSE_S = 2.0
 _LOG = logging.getLogger(__name__)
 
 
-class DriveWatch:
+class DeadMansSwitch:
     """Stops a driven camera when the drive is not renewed in time or the process exits.
 
     It runs in a thread and uses a separate connection, so it works even if the event loop is busy, blocked or closed. The thread
@@ -28,7 +28,7 @@ class DriveWatch:
     Args:
         name: The camera's name, for the log.
         send_stop: A blocking function that sends the stop command and waits for the acknowledgement. It is called from the thread.
-        watchdog: The process that stops the camera if this process is killed; None if there is none.
+        watchdog: The watchdog process, which stops the camera if the current process is killed; None if there is none.
         retry_s: Seconds before the first retry. The pause doubles with each retry, up to ``LONGEST_PAUSE_S``.
         give_up_s: Seconds after which no further attempt is made.
     """
@@ -38,7 +38,7 @@ class DriveWatch:
         name: str,
         send_stop: Callable[[], None],
         *,
-        watchdog: StopProcess | None = None,
+        watchdog: WatchdogProcess | None = None,
         retry_s: float = 0.25,
         give_up_s: float = 600.0,
     ) -> None:

@@ -1,7 +1,8 @@
-"""A watchdog process that stops a driven camera if this process is killed.
+"""A watchdog process that stops a driven camera if the driver's process is killed.
 
 A process that is killed (``kill -9``, out of memory) cannot send a stop command, and a device whose protocol has no timeout would
-keep moving. The watchdog therefore reads from a pipe, which the operating system closes when this process ends for any reason.
+keep moving. The watchdog therefore reads from a pipe, which the operating system closes when the driver's process ends for any
+reason.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _LONGEST_PAUSE_S = 2.0
 _ARMED, _SAFE = b"armed\n", b"safe\n"
 
 
-class StopProcess:
+class WatchdogProcess:
     """A camera's watchdog process, which is started when the camera is first driven.
 
     Args:
@@ -48,7 +49,7 @@ class StopProcess:
         self._armed = False
 
     def arm(self) -> None:
-        """Make the watchdog stop the camera if this process ends."""
+        """Make the watchdog stop the camera if the driver's process ends."""
         if self._process is None:
             self._process = self._start()
         self._send(_ARMED)
@@ -61,7 +62,7 @@ class StopProcess:
             self._send(_SAFE)
 
     def close(self) -> None:
-        """End the watchdog process. If the camera may still be moving, the watchdog stops it before it ends."""
+        """End the watchdog process. If the camera may still be moving, the watchdog stops it before exiting."""
         process, self._process = self._process, None
         if process is None:
             return
@@ -69,7 +70,7 @@ class StopProcess:
             assert process.stdin is not None  # noqa: S101 - it is a pipe
             process.stdin.close()
         if self._armed:
-            threading.Thread(target=process.wait, name="stop process", daemon=True).start()
+            threading.Thread(target=process.wait, name="watchdog process", daemon=True).start()
         else:
             process.kill()
             process.wait()
@@ -113,10 +114,10 @@ def main() -> None:
     for state in sys.stdin.buffer:
         armed = state == _ARMED
     if armed:
-        carry_out(json.loads(line))
+        stop_with_retries(json.loads(line))
 
 
-def carry_out(request: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
+def stop_with_retries(request: Mapping[str, Any], *, give_up_s: float = GIVE_UP_S) -> bool:
     """Stop a camera, retrying until the command reaches it. Return False if it does not within ``give_up_s`` seconds."""
     from scope_ptz.camera.network.http import DeviceHttp
 

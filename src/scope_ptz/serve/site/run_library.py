@@ -22,7 +22,7 @@ from scope_ptz.store.run_store import RunStore
 MAX_TURNS = 20
 """Maximum number of conversation turns that the planner receives."""
 
-SETTLE_S = 2.0
+MAX_INDEX_WAIT_S = 2.0
 """Maximum time, in seconds, that a request to list runs waits for recently ended runs to be indexed."""
 
 _T = TypeVar("_T")
@@ -30,7 +30,7 @@ _T = TypeVar("_T")
 logger = logging.getLogger(__name__)
 
 
-class Journal:
+class RunLibrary:
     """A server's runs folder, with its index. An index failure never stops a run.
 
     Args:
@@ -62,7 +62,7 @@ class Journal:
                 await self._run_or_log(self.store.index)
             self._queue.task_done()
 
-    async def settle(self, limit_s: float = SETTLE_S) -> None:
+    async def wait_for_indexing(self, limit_s: float = MAX_INDEX_WAIT_S) -> None:
         """Wait up to ``limit_s`` seconds for all queued runs to be indexed, so that lists include recently ended runs."""
         with anyio.move_on_after(limit_s):
             await self._queue.join()
