@@ -288,6 +288,10 @@ def _with_units(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             classes = frozenset({"GLUE"})  # "tilt plus 5" has a sign
         elif lexeme.word in _ADDRESSED and before and _introduces(before):
             classes = frozenset({"FREE"})  # "if no operator is visible"
+        elif lexeme.word == "side" and before and before.has("DET") and after and after.has("FREE"):
+            classes = frozenset({"FREE"})  # "the side door"
+        elif lexeme.word == "till" and before and before.has("DET"):
+            classes = frozenset({"FREE"})  # "is the till light on?"
         elif lexeme.word == "point" and before and before.has("DET", "PREP"):
             classes = frozenset({"FREE"})
         out.append(lexeme if classes is lexeme.classes else Lexeme(lexeme.word, lexeme.start, lexeme.end, classes))

@@ -263,7 +263,7 @@ class Reader:
     def _named_place(self, lexemes: Sequence[Lexeme], has_question_mark: bool) -> tuple[Step, ...] | None:
         """Read "has the bus bay got any room left?" as a question at the preset."""
         if (
-            not (has_question_mark or is_question(lexemes) or lexemes[0].has("ANY"))
+            not (has_question_mark or is_question(lexemes) or lexemes[0].has("ANY", "TELL"))
             or (place := place_asked_about(self.source, lexemes)) is None
         ):
             return None

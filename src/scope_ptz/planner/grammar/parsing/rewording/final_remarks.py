@@ -16,7 +16,8 @@ _STATEMENT = re.compile(
     r"(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
     r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
     r"|(?:the |my )?(?:boss|gaffer|foreman|chief|manager|supervisor|client) wants .+|"
-    rf"all (?:i'm|we're) (?:getting|seeing) is .+|(?:looks|seems|sounds|feels) .+|(?:boss|gaffer) is .+|i'm done.*|i "
+    rf"all (?:i'm|we're) (?:getting|seeing) is .+|all (?:i|we) (?:can see|see|get) is .+|can'?t (?:see|read|make out) "
+    rf".+|(?:looks|seems|sounds|feels) .+|(?:boss|gaffer) is .+|i'm done.*|i "
     rf"(?:can't|cannot) remember if .+|(?:i'm|i am) trying to (?:establish|find out|work out|see) .+|(?:gotta|got to) .+"
     rf"|(?-i:[A-Z][a-z]+)(?: (?:{_REPORTING})|'s| is| has) .+|some \w+ \w+'s .+|(?:i|we|it) (?:\w+ )?wants .+|its "
     rf"(?:got|been|getting) .+",
@@ -26,7 +27,7 @@ _STATEMENT = re.compile(
 
 _COMMAND = (
     r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn\w*|rotat\w*|swing\w*|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
-    r"|snap\w*|count\w*|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check\w*|look(?:ing)? (?:at|for|up|down"
+    r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check\w*|look(?:ing)? (?:at|for|up|down"
     r"|left|right|in|over)"
     r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
     r"|pictures?|photos?|stills?|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
@@ -44,7 +45,7 @@ _RESTRICTION = (
     r"|not (?:the|to|that|this|there|here|in|on)|isn't (?:the|that|this)"
 )
 _REQUEST = (
-    r"must|should(?! be (?:in|here|back|due|along|ready))|shall|ought|you|your|please|(?<!see )(?<!remember )"
+    r"must|should(?! (?:be (?:in|here|back|due|along|ready)|have))|shall|ought|you|your|please|(?<!see )(?<!remember )"
     r"(?<!wonder )if|unless|until"
     r"|(?:know|tell|check|find out|ask) (?:how|what|whether|which|where|who|if|when)"
 )
@@ -84,14 +85,15 @@ _IDIOMS = re.compile(
     r"(?:,|[.?]| -+) (?:(?:i )?(?:don't|do not) like the look of (?:him|her|them|it|that)|(?:i|we)(?:'ve| have)? lost "
     r"(?:track|count)"
     r"|i keep losing (?:track|count)|i swear(?: to god)?|there's one just \w+ in|do i need (?:my|me|a|an) \w+"
-    r"|just wonderin(?:g)? (?:where|what|how|why) to [\w ]+|can (?:you|yer|u) count (?:them|em)|thanks a (?:million|bunch|lot)"
+    r"|just wonderin(?:g)? (?:where|what|how|why|if|whether) [\w ]+|i like to know what's [\w' ]+|can (?:you|yer|u) "
+    r"count (?:them|em)|thanks a (?:million|bunch|lot)"
     r"|(?:need|want) to know (?:if|whether) (?:i|we) (?:should|need|have to|can) [\w ]+|can (?:you|u) see|trying to "
     r"(?:work out|figure out|see|decide) (?:if|whether|what|which) [\w' ]+|do (?:you|u) (?:reckon|think|know))[.!?]*$",
     re.IGNORECASE,
 )
 _OCCASION = re.compile(
     r"(?:good \w+[.!,] )?(?:for|ahead of|before|as(?! (?:soon|long|far|much))|since|because|given|in view of|due to"
-    r"|owing to|with) [^,]{3,90}?(?:,|(?= i (?:should|would|'d|need)))"
+    r"|owing to|with) [^,]{3,90}?(?:,|(?= i(?:['’]d| should| would| need)))"
     r" (?:and )?(?=(?:please|kindly|could|can|would|will|i need you|i would|i should|i'd|we need|go to|move to|zoom"
     r"|pan|tilt|count|take|check)\b)",
     re.IGNORECASE,
@@ -107,7 +109,9 @@ _NEWS_BEFORE_QUESTION = re.compile(
     re.IGNORECASE,
 )
 _INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot)\b", re.IGNORECASE)
-_NEWS_BEFORE_REQUEST = re.compile(r"(?P<news>[^?.;]+), (?P<rest>(?:could|can|would|will) you (?:\w+ ){2}.+)", re.IGNORECASE)
+_NEWS_BEFORE_REQUEST = re.compile(
+    r"(?P<news>[^?.;]+)[,;] (?P<rest>(?:(?:could|can|would|will) you|(?:please|kindly) (?!do\b)) ?(?:\w+ ){2}.+)", re.IGNORECASE
+)
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 _MIN_WORDS = 3
 _MIN_NEWS = 6  # minimum number of words

@@ -21,6 +21,26 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"^need it zoomed (in|out)\b", r"zoom \1"),
+    (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
+    (r"^(?:a )?closer look at (?=the |that |this )", "zoom in on "),
+    (r"^for the next ([\w ]+? (?:seconds|minutes)), ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
+    (r"\bmax(?:imum)? zoom (in|out)\b", r"zoom all the way \1"),
+    (r"(?<=\w), go\W*$", ""),
+    (r"^hard (left|right),? all the way\b", r"all the way \1"),
+    (rf"\b((?:{_PICTURES})\b.*)\btake one there(?: as well| too)?\b", r"\1take a picture"),
+    (rf"\bfinish with a ({_PICTURES})\b", r"then take a \1"),
+    (
+        r"^(?:somebody|someone)(?:['’]s| has)? (?:left|lost|dropped|parked|dumped) (?:a|an|their|his|her) ([\w ]+?)"
+        r"(?: (?:out|there|here|outside|last night|earlier|today|again|somewhere))*, (?:please |can you |could you )?"
+        r"(find|zoom in on|look for) (?:it|the \w+)\b",
+        r"\2 the \1",
+    ),
+    (
+        r"^i(?:['’]ve| have)? (?:lost|misplaced) (?:the|my) ([\w ]+?)(?: again)?, (?:please |can you |could you )?"
+        r"(find) it(?: for me)?\?*$",
+        r"\2 the \1",
+    ),
     (rf"\b((?:{_PICTURES})) of what(?:ever)? you(?:['’]re| are) (?:seeing|looking at)\b", r"\1"),
     (r"^cent(?:er|re) and zoom (?:in )?on ", "zoom in on "),
     (r"^wide as (?=it|you|she|possible)", "as wide as "),
@@ -72,7 +92,7 @@ MOVES = (
     ),
     (
         r"\b(?:swing|turn|spin) (?:it |her |the camera )?(?:right |all the way )?a?round(?: so(?: that)?| until| till) "
-        r"(?:you['’]re|you are|it['’]s|it is|we['’]re) (?:facing|looking|pointing) the other way",
+        r"(?:you['’]re|you are|it['’]?s|it is|we['’]re) (?:facing|looking|pointing) the other way",
         "turn around",
     ),
     (
@@ -124,7 +144,8 @@ MOVES = (
     (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
     (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
     (
-        rf"\bthe camera (?:shall|should|must|needs to|has to) be ({'|'.join(_TURNED)})\b",
+        rf"\b(?:i (?:should|would) be (?:very )?(?:grateful|glad|obliged) if )?the camera (?:shall|should|must|needs "
+        rf"to|has to|could|can|may) be ({'|'.join(_TURNED)})\b",
         lambda match: _TURNED[match[1].lower()],
     ),
     (

@@ -6,6 +6,7 @@ import re
 from functools import lru_cache
 
 from scope_ptz.english import is_plural
+from scope_ptz.planner.grammar.lexing.preset_names import short_names
 
 _STATES = (
     "open|shut|closed|locked|unlocked|clear|empty|full|free|busy|quiet|blocked|wet|dry|lit|occupied|flooded|icy|manned|staffed|"
@@ -17,6 +18,7 @@ _COUNTS = r"(?:how many|number of|count(?: the)?|total(?: of)?)"
 @lru_cache(maxsize=64)
 def _names(presets: tuple[str, ...]) -> str:
     """Return a pattern for the names of the presets, with spaces or hyphens between their words."""
+    presets = (*presets, *short_names(presets))
     each = (r"[-_ ]".join(re.escape(word) for word in re.findall(r"[^\W_]+", preset)) for preset in presets)
     return "|".join(sorted((name for name in each if name), key=len, reverse=True))
 
@@ -49,6 +51,22 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
         ),
         (rf"[.,] (?:never mind|forget|ignore|not) (?:about )?the ({names})\W*$", ""),
         (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
+        (rf"^head ?count[,:]? (?:at )?(?:the )?({names})\W*$", r"how many people are at the \1?"),
+        (
+            rf"^is it (?:the )?({names}) or (?:the )?({names}) that has (?:the )?(?:more|most|greater number of"
+            rf"|larger number of) ([\w ]+?)\?*$",
+            r"which has more \3, \1 or \2?",
+        ),
+        (rf"(\bwhich(?:ever)? has more [^.]*)\. (?:check|start with|look at) (?:the )?(?:{names}) first\W*$", r"\1"),
+        (
+            rf"^(?:the )?([\w ]+?) (in|at|on) (?:the )?({names}), ((?:{_STATES}) or (?:{_STATES}))\?$",
+            r"is the \1 \2 the \3 \4?",
+        ),
+        (rf"^(?:the )?({names}), ([\w ]+?) ((?:{_STATES}) or (?:{_STATES}))\?$", r"is the \2 at the \1 \3?"),
+        (
+            rf"^(\w+) count (at|in|on) (?=(?:the )?(?:{names})\b)",
+            lambda match: f"count the {_plural(match[1].lower())} {match[2]} ",
+        ),
         (rf"\bgo 2 (?=(?:the )?(?:{names})\b)", "go to "),
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),
         (

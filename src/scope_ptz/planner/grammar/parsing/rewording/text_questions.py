@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from scope_ptz.english import is_plural
+
 _TAGS = "right|correct|yeah|is there|are they|is that right"
 _INVERTED = r"(?:is|are|does|do|has|have) (?:the|there|any|anyone|anybody|someone|somebody|all|an?)\b"
 _JOINED = re.compile(
@@ -85,7 +87,27 @@ QUESTIONS = (
     (r"\b(preset positions|presets|positions|views) are (?:currently|presently) ", r"\1 are "),
     (r"\b(?:on|across) the (?:whole|entire) (?:property|premises|estate|grounds|yard|site|farm|place)\b", "in the whole scene"),
     (r"\b(in the whole scene), look (?:everywhere|all around|all over)\b", r"\1"),
+    (r"^(?:considering|across|over|in) the (?:whole|entire|full) (?:scene|site|area), ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (r"\bdo a look (?:a)?round the whole scene and (?=tell|count)", "sweep the scene and "),
+    (r"^(?:the )?(\w+) been (\w+ed)\b([^?]*)\?$", r"has the \1 been \2\3?"),
+    (
+        r"^(?!(?:is|are|any|how|what|who|which|where|why|has|have|do|does|can|was|anyone|anybody|someone|nobody|keep|stop|start|try)\b)"
+        r"(\w+) (coming|leaking|rising|dripping|standing|parked|blocking|lying|waiting) ([^?]+)\?$",
+        r"any \1 \2 \3?",
+    ),
+    (r"^who(?:['’]?s| has)(?: got)? (the most|more) ", r"which has \1 "),
+    (r", not (?:just|only) the (?:ones|one) (?:in (?:shot|view|frame|the picture)|here|you can see)\W*$", ""),
     # Counts
+    (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
+    (r"^([\w ]+?)\. how many\W*$", lambda match: _counted(match)),
+    (r"\b(currently|presently) (?=visible|in view|in the picture|on screen)", ""),
+    (r"\b((?:how many|number of) [\w ]+?)(?: are)? out (?=(?:at|on|in) the )", r"\1 "),
+    (
+        r"^(?:any|are there any) more ([\w ]+?) (at|in|on) (.+?) than (?:at |in |on )?(.+?)\?*$",
+        r"are there more \1 \2 \3 than \2 \4?",
+    ),
+    (r"^out of (.+?),? and (.+?), (?:where are|where is|which has) the most ([\w ]+)\?*$", r"which has the most \3, \1 or \2?"),
+    (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {_plural(match[1])} at each preset"),
     (r"^([\w ]+?) (in|at|on) (?:the )?([\w -]+), how many\W*$", r"how many \1 are \2 the \3?"),
     (
         r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
@@ -109,7 +131,7 @@ QUESTIONS = (
     ),
     (r" (?:at|in) this (?:hour|time of (?:day|night|year))(?=\W|$)", ""),
     (r"^(?:need|i need|want)(?: a| the)? (?=number of\b)", ""),
-    (r"^(how many .*?\b(?:is|are)) (?:currently|presently|now|still) (?=\w)", r"\1 "),
+    (r"\b(how many [^?.]*?\b(?:is|are)) (?:currently|presently|now|still) (?=\w)", r"\1 "),
     (
         r"^((?:so |now |and )?(?:how many|is|are|any|has|have|did|who|what)\b.*?) this (?:morning|afternoon|evening"
         r"|minute)(?=[?.!]*$)",
@@ -171,6 +193,15 @@ QUESTIONS = (
     (r"^if ([^,]+?),? (?:i|we) can [^,]+, so (?:please )?check(?: it| that)? and if so,? ", r"if \1, "),
 )
 """Patterns with the words that replace them."""
+
+
+def _counted(match: re.Match[str]) -> str:
+    """Return "count the bins" for "bins, how many?"; a text with other words is returned unchanged."""
+    return match[0] if _NO_TOPIC.search(match[1]) else f"count the {match[1]}"
+
+
+def _plural(noun: str) -> str:
+    return {"person": "people"}.get(noun, noun if is_plural(noun) or noun == "people" else f"{noun}s")
 
 
 def _about_topic(match: re.Match[str]) -> str:

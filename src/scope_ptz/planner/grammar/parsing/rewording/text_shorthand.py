@@ -60,6 +60,13 @@ SHORTHAND = (
     (r"\b(he|she)s (?=\w)", r"\1's "),
     (r"\bfor like (?=\w+ (?:sec|min))", "for "),
     (r",? (?:and )?once it(?:['’]s| is) there,? (?:please )?(?=\w)", ", then "),
+    (r", (?:pardon(?: me)?|excuse me|my mistake|whoops|oops), ", ", no, "),
+    (r"(?<=\w) (?=can(?:['’]?t|not) (?:see|read|make out) )", ", "),
+    (r"[.,] (?:priority|urgent|urgently|asap|top priority)\W*$", ""),
+    (r"^(?:hiya|hi|hello|hey),? (?:it['’]?s )?(?:only )?me again[!.,] ", ""),
+    (r",? hun\b", ""),
+    (r"\bobtain\b", "get"),
+    (r"\binform me\b", "tell me"),
     (r"^(?:good (?:morning|afternoon|evening)|hello|hiya|hi)[.!] ", ""),
 )
 """Patterns with the words that replace them."""

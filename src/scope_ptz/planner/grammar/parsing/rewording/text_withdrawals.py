@@ -11,6 +11,7 @@ _LEAVE_OUT = (
 )
 
 WITHDRAWALS = (
+    (r",? don['’]?t (?:follow|track|zoom in on) (?:nobody|no one|anybody|anyone)\W*$", ""),
     (r"^i was (?:going|about) to ask (?:you )?(?:for|to) [^,]+, but that(?:['’]s| is) no longer (?:needed|necessary), so ", ""),
     (
         r"[;,]? (?:and |but )?(?:please )?(?:you must not|do not|don['’]?t) zoom in on (?:anyone|anybody|anything"
@@ -19,7 +20,7 @@ WITHDRAWALS = (
     ),
     (r"[;,.] (?:do not|don['’]?t) (?:change|touch|alter) (?:the )?pan (?:or|and) (?:the )?tilt\W*$", ""),
     (r",? (?:and |but )?(?:don['’]?t|do not) go zoomin['’g]* in on (?:anybody|anyone|anything|them|it)\W*$", " without zooming"),
-    (r"^[^,.;]+[,.]+ *(?:nvm|never ?mind)\b[, ]*(?:don['’]?t|do not)?[, ]*(?=just\b)", ""),
+    (r"^[^,.;]+[,.]+ *(?:nvm|never ?mind|(?:actually )?no,? don['’]?t bother)\b[, ]*(?:don['’]?t|do not)?[, ]*(?=just\b)", ""),
     (
         rf"^(?:take|get|grab|make|snap) (?:a |the |one )?{_PICTURE}\b[,.]* +{_NO}{_LEAVE_OUT} (?:the |that "
         rf")?{_PICTURE}[,.]+ *(?:just|only) "
