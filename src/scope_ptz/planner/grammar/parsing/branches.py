@@ -78,7 +78,8 @@ class BranchReader(ClauseSequenceReader):
             and (named := place_asked_about(self.reader.source, clause.lexemes)) is not None
         ):
             places = (named,)  # "if the bus bay is full"
-        if is_if and isinstance(condition, Statement) and (inside := without_inner_place(self.reader.source, clause.lexemes)):
+        is_open = condition is None or isinstance(condition, Statement)
+        if is_if and is_open and (inside := without_inner_place(self.reader.source, clause.lexemes)):
             source, words, place = inside
             if isinstance(stated := condition_of(source, words), Statement):
                 condition, places = stated, (place,)  # "if the barrier at the crossing is up"

@@ -45,7 +45,13 @@ from scope_ptz.planner.grammar.parsing.parts.clause import VERBS, NotUnderstoodE
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import thing_of
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start, search
-from scope_ptz.planner.grammar.parsing.parts.preset_refs import occupied_place, place_asked_about, places_of, without_inner_place
+from scope_ptz.planner.grammar.parsing.parts.preset_refs import (
+    occupied_place,
+    place_asked_about,
+    places_of,
+    stays_in_view,
+    without_inner_place,
+)
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.scopes import split_leading_place, split_trailing_place, without_repetitions
 from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
@@ -218,6 +224,8 @@ class Reader:
         if search("THAN|than|COMPARE", lexemes):
             return None
         if lexemes[0].has("BE", "WHQ") and (place := occupied_place(self.source, lexemes)) is not None:
+            if stays_in_view(self.source, place.name):
+                return (Ask(f"{text_of(self.source, lexemes)}?"),)
             return (AtPlaces((place,), (Ask(f"{text_of(self.source, lexemes)}?"),)),)
         rest, places = split_trailing_place(self.source, without_sum(lexemes))
         if places is None and (inner := self._place_of_subject(lexemes, has_question_mark)) is not None:

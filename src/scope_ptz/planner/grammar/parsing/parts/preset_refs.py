@@ -74,21 +74,28 @@ def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | Non
     return place_of(source, match["place"] or match["asked"])
 
 
+def stays_in_view(source: Source, preset: str) -> bool:
+    """Return whether a question about a preset is about the current view.
+
+    That is so if the camera must not move, and if an earlier clause has gone to the preset and then moved the camera: "go to the
+    bus bay and zoom in. Is the bus bay full?".
+    """
+    mentions = sum(x.preset == preset for x in lexemes_of(source.text, source.presets))
+    return _STILL.search(source.text) is not None or (source.has_moved and mentions > 1)
+
+
 def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
     """Return the only preset that a question names, if the name cannot be that of a thing in the current view.
 
     Names of several words ("bus-bay") and words that are in no lexicon ("debarker") are taken for the preset. A preset after
     a preposition such as "near" only says where something is.
     """
-    if _STILL.search(source.text):
-        return None
     found = [i for i, x in enumerate(lexemes) if x.has("PRESET")]
     if len(found) != 1:
         return None
     name = lexemes[found[0]]
-    mentions = sum(x.preset == name.preset for x in lexemes_of(source.text, source.presets))
-    if source.has_moved and mentions > 1:
-        return None  # "go to the bus bay and zoom in: is the bus bay full?" asks about the new view
+    if stays_in_view(source, name.preset):
+        return None
     before = [x for x in lexemes[: found[0]] if not x.has("DET") or x.has("PREP")]
     if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES:
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from scope_ptz.planner.grammar.parsing.rewording.final_remarks import without_remarks
+from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import without_remarks
 from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_separate_questions

@@ -21,6 +21,12 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
+    (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
+    (r"\b(?:ha|['’])?av a (good|quick|proper) look at\b", r"have a \1 look at"),
+    (r"\bback it off\b", "zoom out"),
+    (r"\bto plus (?=\d)", "to "),
+    (r"\b(as far as) it['’]?ll go\b", r"\1 it will go"),
     (r"^need it zoomed (in|out)\b", r"zoom \1"),
     (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
     (r"^(?:a )?closer look at (?=the |that |this )", "zoom in on "),
@@ -75,7 +81,8 @@ MOVES = (
     (r"\bframe up ", "zoom in on "),
     (r"^(?:(?:have|take) a )?gander at ", "have a look at "),
     (
-        r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+)[?,]\s*(?:zoom in on|find|show me) (?:it|him|her|them)\s*[.!]*$",
+        r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
+        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us))?\s*[.!]*$",
         r"zoom in on \1",
     ),
     (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),

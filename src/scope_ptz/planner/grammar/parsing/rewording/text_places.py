@@ -74,8 +74,9 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             lambda match: f"count the {_plural(match[1])} at the {match[2]} and at the {match[3]}",
         ),
         (
-            rf"^where(?:'s| is| are) (?:there )?more ([\w ]+?),? (?:(?:at|in|on|near|by) )?(?:the )?({names}) "
-            rf"or (?:(?:at|in|on|near|by) )?(?:the )?({names})\W*$",
+            rf"^where(?:['’]?s| is| are) (?:there )?more ([\w ]+?),? (?:(?:down |over |up )?(?:at|in|on|near|by) )?"
+            rf"(?:the )?({names}) "
+            rf"or (?:(?:down |over |up )?(?:at|in|on|near|by) )?(?:the )?({names})\W*$",
             r"which has more \1, \2 or \3?",
         ),
         (

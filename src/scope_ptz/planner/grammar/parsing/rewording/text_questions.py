@@ -68,7 +68,7 @@ QUESTIONS = (
         r"|she|it|they) ([^?,]+)\?$",
         lambda match: _about_topic(match),
     ),
-    (r"^(what(?:['’]s| is) [^?,.]+?)[?,] ?can (?:you|u|ye) (?:read|see|make) it(?: out)?\?*$", r"\1?"),
+    (r"^((?:what|which|whats|who)\b[^?,.]+?)[?,] ?can (?:you|u|ye) (?:read|see|make) it(?: out)?\?*$", r"\1?"),
     (r"^which (?:places|spots|positions|views) can (?:this|the) camera (?:jump|go|move|switch) to\b.*$", "list the presets"),
     (r",? if (?:you|ye|we|u) look (?:at|over|around|across) the (?:whole|entire) \w+", " in the whole scene"),
     (
@@ -97,7 +97,17 @@ QUESTIONS = (
     ),
     (r"^who(?:['’]?s| has)(?: got)? (the most|more) ", r"which has \1 "),
     (r", not (?:just|only) the (?:ones|one) (?:in (?:shot|view|frame|the picture)|here|you can see)\W*$", ""),
+    (r"\b(?:shows?|has|have) (?:a|the) (?:higher|greater|larger) number of ", "has more "),
+    (r"\bdetermine (?=the )", "tell me "),
+    (r"\b(?:over|across|through) the (?:full|whole|entire) 360(?: degrees)?", "all around"),
+    (r"^more (\w+) or more (\w+)(?: in view| here)?\?(?: count both)?\W*$", r"are there more \1 than \2?"),
+    (r", do a full (?:look|sweep|scan)\W*$", ""),
+    (
+        r"^(if (?:the|a|an|any)\b[^,]*? (?:is|are)\b[^,]*?) (?=(?:follow|zoom|take|pan|tilt|count|track|snap|tell)\b)",
+        r"\1, ",
+    ),
     # Counts
+    (r"^(?!.*\b(?:then|and)\b)([\w' ]+?)\. (find|follow|zoom in on|track) it\W*$", lambda match: _found(match)),
     (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
     (r"^([\w ]+?)\. how many\W*$", lambda match: _counted(match)),
     (r"\b(currently|presently) (?=visible|in view|in the picture|on screen)", ""),
@@ -125,7 +135,8 @@ QUESTIONS = (
     (r"^count they (?=\w+ \w+)", "count the "),
     (r"\bmore ([\w ]+?) round it(?: tonight| now)?,", r"more \1,"),
     (
-        r"\b(how m[ae]ny [^,.;?]+?) (?:have (?:we|i)(?: still)?(?: got)?|we(?:['’]ve)? got|have you got|have they(?: put out| got| "
+        r"\b(how m[ae]ny [^,.;?]+?) (?:have (?:we|i)(?: still)?(?: got)?|we(?:['’]ve)? got|have you got|you(?:['’]ve| "
+        r"have)? got|have they(?: put out| got| "
         r"left(?: out)?)|are you seeing|do you make it)(?= (?:at|in|on|down|up|over|out|by)\b|\W*$)",
         r"\1 are there",
     ),
@@ -198,6 +209,11 @@ QUESTIONS = (
 def _counted(match: re.Match[str]) -> str:
     """Return "count the bins" for "bins, how many?"; a text with other words is returned unchanged."""
     return match[0] if _NO_TOPIC.search(match[1]) else f"count the {match[1]}"
+
+
+def _found(match: re.Match[str]) -> str:
+    """Return "find the dummy" for "dummy. Find it"; a text with other words is returned unchanged."""
+    return match[0] if _NO_TOPIC.search(match[1]) else f"{match[2]} the {match[1]}"
 
 
 def _plural(noun: str) -> str:

@@ -30,7 +30,7 @@ REMARKS = (
     (r",? (?:will|would|could) (?:ye|ya|yous)\b", ""),
     (r"^righto[,.!]? ", ""),
     (r",? if (?:it|you|that|the camera) (?:can|could) (?:do|manage) (?:that|it|this)(?=[,.]|$)", ""),
-    (r",? for (?:the|my|our) (?:sheet|report|log|file|files|records?|logbook|book|office)\W*$", ""),
+    (r",? for (?:the|my|our) (?:sheet|report|log|file|files|records?|logbook|book|office|inventory|audit|insurance)\W*$", ""),
     (r", i swear(?: to god)?(?=,)", ""),
     (r"\bi should like\b", "i would like"),
     (r"^aye,? (?:right,? )?", ""),

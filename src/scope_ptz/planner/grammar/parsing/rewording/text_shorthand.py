@@ -67,6 +67,14 @@ SHORTHAND = (
     (r",? hun\b", ""),
     (r"\bobtain\b", "get"),
     (r"\binform me\b", "tell me"),
+    (r"^right (?=(?:get it|get me|take me|can you|could you|let['’]s|nip|pop|show me)\b)", ""),
+    (r"\bwots\b", "what's"),
+    (r"^ow (?=many|much)", "how "),
+    (r"\bnr\.? of\b", "number of"),
+    (r"\b(can|will|do|would|could) ya\b", r"\1 you"),
+    (r"\b(the|that) (zoom|picture|view|shot) is too (?:tight|close|wide|far), ", ""),
+    (r"^(?:zoom|picture|view|shot) is too (?:tight|close|wide|far), ", ""),
+    (r", (?:the )?\w+(?:['’]?s)? due (?:any \w+|soon)\W*$", ""),
     (r"^(?:good (?:morning|afternoon|evening)|hello|hiya|hi)[.!] ", ""),
 )
 """Patterns with the words that replace them."""

@@ -11,6 +11,11 @@ _LEAVE_OUT = (
 )
 
 WITHDRAWALS = (
+    (
+        r"^(follow|track|count) [^,.]+, (?:(?:actually|nah|no|wait)[, ]+)+(?:don['’]?t|do not) \1 (?:it|him|her"
+        r"|them), (?:just )?(?=\w)",
+        "",
+    ),
     (r",? don['’]?t (?:follow|track|zoom in on) (?:nobody|no one|anybody|anyone)\W*$", ""),
     (r"^i was (?:going|about) to ask (?:you )?(?:for|to) [^,]+, but that(?:['’]s| is) no longer (?:needed|necessary), so ", ""),
     (
@@ -18,7 +23,7 @@ WITHDRAWALS = (
         r"|people)\b[^.;]*\W*$",
         " without zooming",
     ),
-    (r"[;,.] (?:do not|don['’]?t) (?:change|touch|alter) (?:the )?pan (?:or|and) (?:the )?tilt\W*$", ""),
+    (r"[;,.] (?:do not|don['’]?t) (?:change|touch|alter) (?:the )?(?:pan|tilt|zoom) (?:or|and) (?:the )?(?:pan|tilt|zoom)\W*$", ""),
     (r",? (?:and |but )?(?:don['’]?t|do not) go zoomin['’g]* in on (?:anybody|anyone|anything|them|it)\W*$", " without zooming"),
     (r"^[^,.;]+[,.]+ *(?:nvm|never ?mind|(?:actually )?no,? don['’]?t bother)\b[, ]*(?:don['’]?t|do not)?[, ]*(?=just\b)", ""),
     (
@@ -59,7 +64,7 @@ _PARTS = {
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actually|no|nah|nope|wait|sorry|oh|hang on)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
+    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
     rf"(?P<what>pan|tilt|zoom|count|follow|track|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:do )?the \w+)?\W*",
     re.IGNORECASE,
 )
@@ -72,6 +77,6 @@ def without_part_left_out(text: str) -> str:
         return text
     what = match["what"].lower()
     pattern = re.compile(_PARTS.get(what, _PARTS["picture"]), re.IGNORECASE)
-    parts = re.split(r"(?:,? and then |,? then |,? and |, |[.;] )", match["said"])
+    parts = re.split(r"(?:,? and then |,? then |,? and? |, |[.;] )", match["said"])
     kept = [part for part in parts if not pattern.match(part.strip())]
     return ", then ".join(kept) if kept and len(kept) == len(parts) - 1 else text

@@ -13,7 +13,8 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
 _REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
-    r"(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
+    r"(?:left|lost|dropped|dumped) (?:it|them) .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
+    r"(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
     r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
     r"|(?:the |my )?(?:boss|gaffer|foreman|chief|manager|supervisor|client) wants .+|"
     rf"all (?:i'm|we're) (?:getting|seeing) is .+|all (?:i|we) (?:can see|see|get) is .+|can'?t (?:see|read|make out) "
@@ -36,7 +37,7 @@ _DIRECTION = (
     r"(?:to the|on the|pan|turn|go|look|bit|touch|said|the) (?:left|right)|(?:left|right) (?:by|a bit|\d|side|one|hand)"
     r"|(?:go|look|further|bit|touch|said) (?:up|down|in|out)"
 )
-_AT_AN_END = r"^(?:left|right|up|down|in|out)\b|(?<!me )(?<!it )(?<!us )(?<!is )\b(?:left|right|up|down)$"
+_AT_AN_END = r"^(?:left(?! (?:it|them|him|her)\b)|right|up|down|in|out)\b|(?<!me )(?<!it )(?<!us )(?<!is )\b(?:left|right|up|down)$"
 _RESTRICTION = (
     r"ones|(?:that|this|which|red|other|next|last|big|small|the) one|especially|particularly|except|apart from|both"
     r"|every|each|instead"
@@ -105,7 +106,7 @@ _PAST_NEWS = re.compile(
 )
 _LIMITING = re.compile(rf"\b(?:{_RESTRICTION}|{_REQUEST}|{_WITHDRAWAL})\b", re.IGNORECASE)
 _NEWS_BEFORE_QUESTION = re.compile(
-    r"(?P<news>[^?]+?)(?:, so|[.;]) (?P<rest>(?:how many|is|are|what|which|has|have|any|could you tell me) [^.;]+\?*)",
+    r"(?P<news>[^?]+?)(?:, so|[.;,]) (?P<rest>(?:how many|is|are|what|which|has|have|any|could you tell me) [^.;]+\?*)",
     re.IGNORECASE,
 )
 _INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot)\b", re.IGNORECASE)
