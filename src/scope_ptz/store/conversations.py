@@ -51,7 +51,7 @@ def list_conversations(database: Database, *, owner: str, camera: str | None = N
 
 
 def touch_conversation(database: Database, key: str, *, title: str | None = None, pair: str | None = None) -> None:
-    """Record that a conversation was used, and optionally change its title or its pair."""
+    """Record that a conversation was used, and optionally change its title or its pair of models."""
     values: dict[str, object] = {"updated": time.time()}
     if title is not None:
         values["title"] = title[:MAX_TITLE_CHARS]

@@ -33,8 +33,8 @@ _EVERY_INSTANCE_PREDICATE = re.compile(
 def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
     """Return whether it is unclear which half of the picture an answer is about.
 
-    It is unclear if the answer makes different statements about the two halves ("one on the left, none on the right"), or places
-    everything in one half.
+    The half counts as unclear when the answer makes different statements about the two halves ("one on the left, none on the
+    right"), or places everything in one half.
     """
     mentions = text.mentions({"subject": subject}) if subject else []
     present, absent = False, False

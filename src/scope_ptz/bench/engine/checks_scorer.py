@@ -39,7 +39,7 @@ from scope_ptz.bench.scoring.verdict import Headline
 CHECKS = "checks"
 """Name of the scorer in logs."""
 _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "unscored": NOANSWER}
-"""Inspect's score value for each headline. Runs with an infrastructure failure have no value."""
+"""Inspect's score value for each outcome. Runs with an infrastructure failure have no value."""
 
 
 @metric(scores="unreduced")

@@ -42,19 +42,19 @@ class SampledTask:
 
 
 _Unit = tuple[SampledTask, ...]
-"""A contrast pair or an unpaired task. A sample usually contains it as a whole."""
+"""A contrast pair or an unpaired task. A sample usually includes both tasks of a pair."""
 _Margin = tuple[str, str]
 
 
 class _Group(NamedTuple):
-    """A group of tasks with equal fields, which are either all paired or all unpaired."""
+    """A group of tasks with the same field values, which are either all paired or all unpaired."""
 
     fields: tuple[str, ...]
     paired: bool
 
 
 def answer_key(expected: AnyExpected) -> str:
-    """Return a key that is equal for answers that the same text can express. It is empty for texts, orders and actions."""
+    """Return a key shared by all answers that can be given in the same words. It is empty for texts, orders and actions."""
     match expected:
         case ActionOnly():
             return ""
@@ -75,11 +75,11 @@ def balanced_sample(tasks: Sequence[SampledTask], number: int, order: Callable[[
 
     The two tasks of a contrast pair are selected together, so that the paired things are present as often as they are absent.
     A pair may be split if only one more task is needed and no unpaired task remains. The fraction of paired tasks in the sample is
-    the same as in all tasks.
+    the same as in the full set.
 
-    Each step selects from the group that is least represented in the sample so far, relative to how many tasks share each of its
-    field values, and to how many tasks in its category are paired or unpaired. Within a group, it selects the task whose answer
-    occurs least often in the sample.
+    Each step selects from the group that is least represented in the sample so far, relative to the number of tasks with each of
+    its field values, and to the number of paired or unpaired tasks in its category. Within a group, it selects the task whose
+    answer occurs least often in the sample.
 
     Args:
         tasks: The tasks to sample from.

@@ -78,7 +78,8 @@ def _split(text: str) -> list[str]:
 def pending_proposal(conversation: Sequence[PastTurn]) -> Proposal | None:
     """Return the proposal that is waiting for the user's confirmation; None if the last turn proposed no calls.
 
-    A turn that only confirms calls continues the turn before it, so its proposal belongs to the instruction that started them.
+    A turn that only confirms calls continues the turn before it, so a proposal made in it belongs to the
+    instruction with which these turns began.
     """
     if not conversation or not (calls := proposed_calls(conversation[-1].reply)):
         return None

@@ -46,9 +46,9 @@ TRACE_PX = 20
 """An object with at most this many visible pixels counts as absent, because people do not notice it."""
 
 FAINT_PX = 40
-"""An object with at most this many visible pixels is certainly not counted by people.
+"""An object with at most this many visible pixels is too small for anyone to count.
 
-If an object has more pixels but does not meet the definition of visible, no question asks for the number of its kind.
+If an object has more pixels but does not meet the definition of visible, no question asks how many objects of its kind there are.
 """
 
 _MIN_FACING_COSINE = 0.2
@@ -119,7 +119,7 @@ class RobustTruth:
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
-        """Whether each object is visible, in all samples and with all thresholds, by the object's number."""
+        """The outcomes of the visibility test across all samples and thresholds, by object number."""
         results: dict[int, set[bool]] = {}
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings}
         for truth in self.samples:
@@ -290,7 +290,7 @@ class RobustTruth:
         return tuple(t for t in self.legible if t.text.parent in part_ids)
 
     def item(self, sighting: Sighting, value: str | bool | float | None = None) -> Item:
-        """Return an object as evidence: its position, and the minimum size at which a run must see it (70% of its size here)."""
+        """Return an object as evidence: its position, and its minimum size in a run (70% of its size here)."""
         return self._item(sighting.instance.id, sighting.box, value, None)
 
     def text_item(self, text: TextSighting) -> Item:
@@ -322,7 +322,7 @@ class RobustTruth:
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
-    """Return the appearances of each actor, by its number, every 0.5 s over the longest actor period (at most two minutes)."""
+    """Return each actor's appearances by actor number, every 0.5 s over the longest actor period (at most two minutes)."""
     origin, by_actor = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
     for time_s in np.arange(0.0, min(longest, 120.0), 0.5):

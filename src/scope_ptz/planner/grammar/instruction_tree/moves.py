@@ -92,7 +92,7 @@ class Back:
 
     Attributes:
         amount: How far to turn back; None to return all the way.
-        turn: The direction, if the instruction names only that ("come back down"); it need not undo the previous turn.
+        turn: The direction, if the instruction gives only a direction ("come back down"). It may not undo the previous turn.
     """
 
     zoom_only: bool = False
@@ -111,7 +111,7 @@ class GoToPreset:
 
     Attributes:
         how: The verb of the instruction, "bare" for none. After "go" and "use", the words must name a preset; after other verbs,
-            they may name an object. "Use" after a question states where to ask it.
+            they may name an object. After a question, "use" names the preset at which to ask it.
     """
 
     ref: PresetRef

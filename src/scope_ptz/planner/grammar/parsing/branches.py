@@ -35,7 +35,7 @@ class BranchReader(ClauseSequenceReader):
     def _linked(self) -> list[Linked]:
         """Return the linked steps of the next clause and of the clauses that belong to it."""
 
-    def _condition(self, clause: Clause) -> tuple[Condition, tuple]:  # type: ignore[type-arg]
+    def _condition(self, clause: Clause, *, is_trailing: bool = False) -> tuple[Condition, tuple]:  # type: ignore[type-arg]
         """Return the condition of a clause, and the presets at which it is tested."""
         clause = replace(clause, lexemes=without_happening(clause.lexemes))
         condition = condition_of(self.reader.source, clause.lexemes)
@@ -69,19 +69,20 @@ class BranchReader(ClauseSequenceReader):
         if owner and inner is None and found and isinstance(condition, Statement):
             places = found  # "the gate has a queue of over 10 cars"
         is_if = clause.marker in {"IF", "WHEN", "UNLESS"}
+        source = replace(self.reader.source, has_moved=False) if is_trailing else self.reader.source
         if is_if and isinstance(condition, Statement) and (place := occupied_place(self.reader.source, clause.lexemes)) is not None:
             places = (place,)
         elif (
             is_if
             and isinstance(condition, Statement)
             and found is None
-            and (named := place_asked_about(self.reader.source, clause.lexemes)) is not None
+            and (named := place_asked_about(source, clause.lexemes)) is not None
         ):
             places = (named,)  # "if the bus bay is full"
         is_open = condition is None or isinstance(condition, Statement)
         if is_if and is_open and (inside := without_inner_place(self.reader.source, clause.lexemes)):
-            source, words, place = inside
-            if isinstance(stated := condition_of(source, words), Statement):
+            inner_source, words, place = inside
+            if isinstance(stated := condition_of(inner_source, words), Statement):
                 condition, places = stated, (place,)  # "if the barrier at the crossing is up"
         if inner is not None and found is not None:
             condition, places = inner, found
@@ -128,7 +129,7 @@ class BranchReader(ClauseSequenceReader):
 
     def _with_trailing_condition(self, clause: Clause, steps: tuple[Step, ...]) -> Step:
         """Return the step for "take a picture if ...", with the "otherwise" that may follow."""
-        condition, places = self._condition(clause)
+        condition, places = self._condition(clause, is_trailing=True)
         otherwise: list[Step] = []
         after = self._peek()
         if after is not None and after.marker == "IFNOT":

@@ -224,7 +224,7 @@ class Reader:
         if search("THAN|than|COMPARE", lexemes):
             return None
         if lexemes[0].has("BE", "WHQ") and (place := occupied_place(self.source, lexemes)) is not None:
-            if stays_in_view(self.source, place.name):
+            if stays_in_view(self.source):
                 return (Ask(f"{text_of(self.source, lexemes)}?"),)
             return (AtPlaces((place,), (Ask(f"{text_of(self.source, lexemes)}?"),)),)
         rest, places = split_trailing_place(self.source, without_sum(lexemes))

@@ -1,4 +1,4 @@
-"""Read clauses that turn back by part of the previous turn, or by as much again: "then half of that back", "30 the other way"."""
+"""Read clauses that turn back by an amount or by a part of the previous turn: "30 the other way", "then half of that back"."""
 
 from __future__ import annotations
 

@@ -74,14 +74,9 @@ def occupied_place(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | Non
     return place_of(source, match["place"] or match["asked"])
 
 
-def stays_in_view(source: Source, preset: str) -> bool:
-    """Return whether a question about a preset is about the current view.
-
-    That is so if the camera must not move, and if an earlier clause has gone to the preset and then moved the camera: "go to the
-    bus bay and zoom in. Is the bus bay full?".
-    """
-    mentions = sum(x.preset == preset for x in lexemes_of(source.text, source.presets))
-    return _STILL.search(source.text) is not None or (source.has_moved and mentions > 1)
+def stays_in_view(source: Source) -> bool:
+    """Return whether a question is about the current view: the camera has been moved already, or must not be moved."""
+    return source.has_moved or _STILL.search(source.text) is not None
 
 
 def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | None:
@@ -91,11 +86,12 @@ def place_asked_about(source: Source, lexemes: Sequence[Lexeme]) -> PresetRef | 
     a preposition such as "near" only says where something is.
     """
     found = [i for i, x in enumerate(lexemes) if x.has("PRESET")]
-    if len(found) != 1:
+    is_list = any(x.has("COMMA") for x in lexemes)  # "put the awning, the town hall clock and the bus in order"
+    if len(found) != 1 or is_list or stays_in_view(source):
         return None
     name = lexemes[found[0]]
-    if stays_in_view(source, name.preset):
-        return None
+    if sum(x.preset == name.preset for x in lexemes_of(source.text, source.presets)) > 1:
+        return None  # "count the vans at the yard and at the dock. How many more does the dock have?"
     before = [x for x in lexemes[: found[0]] if not x.has("DET") or x.has("PREP")]
     if before and before[-1].has("PREP") and before[-1].word not in _PREPOSITIONS_OF_PLACES:
         return None

@@ -14,7 +14,7 @@ from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in
 
 _WANTS = ("want_to", "like_to", "love_to", "need_to", "wish_to")
 _NOT_SHOWN = ("WHQ", "HOWMANY", "HOWMANYMORE", "IF", "REL", "PRON", "SOMEONE", "FULL", "ANY", "EVERY")
-_ABSTRACT = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
+_FUNCTION_WORDS = frozenset({"whether", "if", "how", "what", "where", "who", "that", "it", "more", "less", "in", "a"})
 
 _AIMED = frozenset({"aimed", "pointed", "turned", "looking", "facing", "pointing"})
 _VERBS_AND_NOUNS = tuple(
@@ -39,18 +39,18 @@ _WANTED_PICTURE = (
     "(FILLER)* ((DET)? FREE{1,2} (wants|needs|WRAPPER)|WRAPPER|SELF (want|need)) (DET|ANY|NUM|SEVERAL)? PICTURE of _+?"
     " PREP? (DET)? (?P<place>PRESET) PRESETNOUN? STOP (FILLER)* (?P<go>CARRY|SWITCH) (over|ADVERB|FILLER)* there (COMMA|AND|THEN)*"
 )
-"""A request for a picture, before the commands that take it at that place."""
+"""A request for a picture of something at a preset, followed by commands to go there and take it."""
 
 _FOLLOWED_AT_PLACE = (
     "(FILLER|COMMA)* (KEEP|TRACK|TRACK-ING) ((?!COMMA|STOP|AND|THEN) _)+? (?P<place>(at|in) (DET)? PRESET PRESETNOUN?) (COMMA)? "
     rf"(for|during|over) {SECONDS} FILLER* (?=COMMA|STOP|AND|THEN|\Z)"
 )
-"""A thing to follow at a preset, then for how long: "follow the van at the gate for 20 seconds"."""
+"""A thing to follow at a preset, then a duration: "follow the van at the gate for 20 seconds"."""
 
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
-    """Return lexemes with "let me see the yard" for "I want to see the yard", "go back left" for "return left", and so on."""
-    lexemes = _followed_at_place(_zoomed_in_steps(lexemes))
+    """Replace some wordings: "I want to see the yard" becomes "let me see the yard", and "return left" becomes "go back left"."""
+    lexemes = _with_place_of_following_first(_without_in_steps_of(lexemes))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []
@@ -60,7 +60,7 @@ def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
             out.append(lexemes[i].reworded("let_me_see", "SHOW", "SHOW-ED"))
             i += 2
         else:
-            out += _other_words(out, lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None)
+            out += _replacement(out, lexemes[i], lexemes[i + 1] if i + 1 < len(lexemes) else None)
             i += 1
     return tuple(out)
 
@@ -76,7 +76,7 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [x.reworded(*changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
-def _followed_at_place(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+def _with_place_of_following_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with the preset of a thing to follow moved to the front: "at the gate, follow the van for 20 seconds"."""
     match = match_start(_FOLLOWED_AT_PLACE, lexemes)
     if match is None:
@@ -86,7 +86,7 @@ def _followed_at_place(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [place[0].reworded("at", "PREP", "GLUE"), *place[1:], place[-1].reworded(",", "COMMA"), *kept]
 
 
-def _zoomed_in_steps(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+def _without_in_steps_of(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes with "zoom out 1.5x until ..." in place of "zoom out in steps of 1.5x until ..."."""
     match = search(
         "(ZOOM|ENLARGE|WIDEN|ZOOM-ING) (IN|OUT)? (?P<dropped>in (STEPNOUN|steps|increments|stages) of) NUM X UNTIL", lexemes
@@ -121,8 +121,8 @@ def _picture_wanted_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [go, go.reworded("to", "PREP", "GLUE"), place, go.reworded(",", "COMMA"), *lexemes[match.size :]]
 
 
-def _other_words(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
-    """Return the lexemes that replace a lexeme; only that lexeme if it stays."""
+def _replacement(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme | None) -> list[Lexeme]:
+    """Return the lexemes that replace a lexeme, or just that lexeme if it is unchanged."""
     last = before[-1] if before else None
     if (changed := reworded_in_context(before, lexeme, after)) is not None:
         return changed
@@ -173,7 +173,7 @@ def _counts_on_tour(before: Sequence[Lexeme]) -> bool:
 
 
 def _wants_to_see(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
-    """Return whether lexemes begin with "I want to see" and a thing or preset, which is not the reason for a move."""
+    """Return whether lexemes begin with "I want to see" and a thing or preset, and do not only give the reason for a move."""
     if len(lexemes) < 3 or not lexemes[0].has("WRAPPER") or not lexemes[0].word.endswith(_WANTS) or lexemes[1].word != "see":
         return False
     return _is_shown(lexemes[2]) and not _is_reason(before)
@@ -181,7 +181,7 @@ def _wants_to_see(before: Sequence[Lexeme], lexemes: Sequence[Lexeme]) -> bool:
 
 def _is_shown(lexeme: Lexeme) -> bool:
     """Return whether a lexeme can begin the name of a thing or preset to be shown."""
-    return lexeme.has("DET", "PRESET", "FREE") and not lexeme.has(*_NOT_SHOWN) and lexeme.word not in _ABSTRACT
+    return lexeme.has("DET", "PRESET", "FREE") and not lexeme.has(*_NOT_SHOWN) and lexeme.word not in _FUNCTION_WORDS
 
 
 def _is_reason(before: Sequence[Lexeme]) -> bool:

@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
 _REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
-    r"(?:left|lost|dropped|dumped) (?:it|them) .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
+    r"(?:i )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
     r"(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
     r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
     r"|(?:the |my )?(?:boss|gaffer|foreman|chief|manager|supervisor|client) wants .+|"
@@ -165,6 +165,7 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
     for pattern in (_NEWS_BEFORE_QUESTION, _NEWS_BEFORE_REQUEST):
         if (
             (match := pattern.fullmatch(text)) is not None
+            and len(match["rest"].split()) > _MIN_WORDS
             and not _PRONOUNS.search(match["rest"])
             and _is_news(match["news"], presets)
         ):

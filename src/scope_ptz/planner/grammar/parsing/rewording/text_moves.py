@@ -11,6 +11,7 @@ _TURNED = {
     "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
 }  # fmt: skip
 _DONE = {"counted": "count", "checked": "check", "taken": "take", "read": "read"}
+_OPPOSITES = {"left": "right", "right": "left", "up": "down", "down": "up"}
 _TENS = {"ten": 10, "five": 5, "twentie": 20, "fifteen": 15, "thirtie": 30}
 _DIRECTIONS = "left|right|up|down"
 _END = r"(?=\s*(?:[.,;!?]|$|and\b|then\b|please\b))"
@@ -21,6 +22,9 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"^zoom (?:to )?max(?:imum)?(?=\W*$|,)", "zoom all the way in"),
+    (r"\bzoom in, (?=(?:two|three|four|five|\d+) times closer)", "zoom in "),
+    (r"^.*\bthe other way\b.*$", lambda match: _other_way(match[0])),
     (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
     (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
     (r"\b(?:ha|['’])?av a (good|quick|proper) look at\b", r"have a \1 look at"),
@@ -90,6 +94,7 @@ MOVES = (
     (r"\b(?:leave|park|put) the camera (?:at|on) whichever(?: one)? has (?:more|the most)\b", "go there"),
     (r"\b(?:turn|spin|swing) (it |her |the camera )?right a?round(?! to)(?=,| please|\W*$)", "turn around"),
     (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
+    (rf"\b((?:{_PICTURES}|photograph)\b.*)\btake (?:a |the )?(?:second|third) one\b", r"\1take a picture"),
     (r"\bcloseup\b", "close-up"),
     (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
     (
@@ -112,7 +117,7 @@ MOVES = (
     (r"\bhave a look (?=which|what|how many|if|whether)", "tell me "),
     (r"\bgo to the one (?:that['’]s got|that has|with|which has) (?:the )?(?:more|most)(?=\W*$|,)", "go there"),
     (r", (half a minute|a minute|(?:\d+|[a-z]+) (?:seconds|minutes)) ?(?:['’]ll|will|should) do\b", r" for \1"),
-    (r"\bal the way\b", "all the way"),
+    (r"\b(?:al the|all) way (?=up|down|left|right|in|out|round)", "all the way "),
     (r"\bnose (up|down)\b", r"tilt \1"),
     (r"(^|[,.;] |then |and )(?:then )?back to (\d+(?:\.\d+)?) ?(?:x|times)\b", r"\1zoom to \2x"),
     (r"\b(\d+) plus (?:another |a further |an extra )?(\d+)(?= degrees|\W*$)", lambda match: str(int(match[1]) + int(match[2]))),
@@ -184,6 +189,15 @@ def _same_direction(text: str) -> str:
     return re.sub(
         r"(?:a further |another )?([\w-]+ degrees) in the same direction\b", rf"\1 to the {named[0]}", text, flags=re.IGNORECASE
     )
+
+
+def _other_way(text: str) -> str:
+    """Return "right 60, then left 15 degrees" for "right 60, then back 15 the other way"."""
+    named = re.findall(rf"\b(?:{_DIRECTIONS})\b", text, re.IGNORECASE)
+    if len(named) != 1:
+        return text
+    opposite = _OPPOSITES[named[0].lower()]
+    return re.sub(r"(?:back )?(\d+)(?: degrees)? the other way\b", rf"{opposite} \1 degrees", text, flags=re.IGNORECASE)
 
 
 def _each_after_the_other(match: re.Match[str]) -> str:

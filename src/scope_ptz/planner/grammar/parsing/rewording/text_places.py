@@ -67,6 +67,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"^(\w+) count (at|in|on) (?=(?:the )?(?:{names})\b)",
             lambda match: f"count the {_plural(match[1].lower())} {match[2]} ",
         ),
+        (rf"\b(how many [\w ]+?) outside (?=(?:the )?(?:{names})\W*$)", r"\1 are at "),
         (rf"\bgo 2 (?=(?:the )?(?:{names})\b)", "go to "),
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),
         (
@@ -85,7 +86,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             r"take a picture at the \1 and at the \2",
         ),
         (
-            rf"^(?:is )?(?:the )?((?:{names})(?: \w+)?) ((?:{_STATES})(?: or (?:{_STATES}))?(?: yet| still| now| again)?)\?",
+            rf"^(?:the )?((?:{names})(?: \w+)?) ((?:{_STATES})(?: or (?:{_STATES}))?(?: yet| still| now| again)?)\?",
             lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
         ),
         (rf"\bsee (?:the )?({names}) (?:car ?park|parking|area|place|side|bit)\b", r"see the \1"),

@@ -87,7 +87,7 @@ QUESTIONS = (
     (r"\b(preset positions|presets|positions|views) are (?:currently|presently) ", r"\1 are "),
     (r"\b(?:on|across) the (?:whole|entire) (?:property|premises|estate|grounds|yard|site|farm|place)\b", "in the whole scene"),
     (r"\b(in the whole scene), look (?:everywhere|all around|all over)\b", r"\1"),
-    (r"^(?:considering|across|over|in) the (?:whole|entire|full) (?:scene|site|area), ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (r"^considering the (?:whole|entire|full) (?:scene|site|area), ([^?]*)\?*$", r"\1 in the whole scene?"),
     (r"\bdo a look (?:a)?round the whole scene and (?=tell|count)", "sweep the scene and "),
     (r"^(?:the )?(\w+) been (\w+ed)\b([^?]*)\?$", r"has the \1 been \2\3?"),
     (
@@ -106,7 +106,12 @@ QUESTIONS = (
         r"^(if (?:the|a|an|any)\b[^,]*? (?:is|are)\b[^,]*?) (?=(?:follow|zoom|take|pan|tilt|count|track|snap|tell)\b)",
         r"\1, ",
     ),
+    (r"\b(presets have you got) in there\b", r"\1"),
     # Counts
+    (r"^head ?count at (the [\w -]+?) ?[-–—,:] ?how many (\w+)\W*$", r"how many \2 are at \1"),
+    (r", how many, then\b", ", then"),
+    (r"\b(how many [\w ]+?) are out\?*$", r"\1 are there?"),
+    (r"^([\w ]+?), how many can (?:you|u) see\W*$", lambda match: _counted(match)),
     (r"^(?!.*\b(?:then|and)\b)([\w' ]+?)\. (find|follow|zoom in on|track) it\W*$", lambda match: _found(match)),
     (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
     (r"^([\w ]+?)\. how many\W*$", lambda match: _counted(match)),

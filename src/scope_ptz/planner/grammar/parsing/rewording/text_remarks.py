@@ -63,6 +63,7 @@ REMARKS = (
     (r"^(find me [\w ]+?) again\b", r"\1"),
     (r" while the (?:light|sun|weather)(?:['’]s| is) [\w ]+\W*$", ""),
     (r",? and (?:then )?i(?:['’]ll| will) (?:tell|let|write|note|report|send|put|fill)\b[^.;]*$", ""),
+    (r",? (?:please,? )?for the [\w ]+ that i (?:have|need) to [\w ]+\W*$", ""),
     (r",? shall we\s*[?.!]*$", ""),
     (r"\bhere['’]?s the thing\s*[:,]\s*", ""),
     (rf"(^|[.!] )(?:(?:first|last|next) (?:job|task|stop|thing|order of business)|job one)(?: {_TIMES_OF_DAY})?[,:]\s*", r"\1"),

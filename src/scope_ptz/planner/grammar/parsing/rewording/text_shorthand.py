@@ -75,6 +75,9 @@ SHORTHAND = (
     (r"\b(the|that) (zoom|picture|view|shot) is too (?:tight|close|wide|far), ", ""),
     (r"^(?:zoom|picture|view|shot) is too (?:tight|close|wide|far), ", ""),
     (r", (?:the )?\w+(?:['’]?s)? due (?:any \w+|soon)\W*$", ""),
+    (r", over(?: and out)?\s*\?\s*$", "?"),
+    (r"\b(it|you|they|that)ll\b", r"\1'll"),
+    (r", any ideas?\W*$", "?"),
     (r"^(?:good (?:morning|afternoon|evening)|hello|hiya|hi)[.!] ", ""),
 )
 """Patterns with the words that replace them."""

@@ -11,6 +11,8 @@ _LEAVE_OUT = (
 )
 
 WITHDRAWALS = (
+    (r",? but (?:please )?(?:do not|don['’]?t) (?:photograph|film|record) (?:anybody|anyone|people|them)\W*$", ""),
+    (r"^count (the [\w ]+?), (?:(?:actually|no|nah|wait)[, ]+)*forget \1, (?=count\b)", ""),
     (
         r"^(follow|track|count) [^,.]+, (?:(?:actually|nah|no|wait)[, ]+)+(?:don['’]?t|do not) \1 (?:it|him|her"
         r"|them), (?:just )?(?=\w)",
@@ -64,15 +66,16 @@ _PARTS = {
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
-    rf"(?P<what>pan|tilt|zoom|count|follow|track|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:do )?the \w+)?\W*",
+    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
+    rf"thoughts?)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
+    rf"(?P<what>pan|tilt|zoom|count|follow|track|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
+    rf"|go there|do that|count|look))?\W*",
     re.IGNORECASE,
 )
 
 
 def without_part_left_out(text: str) -> str:
-    """Return "go home" for "go home and take a photo, actually no, leave the photo"; a text that takes nothing back "
-    "is unchanged."""
+    """Return "go home" for "go home and take a photo, actually no, leave the photo"; other texts are unchanged."""
     if (match := _LEFT_OUT.fullmatch(text.strip())) is None:
         return text
     what = match["what"].lower()
