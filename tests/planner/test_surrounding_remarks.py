@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from scope_ptz.planner.grammar.parsing.rewording.rewordings import required_text
 from scope_ptz.planner.plan import plan
 from tests.planner.test_wordings_of_speech import PRESETS, shown
 
@@ -104,3 +105,19 @@ def test_remarks_that_may_change_the_command_are_asked_about(text: str) -> None:
 def test_a_command_or_question_in_front_is_no_remark(text: str) -> None:
     made = plan(text, PRESETS)
     assert not made.understood or len(made.calls) > 1, shown(made.calls)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "required"),
+    [
+        (r"\bal the way\b", "al the way"),
+        (r"^(?:hang|hold) on(?: a sec)?,? ok", " on"),
+        (r"colou?r of", "colo"),
+        (r"a{2}bc", "bc"),
+        (r"one|two", ""),
+        (r"[abc]+ (x|y)", " "),
+        (r"\(up\)", "up"),
+    ],
+)
+def test_text_that_every_match_of_a_pattern_contains(pattern: str, required: str) -> None:
+    assert required_text(pattern) == required

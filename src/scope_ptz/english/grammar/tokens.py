@@ -76,6 +76,15 @@ def tokenise(text: str) -> list[Token]:
     return tokens
 
 
+def token_texts(text: str) -> tuple[str, ...]:
+    """Return the texts of the tokens of a text. It is faster than ``tokenise`` for lower-case words that are not contractions."""
+    words = text.split(" ")
+    is_plain = text.isascii() and text.islower() and all(word.isalpha() for word in words)
+    if is_plain and not any(word in _CONTRACTIONS or word in _FUSED_WORDS or word == "id" for word in words):
+        return tuple(words)
+    return tuple(token.text for token in tokenise(text))
+
+
 def _add(tokens: list[Token], word: str, start: int, end: int) -> None:
     """Append the tokens of a word. A contraction gives several tokens."""
     before = tokens[-1] if tokens and tokens[-1].end == start else None

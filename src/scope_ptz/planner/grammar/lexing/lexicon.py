@@ -9,7 +9,7 @@ from typing import Any
 from scope_ptz.english.colours import COLOURS
 from scope_ptz.english.grammar.closed_class import instruction_classes, misspellings
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, ORDINAL_WORDS
-from scope_ptz.english.grammar.tokens import tokenise
+from scope_ptz.english.grammar.tokens import token_texts
 from scope_ptz.planner.grammar.lexing.morphology import noun_forms, verb_forms
 
 _OTHER_LISTS = frozenset({"fixed", "short", "real", "elsewhere"})
@@ -24,7 +24,7 @@ def phrases() -> Mapping[tuple[str, ...], frozenset[str]]:
             continue
         for member in members:
             for phrase, label in _forms(member, kind, name):
-                table.setdefault(tuple(token.text for token in tokenise(phrase)), set()).add(label)
+                table.setdefault(token_texts(phrase), set()).add(label)
     return {words: frozenset(classes) for words, classes in table.items()}
 
 

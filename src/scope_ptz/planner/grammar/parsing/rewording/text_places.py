@@ -25,8 +25,10 @@ def _names(presets: tuple[str, ...]) -> str:
 
 def with_places_named(text: str, presets: tuple[str, ...]) -> str:
     """Return "count the vans at the yard" for "vans count, yard", "is the yard clear?" for "yard clear?", and so on."""
-    if not (names := _names(presets)):
+    words = set(re.findall(r"[^\W_]+", text.lower()))
+    if not any(words & set(re.findall(r"[^\W_]+", preset.lower())) for preset in presets):
         return text
+    names = _names(presets)
     text = _without_apostrophes(text, presets)
     for pattern, plain in (
         (rf"^right,? (?=(?:the )?(?:{names}) first\b)", ""),
