@@ -61,6 +61,12 @@ def is_description(text: str) -> bool:
     return is_short_enough(tokens) and parser().matches(tokens, "description")
 
 
+def _may_be_noun(tokens: Sequence[Token], i: int) -> bool:
+    """Return whether a token may be part of a noun, although the grammar reads it otherwise: "face", or "side" before "door"."""
+    is_before_noun = i + 1 < len(tokens) and tokens[i + 1].type == "W"
+    return tokens[i] in _NOUNS_OR_VERBS or (tokens[i].type == "PART" and is_before_noun)
+
+
 @lru_cache(maxsize=4096)
 def looks_like_description(text: str) -> bool:
     """Return whether text looks like a noun phrase, even if ``parse_description`` only splits it into words.
@@ -74,10 +80,10 @@ def looks_like_description(text: str) -> bool:
     if 0 < len(tokens) <= MAX_TOKENS:  # the number of readings does not matter here
         if parser().matches(tokens, "description"):
             return True
-        if any(token in _NOUNS_OR_VERBS for token in tokens):
-            nouns = [Token("W", token) if token in _NOUNS_OR_VERBS else token for token in tokens]
-            if parser().matches(nouns, "description"):
-                return True
+        words = [Token("W", token) if _may_be_noun(tokens, i) else token for i, token in enumerate(tokens)]
+        types = [(token.type, other.type) for token, other in zip(tokens, words, strict=True)]
+        if any(a != b for a, b in types) and parser().matches(words, "description"):
+            return True
     if (active := _RELATIVE_CLAUSE.fullmatch(text)) is not None and is_description(active["noun"]):
         return True
     for pattern in (_PARTICIPLE_PHRASE, _PREPOSITION_PHRASE):

@@ -188,9 +188,12 @@ def _is_reason(before: Sequence[Lexeme]) -> bool:
     """Return whether "I want to see" after these lexemes is the reason for a move: "tilt up a lot, I want to see the roof"."""
     sentence: list[Lexeme] = []
     for x in reversed(before):
-        if x.has("STOP", "QUESTION"):
+        if x.has("STOP", "QUESTION") and sentence:
             break
-        sentence.append(x)
+        if not x.has("STOP", "FILLER"):
+            sentence.append(x)
+    if not sentence:
+        return False
     moves = any(x.has(*DIRECTIONS, "PAN", "TILT", "ZOOM", "ENLARGE", "WIDEN", "IN", "OUT") for x in sentence)
     return moves and not sentence[0].has("AND", "THEN")
 

@@ -13,7 +13,8 @@ from scope_ptz.planner.grammar.parsing.parts.statements import is_statement
 
 _REPORTING = "reckons?|says?|said|thinks?|rang|called|phoned|radioed|told|wants|wanted|keeps|lost|left|got|saw|heard|complained"
 _STATEMENT = re.compile(
-    r"(?:i )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
+    r"(?:(?:i|someone|somebody|they|he|she) )?(?:left|lost|dropped|dumped) (?:it|them|my|the) .+|i(?:'ve| have) "
+    r"(?:got )?to \w+ .+|(?:heard|saw|thought i (?:heard|saw)) .+|there(?:'s| is| are) .+|"
     r"(?:the |my |our |an? )?(?:\w+ ){1,5}wants? to know"
     r"|i (?:just )?want(?:ed)? to (?:see|check|make sure) (?:if|whether|that|how|what) .+"
     r"|(?:the |my )?(?:boss|gaffer|foreman|chief|manager|supervisor|client) wants .+|"
@@ -46,7 +47,8 @@ _RESTRICTION = (
     r"|not (?:the|to|that|this|there|here|in|on)|isn't (?:the|that|this)"
 )
 _REQUEST = (
-    r"must|should(?! (?:be (?:in|here|back|due|along|ready)|have))|shall|ought|you|your|please|(?<!see )(?<!remember )"
+    r"must(?! be \w+ed\b)|should(?! (?:be (?:in|here|back|due|along|ready)|have))|shall|ought|you|your|please|(?<!see "
+    r")(?<!remember )"
     r"(?<!wonder )if|unless|until"
     r"|(?:know|tell|check|find out|ask) (?:how|what|whether|which|where|who|if|when)"
 )
@@ -170,8 +172,9 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
             and _is_news(match["news"], presets)
         ):
             return match["rest"]
-    news, link, rest = text.partition(", so ")
-    return rest if link and len(rest.split()) >= _MIN_WORDS and _is_remark(news.strip(), presets) else text
+    news, *more = re.split(r",? so (?=(?:can|could|would|will) you |please )|, so ", text, maxsplit=1, flags=re.IGNORECASE)
+    rest = more[0] if more else ""
+    return rest if len(rest.split()) >= _MIN_WORDS and _is_remark(news.strip(), presets) else text
 
 
 def _is_news(text: str, presets: tuple[str, ...]) -> bool:

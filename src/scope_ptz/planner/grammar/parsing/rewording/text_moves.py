@@ -22,6 +22,17 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"\b(as far as (?:it|she|he)(?:['’]ll| will)? go(?:es)?), all the way\b", r"\1"),
+    (r",? so (?:that )?the (?:whole|entire) [\w ]+? (?:is|fits) in (?:the )?(?:picture|view|frame|shot)\W*$", ""),
+    (
+        r"\b(?:i (?:should|would) be (?:very )?grateful if )?the camera (?:could|can|should|may) be returned to "
+        r"(?:its |the )?home(?: position)?",
+        "go home",
+    ),
+    (r"^((?:look at|zoom in on)\b.*), get it nice and (?:close|tight)\W*$", r"\1"),
+    (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
+    (r", say (?=half a minute|a minute|\w+ (?:seconds|secs?|minutes)\b)", " for "),
+    (r"\bhave a (?:little |quick |wee )?look (?=which|what|how many|if|whether)", "tell me "),
     (r"^zoom (?:to )?max(?:imum)?(?=\W*$|,)", "zoom all the way in"),
     (r"\bzoom in, (?=(?:two|three|four|five|\d+) times closer)", "zoom in "),
     (r"^.*\bthe other way\b.*$", lambda match: _other_way(match[0])),
@@ -86,7 +97,7 @@ MOVES = (
     (r"^(?:(?:have|take) a )?gander at ", "have a look at "),
     (
         r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
-        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us))?\s*[.!]*$",
+        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
         r"zoom in on \1",
     ),
     (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),

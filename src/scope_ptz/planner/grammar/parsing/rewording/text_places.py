@@ -70,6 +70,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             lambda match: f"count the {_plural(match[1].lower())} {match[2]} ",
         ),
         (rf"\b(how many [\w ]+?) outside (?=(?:the )?(?:{names})\W*$)", r"\1 are at "),
+        (rf"^(?:the )?({names}), now\W*$", r"go to the \1"),
         (rf"\bgo 2 (?=(?:the )?(?:{names})\b)", "go to "),
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),
         (

@@ -107,7 +107,12 @@ QUESTIONS = (
         r"\1, ",
     ),
     (r"\b(presets have you got) in there\b", r"\1"),
+    (r", (?:the )?whole (?:site|place|yard|area), look all around\b", " all around"),
+    (r"\b(?:across|over) the (?:full|whole|entire) surroundings\b", "in the whole scene"),
+    (r", not (?:just|only) what is in (?:the )?(?:frame|view|shot|picture)\W*$", ""),
     # Counts
+    (r"\btally up\b", "count"),
+    (r"\b(how m[ae]ny [\w ]+? have (?:we|i|you) got) left\b", r"\1"),
     (r"^head ?count at (the [\w -]+?) ?[-–—,:] ?how many (\w+)\W*$", r"how many \2 are at \1"),
     (r", how many, then\b", ", then"),
     (r"\b(how many [\w ]+?) are out\?*$", r"\1 are there?"),

@@ -11,6 +11,7 @@ _LEAVE_OUT = (
 )
 
 WITHDRAWALS = (
+    (r",? (?:and )?(?:don['’]?t|do not) move (?:after|afterwards|after that)\W*$", ""),
     (r",? but (?:please )?(?:do not|don['’]?t) (?:photograph|film|record) (?:anybody|anyone|people|them)\W*$", ""),
     (r"^count (the [\w ]+?), (?:(?:actually|no|nah|wait)[, ]+)*forget \1, (?=count\b)", ""),
     (
@@ -27,7 +28,11 @@ WITHDRAWALS = (
     ),
     (r"[;,.] (?:do not|don['’]?t) (?:change|touch|alter) (?:the )?(?:pan|tilt|zoom) (?:or|and) (?:the )?(?:pan|tilt|zoom)\W*$", ""),
     (r",? (?:and |but )?(?:don['’]?t|do not) go zoomin['’g]* in on (?:anybody|anyone|anything|them|it)\W*$", " without zooming"),
-    (r"^[^,.;]+[,.]+ *(?:nvm|never ?mind|(?:actually )?no,? don['’]?t bother)\b[, ]*(?:don['’]?t|do not)?[, ]*(?=just\b)", ""),
+    (
+        r"^[^,.;]+[,.]+ *(?:(?:actually|oh) )*(?:nvm|never ?mind|(?:actually )?no,? don['’]?t bother)\b[, ]*"
+        r"(?:don['’]?t|do not)?[, ]*(?=just\b)",
+        "",
+    ),
     (
         rf"^(?:take|get|grab|make|snap) (?:a |the |one )?{_PICTURE}\b[,.]* +{_NO}{_LEAVE_OUT} (?:the |that "
         rf")?{_PICTURE}[,.]+ *(?:just|only) "
