@@ -132,7 +132,7 @@ MOVES = (
     (r"\bnose (up|down)\b", r"tilt \1"),
     (r"(^|[,.;] |then |and )(?:then )?back to (\d+(?:\.\d+)?) ?(?:x|times)\b", r"\1zoom to \2x"),
     (r"\b(\d+) plus (?:another |a further |an extra )?(\d+)(?= degrees|\W*$)", lambda match: str(int(match[1]) + int(match[2]))),
-    (rf"^((?:{'left|right|up|down'}) \d+)(?:,? \1)(?:,? \1)*\W*$", lambda match: _each_after_the_other(match)),
+    (rf"^((?:{_DIRECTIONS}) \d+)(?:,? \1)(?:,? \1)*\W*$", lambda match: _each_after_the_other(match)),
     (r"(?<=\d)x for (?:a|one|the) (?:photo|picture|shot|snap|still)\W*$", "x and take a picture"),
     (r"\btilt to (\d+)(?: degrees)? below (?:the )?(?:horizontal|horizon)\b", r"tilt to minus \1 degrees"),
     (r"\b(?:point|aim|set)(?: the camera)? (?:at|to) (-?\d+)(?: degrees)? (pan|tilt)\b", r"set \2 to \1 degrees"),
