@@ -31,6 +31,7 @@ DROPPED = [
 """Remarks that change nothing."""
 
 TAKEN_BACK = [
+    ("tilt up 10 and pan left 20 and take a photo, cancel the photo", "adjust_ptz(tilt_deg=10, pan_deg=-20)"),
     ("go home and take a photo, actually no, leave the photo", "go_home()"),
     ("Zoom in 2x, tilt up 5. Cancel the tilt.", "adjust_ptz(zoom_factor=2)"),
     ("Pan left 20 and then tilt down 5, no, scratch the tilt.", "adjust_ptz(pan_deg=-20)"),
@@ -39,6 +40,15 @@ TAKEN_BACK = [
     ("Follow that car, actually no leave it, just count the vans", "count_objects(description=vans, view=current)"),
 ]
 """Parts that are taken back."""
+
+PLAIN = [
+    ("left 5, left 5, left 5", "adjust_ptz(pan_deg=-5); adjust_ptz(pan_deg=-5); adjust_ptz(pan_deg=-5)"),
+    ("zoom in 4x for a photo", "adjust_ptz(zoom_factor=4); take_image()"),
+    ("pan left 20 plus 15 degrees", "adjust_ptz(pan_deg=-35)"),
+    ("pan right 7 1/2 degrees", "adjust_ptz(pan_deg=7.5)"),
+    ("person count at the gate", "go_to_preset(name=gate); count_objects(description=people, view=current)"),
+]
+"""Wordings that are replaced with plainer ones."""
 
 NAMED = [
     (
@@ -82,7 +92,7 @@ KEPT = [
 """Remarks that may change what is meant, so that the planner asks."""
 
 
-@pytest.mark.parametrize(("text", "calls"), [*DROPPED, *TAKEN_BACK, *NAMED])
+@pytest.mark.parametrize(("text", "calls"), [*DROPPED, *TAKEN_BACK, *PLAIN, *NAMED])
 def test_what_is_left_is_carried_out(text: str, calls: str) -> None:
     assert shown(plan(text, PRESETS).calls) == calls
 

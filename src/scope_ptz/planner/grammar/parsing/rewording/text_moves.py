@@ -79,7 +79,6 @@ MOVES = (
     ),
     (r"\bturn clear a?round\b", "turn around"),
     (r"\b(take|get|grab) another wan\b", r"\1 another picture"),
-    (r"^(find (?:my|the|our) [\w ]+?) i left (?:it|them) (?:out )?(?:somewhere|by|near|at)\b.*$", r"\1"),
     (r"\b(\d+) ([1-7])/([2-8])\b", lambda match: f"{int(match[1]) + int(match[2]) / int(match[3]):g}"),
     (r"\b(one|a|\d) minutes? and (\w+) seconds\b", r"\1 minute \2 seconds"),
     (r"\bone quarter turn\b", "a quarter turn"),
@@ -89,7 +88,6 @@ MOVES = (
     (r"\bback it out\b", "zoom out"),
     (r"^in to (?=\d)", "zoom in to "),
     (r"\b(?:mosey|amble|wander|trundle|scoot|jog) (?:on )?(?:over |down |up |along )?to ", "go to "),
-    (r"^away to (?=the )", "go to "),
     (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
     (r"\bget in (?:nice and )?(?:close|tight) (?:on|to) ", "zoom in on "),
     (r"^tight (?:in )?on ", "zoom in on "),
@@ -125,7 +123,6 @@ MOVES = (
     ),
     (r"(\ball the way), (?:as )?far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
     (r"^.*\bin the same direction\b.*$", lambda match: _same_direction(match[0])),
-    (r"\bhave a look (?=which|what|how many|if|whether)", "tell me "),
     (r"\bgo to the one (?:that['’]s got|that has|with|which has) (?:the )?(?:more|most)(?=\W*$|,)", "go there"),
     (r", (half a minute|a minute|(?:\d+|[a-z]+) (?:seconds|minutes)) ?(?:['’]ll|will|should) do\b", r" for \1"),
     (r"\b(?:al the|all) way (?=up|down|left|right|in|out|round)", "all the way "),
@@ -187,7 +184,6 @@ MOVES = (
     (r"\b(?:anywhere|everywhere) all around\b", "all around"),
     (rf"\beverywhere (?:that )?you can see(?: from (?:the (?:{_MAST})|up there|there|where you are))?{_END}", "everywhere"),
     (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
-    (r"^keep an eye on (.+?), (?:and )?follow (?:it|him|her|them) for (?=.+$)", r"follow \1 for "),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

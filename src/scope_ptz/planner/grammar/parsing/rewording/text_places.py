@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from scope_ptz.english import is_plural
+from scope_ptz.english import is_plural, plural
 from scope_ptz.planner.grammar.lexing.preset_names import short_names
 
 _STATES = (
@@ -67,7 +67,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
         (rf"^(?:the )?({names}), ([\w ]+?) ((?:{_STATES}) or (?:{_STATES}))\?$", r"is the \2 at the \1 \3?"),
         (
             rf"^(\w+) count (at|in|on) (?=(?:the )?(?:{names})\b)",
-            lambda match: f"count the {_plural(match[1].lower())} {match[2]} ",
+            lambda match: f"count the {plural(match[1].lower())} {match[2]} ",
         ),
         (rf"\b(how many [\w ]+?) outside (?=(?:the )?(?:{names})\W*$)", r"\1 are at "),
         (rf"^(?:the )?({names}), now\W*$", r"go to the \1"),
@@ -75,7 +75,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
         (rf"^({_COUNTS} [\w ]+?)[,:] (?:the )?({names})\W*$", r"\1 at the \2"),
         (
             rf"^(\w+) count[,:]? (?:at )?(?:the )?({names}) (?:vs\.?|versus|v) (?:the )?({names})\W*$",
-            lambda match: f"count the {_plural(match[1])} at the {match[2]} and at the {match[3]}",
+            lambda match: f"count the {plural(match[1])} at the {match[2]} and at the {match[3]}",
         ),
         (
             rf"^where(?:['’]?s| is| are) (?:there )?more ([\w ]+?),? (?:(?:down |over |up )?(?:at|in|on|near|by) )?"
@@ -106,7 +106,3 @@ def _without_apostrophes(text: str, presets: tuple[str, ...]) -> str:
             stem = re.escape(first.lower().removesuffix("s"))
             text = re.sub(rf"\b{stem}(?:s['’]|['’]s)(?= {re.escape(' '.join(rest))}\b)", first, text, flags=re.IGNORECASE)
     return text
-
-
-def _plural(noun: str) -> str:
-    return noun if is_plural(noun) else f"{noun}s"

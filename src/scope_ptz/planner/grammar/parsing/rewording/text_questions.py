@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from scope_ptz.english import is_plural
+from scope_ptz.english import plural
 
 _TAGS = "right|correct|yeah|is there|are they|is that right"
 _INVERTED = r"(?:is|are|does|do|has|have) (?:the|there|any|anyone|anybody|someone|somebody|all|an?)\b"
@@ -127,7 +127,7 @@ QUESTIONS = (
         r"are there more \1 \2 \3 than \2 \4?",
     ),
     (r"^out of (.+?),? and (.+?), (?:where are|where is|which has) the most ([\w ]+)\?*$", r"which has the most \3, \1 or \2?"),
-    (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {_plural(match[1])} at each preset"),
+    (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {plural(match[1])} at each preset"),
     (r"^([\w ]+?) (in|at|on) (?:the )?([\w -]+), how many\W*$", r"how many \1 are \2 the \3?"),
     (
         r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
@@ -224,10 +224,6 @@ def _counted(match: re.Match[str]) -> str:
 def _found(match: re.Match[str]) -> str:
     """Return "find the dummy" for "dummy. Find it"; a text with other words is returned unchanged."""
     return match[0] if _NO_TOPIC.search(match[1]) else f"{match[2]} the {match[1]}"
-
-
-def _plural(noun: str) -> str:
-    return {"person": "people"}.get(noun, noun if is_plural(noun) or noun == "people" else f"{noun}s")
 
 
 def _about_topic(match: re.Match[str]) -> str:

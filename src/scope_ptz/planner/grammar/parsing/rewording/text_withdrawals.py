@@ -85,6 +85,9 @@ def without_part_left_out(text: str) -> str:
         return text
     what = match["what"].lower()
     pattern = re.compile(_PARTS.get(what, _PARTS["picture"]), re.IGNORECASE)
-    parts = re.split(r"(?:,? and then |,? then |,? and? |, |[.;] )", match["said"])
-    kept = [part for part in parts if not pattern.match(part.strip())]
-    return ", then ".join(kept) if kept and len(kept) == len(parts) - 1 else text
+    first, *rest = re.split(r"(,? and then |,? then |,? and? |, |[.;] )", match["said"])
+    parts = [("", first), *zip(rest[::2], rest[1::2], strict=True)]  # each with the link before it
+    kept = [(link, part) for link, part in parts if not pattern.match(part.strip())]
+    if not kept or len(kept) != len(parts) - 1:
+        return text
+    return kept[0][1] + "".join(link + part for link, part in kept[1:])
