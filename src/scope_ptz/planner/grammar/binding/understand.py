@@ -11,9 +11,10 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
-from scope_ptz.planner.grammar.consistency.check import not_understood, objection
+from scope_ptz.planner.grammar.consistency.check import not_understood, objection, objection_to_loss
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
+from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
@@ -49,8 +50,18 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
         return Understanding(clarification=question)
+    said = continued_text(instruction, conversation, preset_names or ())
+    understanding = _read(said, preset_names, conversation)
+    if understanding.steps:
+        return understanding
+    versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(said, preset_names or ()))
+    return next((version for version in versions if version.steps), understanding)
+
+
+def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]) -> Understanding:
+    """Return the steps of a text, or a clarifying question."""
     resolver = Resolver(preset_names, tuple(conversation))
-    parsed = parse(continued_text(instruction, conversation, preset_names or ()), preset_names or ())
+    parsed = parse(said, preset_names or ())
     try:
         if parsed.steps is None:
             raise _question_about_unparsed(parsed)
@@ -63,7 +74,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
-    if question := objection(parsed.text, bound, preset_names or ()):
+    question = objection(parsed.text, bound, preset_names or ()) or (objection_to_loss(parsed.said, bound, preset_names or ()))
+    if question:
         return Understanding(clarification=question)
     return Understanding(bound)
 

@@ -18,10 +18,11 @@ from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, 
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_command
-from scope_ptz.planner.grammar.consistency.words import Word, words_of
+from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
+_WHOLE_TURN = frozenset({"360"})  # "over the full 360 degrees" is also the whole scene
 _PURPOSE = re.compile(
     r"\b(?:so|so that|because|as|since) (?:i|we) (?:can|could|cannot|can t|want to|need to) (?:see|view|watch)(?: \w+)?$"
 )
@@ -62,6 +63,34 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     )
     if unexplained:
         return not_understood(_phrases(instruction, words, unexplained))
+    if unnamed := unnamed_directions(words, evidence):
+        return f"I am not sure that you mean {listing(unnamed, 'or')}. Which way shall I turn, and how far?"
+    return None
+
+
+def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[str] = ()) -> str | None:
+    """Return the question to ask if rewording lost a direction, a number or a preset, or added a direction; None if it did not.
+
+    Args:
+        said: The user's words before they were reworded; empty if they were not.
+        steps: The steps with all names resolved.
+        presets: The camera's presets.
+    """
+    if not said:
+        return None
+    evidence = evidence_of(steps)
+    words = words_of(said)
+    _mark_described(words, evidence)
+    _mark_presets(words, evidence)
+    lost = (
+        *unused_numbers(words, evidence),
+        *ignored_directions(words, evidence),
+        *contradicted_zoom(words, evidence),
+        *unvisited_presets(words, evidence, presets),
+    )
+    kept = sorted({word.start: word for word in lost if word.text not in _WHOLE_TURN}.values(), key=lambda word: word.start)
+    if kept and not any(word.text in REPAIRING for word in words):
+        return not_understood(_phrases(said, words, kept))
     if unnamed := unnamed_directions(words, evidence):
         return f"I am not sure that you mean {listing(unnamed, 'or')}. Which way shall I turn, and how far?"
     return None

@@ -34,7 +34,10 @@ _AFTER_RIGHT = frozenset({
 _PARTS = frozenset({"side", "lane", "edge", "end", "corner", "bank", "wing", "wall", "half"})
 """Nouns that make "the left" and "the right" a place."""
 
-_BEFORE_LEFT = frozenset({"are", "is", "were", "was", "people", "cars", "none", "nothing", "anything", "any", "have", "has"})
+_BEFORE_LEFT = frozenset({
+    "are", "is", "were", "was", "people", "cars", "none", "nothing", "anything", "any", "have", "has", "got", "s", "ve", "someone",
+    "somebody", "he", "she", "they", "who", "i",
+})  # fmt: skip
 _MOTION = frozenset({
     "pan", "tilt", "look", "move", "go", "point", "aim", "angle", "pitch", "nudge", "tip", "swing", "camera", "it", "lens", "view",
     "turn", "bit", "little", "touch", "tad", "further", "more", "degrees", "degree", "deg", "panning", "tilting", "looking",
@@ -86,7 +89,7 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
     if words[i].text == "left":
         return before not in _BEFORE_LEFT
     if direction in {"up", "down"}:
-        return before in _MOTION and after not in {"to", "close"}
+        return before in _MOTION and after not in {"to", "close", "the"}  # "go up the north fence"
     return True
 
 

@@ -46,6 +46,7 @@ def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
         together = (
             first.value * second.value,  # "three quarters of 20 degrees"
             360 * first.value * second.value,  # "three quarters of the way round"
+            first.value + second.value if second.is_fraction else first.value * second.value,  # "7 1/2 degrees"
             60 * first.value + second.value,  # "1 minute 30 seconds"
         )
         is_time = _is_among(together[-1], evidence.numbers)
@@ -75,6 +76,13 @@ def _is_ignored(words: Sequence[Word], start: int, used: int) -> bool:
     after = words[start + used].text if start + used < len(words) else ""
     if before == "in" and after in _LONG_TIMES:
         return True  # "we start loading in five minutes" is only a remark: a plan cannot wait
+    if (
+        used_words[0].text in {"2", "4"}
+        and before in {"go", "back", "zoom", "look"}
+        and words[start + used : start + used + 1]
+        and (words[start + used].is_described)
+    ):
+        return True  # "go 2 log deck"
     if before == "your" and after == "o":
         return True  # "your nine o'clock" is a direction
     if used_words[0].text == "half" and before in _BEFORE_HALF and after in _AFTER_HALF:

@@ -21,11 +21,14 @@ _JOINED = r"(?:\b(?:and|then|but|to)\b|[,;.])\W*(?:then |please |also )*"
 """The words that can begin another clause."""
 
 _PICTURE = r"(?:photo|picture|snapshot|screenshot|image|shot)s?\b"
+_COMPOUND = r"(?!.*\d)\w+(?:$| (?:at|by|in|near|on|with)\b)"
+"""What follows a verb that is part of a noun: "tilt truck by the wall"."""
+
 _SWALLOWED = tuple(
     re.compile(pattern, re.IGNORECASE)
     for pattern in (
         rf"(?:^|\bor |{_JOINED}){_ANY_VERB} (?:the camera |it |back )*{_DIRECTION}\b.*",
-        rf"(?:^|{_JOINED}){_VERB}\b.*",
+        rf"(?:^{_VERB}\b(?! {_COMPOUND})|{_JOINED}{_VERB}\b).*",
         rf"{_JOINED}(?:take|snap|grab|save|capture) (?:a|an|the|one|two|another|\d+)? ?(?:\w+ )?{_PICTURE}.*",
         rf"{_JOINED}(?:go|return|move|come|switch) (?:back )?(?:to )?(?:the )?(?:home|preset)\b.*",
         r"(?:\b(?:and|then|but)\b|[,;.])\W*(?:then |please |also )*(?:count|photograph|track|follow) .*",

@@ -29,6 +29,13 @@ _NEGATING = frozenset(
 )
 """Words that begin a clause about what not to do, or about a reason."""
 
+REPAIRING = frozenset({
+    "no", "nah", "naw", "nope", "sorry", "wait", "oops", "er", "erm", "actually", "rather", "mean", "meant", "make", "correction",
+    "scratch", "scrap", "strike", "belay", "cancel", "forget", "disregard", "negative", "instead", "skip", "drop", "leave",
+    "thoughts", "excuse", "pardon", "apologise", "apologize", "hang", "hold", "except", "exc", "mistake", "wrong", "ignore", "other",
+})  # fmt: skip
+"""Words after which a speaker repairs, or takes back, what was said before them."""
+
 _BREAKS = frozenset(",;:.!?()\n&→–—") | {"->", "and", "then", "but", "or", "so", "just"}
 
 _ASKING = frozenset({"could", "can", "would", "will"})

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS, read_number
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.tokens import Token, tokenise
 from scope_ptz.planner.grammar.lexing.lexicon import longest_phrase, phrases
 from scope_ptz.planner.grammar.lexing.preset_names import preset_at, preset_key, short_names
@@ -49,6 +50,11 @@ _AFTER_ENDING = frozenset(
         "instead",
     }
 )
+_PARTS_OF_COMPOUNDS = (["the", "centre"], ["the", "center"], ["the", "front"])
+_AFTER_THING = frozenset(
+    {"on", "by", "in", "at", "near", "under", "behind", "beside", "hanging", "lying", "that", "next", "outside"}
+)
+_PLACE_NOUNS = frozenset({"preset", "presets", "position", "view", "side", "picture", "frame", "image", "shot", "camera"})
 _COMMANDS = frozenset({"PAN", "TILT", "ZOOM", "SNAP", "TURN", "TRACK"})
 
 
@@ -182,6 +188,13 @@ def _can_occur(words: Sequence[str], i: int, length: int, classes: frozenset[str
         return False  # "a quarter turn right then zoom in"
     if words[i + 1 : i + length] == ["the", "far"] and (i + length >= len(words) or words[i + length] in {"end", "side", "corner"}):
         return False  # "the car at the far end"
+    after = words[i + length] if i + length < len(words) else "."
+    if words[i : i + length] in _PARTS_OF_COMPOUNDS and _is_other_noun(after):
+        return False  # "the centre circle", "the front door"
+    if words[i : i + length] == ["the", "thing"] and after in _AFTER_THING:
+        return False  # "the thing on the roof"
+    if words[i : i + length] == ["the", "minute"] and after in {"hand", "hands"}:
+        return False
     if words[i + 1 : i + length] == ["back"] and i + length < len(words) and words[i + length] in {"left", "right", "up", "down"}:
         return False  # "swing back right 20"
     if words[i + 1 : i + length] == ["it", "up"] and i + length < len(words) and is_number_word(words[i + length]):
@@ -192,8 +205,13 @@ def _can_occur(words: Sequence[str], i: int, length: int, classes: frozenset[str
         return False  # "a pan right of 8 degrees"
     if classes.isdisjoint(_ENDING) or words[i : i + length] in (["if", "so"], ["if", "not"]):
         return True
-    after = words[i + length] if i + length < len(words) else "."
     return after in _AFTER_ENDING or not phrases().get((after,), frozenset()).isdisjoint(_COMMANDS)
+
+
+def _is_other_noun(word: str) -> bool:
+    """Return whether a word is a noun that does not mean a part of the picture or a preset."""
+    is_known = word != "circle" and (word,) in phrases()
+    return word not in _PLACE_NOUNS and not is_known and "NOUN" in parts_of_speech(word)
 
 
 def _with_short_names(lexemes: list[Lexeme], presets: tuple[str, ...]) -> list[Lexeme]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from scope_ptz.planner.grammar.instruction_tree import Ask, Count, GoToPreset, Read, Step, Sweep
@@ -13,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.reader import Reader
 from scope_ptz.planner.grammar.parsing.rewording.contractions import with_contractions
 from scope_ptz.planner.grammar.parsing.rewording.contrasts import without_denials
 from scope_ptz.planner.grammar.parsing.rewording.phrases import reworded
-from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer
+from scope_ptz.planner.grammar.parsing.rewording.plain_text import plainer, without_asides
 from scope_ptz.planner.grammar.parsing.rewording.relayed import relayed
 from scope_ptz.planner.grammar.parsing.rewording.repairs import repaired, unresolved_editing
 from scope_ptz.planner.grammar.parsing.segments.order import in_order
@@ -36,11 +36,13 @@ class Parsed:
         text: The instruction, with spaces instead of the words that the user retracted.
         steps: Its steps; None if some words were not understood.
         unread: Quotations of the words that were not understood.
+        said: The instruction in the user's words, but without asides; empty if it was parsed as it was written.
     """
 
     text: str
     steps: tuple[Step, ...] | None
     unread: tuple[str, ...] = ()
+    said: str = ""
 
 
 @lru_cache(maxsize=512)
@@ -48,10 +50,11 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Parse an instruction. This never raises an exception."""
     if len(text) > MAX_CHARS:
         return Parsed(text, None)
-    plain = plainer(text, presets)
+    said = without_asides(text, presets)
+    plain = plainer(said, presets)
     for wording in (relayed(plain, presets), plain if plain != text else None):
         if wording is not None and (parsed := _parse_as_written(wording, presets)).steps is not None:
-            return parsed
+            return replace(parsed, said=said)
     return _parse_as_written(text, presets)
 
 

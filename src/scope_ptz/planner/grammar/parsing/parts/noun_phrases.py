@@ -9,6 +9,7 @@ from itertools import pairwise
 from scope_ptz.english import COLOURS
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions.recognition import looks_like_description
 from scope_ptz.planner.grammar.instruction_tree import Thing
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
@@ -88,8 +89,15 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     definite = any(x.word in _DEFINITE for x in lexemes[:first])
     text = without_function_words(text_of(source, lexemes[first:]))
     core = without_function_words(text_of(source, trimmed(lexemes[first:], *_AROUND_NOUN_PHRASE)))
-    is_read = looks_like_description(text) or looks_like_description(core)
+    is_read = looks_like_description(text) or looks_like_description(core) or _is_compound_noun(lexemes[first:])
     return Thing(text, definite=definite) if is_read else None
+
+
+def _is_compound_noun(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether lexemes are nouns and adjectives before a noun, all without another meaning: "penalty spot"."""
+    known = [parts_of_speech(x.word) for x in lexemes]
+    is_modified = all(x.has("FREE") and kinds for x, kinds in zip(lexemes, known, strict=True))
+    return len(lexemes) > 1 and is_modified and "NOUN" in known[-1]
 
 
 def is_noun_phrase(lexemes: Sequence[Lexeme]) -> bool:

@@ -9,6 +9,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS
 from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun
 from scope_ptz.planner.grammar.parsing.parts.patterns import match_start, search
 from scope_ptz.planner.grammar.parsing.parts.scopes import SECONDS
+from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.rewording.preset_lists import with_presets_reworded
 from scope_ptz.planner.grammar.parsing.rewording.single_words import reworded_in_context
 
@@ -50,7 +51,7 @@ _FOLLOWED_AT_PLACE = (
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Replace some wordings: "I want to see the yard" becomes "let me see the yard", and "return left" becomes "go back left"."""
-    lexemes = _with_place_of_following_first(_without_in_steps_of(lexemes))
+    lexemes = _with_place_of_following_first(_without_in_steps_of(with_compound_nouns(lexemes)))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []

@@ -16,9 +16,20 @@ _WORDINGS = rewordings((*WITHDRAWALS, *REMARKS, *MOVES, *QUESTIONS))
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
 
 
-def plainer(text: str, presets: tuple[str, ...] = ()) -> str:
-    """Return a text without "mate" at the end, with "all the way left" for "as far left as you can go", and so on."""
+def without_asides(text: str, presets: tuple[str, ...] = ()) -> str:
+    """Return a text without remarks and withdrawn parts, and with abbreviations written out. The rest is as the user said it."""
     if len(text) > _MAX_CHARS:
         return text
-    text = without_part_left_out(without_remarks(reworded_text(text, _SHORTHAND), presets))
+    return without_part_left_out(without_remarks(reworded_text(text, _SHORTHAND), presets))
+
+
+def plainer(text: str, presets: tuple[str, ...] = ()) -> str:
+    """Return a text without "mate" at the end, with "all the way left" for "as far left as you can go", and so on.
+
+    Args:
+        text: A text without asides.
+        presets: The camera's presets.
+    """
+    if len(text) > _MAX_CHARS:
+        return text
     return with_separate_questions(with_places_named(reworded_text(text, _WORDINGS), presets))

@@ -65,7 +65,7 @@ _ASKED = re.compile(
 _HARMLESS = re.compile(
     r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b", re.IGNORECASE
 )
-_NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
+NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
 _BOUNDARY = re.compile(r"(?:[,;.!?]|(?<=\w) -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")
 _REASON = re.compile(
     r",? (?:as|because|'?cause|cos|coz|since|given that|seeing as|now that|and i (?:only )?ask (?:only )?because) "
@@ -141,12 +141,12 @@ def _without_last(text: str, presets: tuple[str, ...]) -> str:
     if idiom := _IDIOMS.search(text.replace("’", "'")):
         return text[: idiom.start()] + ("?" if "?" in idiom[0] else "")
     text = _EVENT.sub("", text)
-    if (purpose := _PURPOSE.fullmatch(text)) is not None and not _asks(_INTO_PICTURE.sub("", purpose["aim"]), presets):
+    if (purpose := _PURPOSE.fullmatch(text)) is not None and not asks_for_something(_INTO_PICTURE.sub("", purpose["aim"]), presets):
         return purpose["done"]
     for boundary in (*_BOUNDARY.finditer(text), *_REASON.finditer(text)):
         said = text[: boundary.start()]
         tail = re.sub(r"^which\b", "it", text[boundary.end() :].strip().rstrip(".!"), flags=re.IGNORECASE)
-        is_correction = _NUMBER.search(tail) is not None and _NUMBER.search(said) is not None
+        is_correction = NUMBER.search(tail) is not None and NUMBER.search(said) is not None
         parts = [part.strip() for part in tail.split(",")]
         if len(said.split()) > 1 and not is_correction and all(_is_remark(part, presets) for part in parts):
             return said + ("?" if boundary[0].startswith("?") or text.rstrip().endswith("?") else "")
@@ -158,7 +158,7 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
 
     Before a question without pronouns, any words that ask for nothing are news.
     """
-    if (occasion := _OCCASION.match(text)) is not None and not _asks(occasion[0], presets):
+    if (occasion := _OCCASION.match(text)) is not None and not asks_for_something(occasion[0], presets):
         return text[occasion.end() :]
     if (past := _PAST_NEWS.fullmatch(text)) is not None and not _PRONOUNS.search(past["rest"]):
         news = past["news"].replace("’", "'")
@@ -180,7 +180,7 @@ def _without_beginning(text: str, presets: tuple[str, ...]) -> str:
 def _is_news(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a text before a question or request is neither a command nor another question."""
     lexemes = lexemes_of(text, presets)
-    if len(text.split()) < _MIN_NEWS or _asks(text, presets) or is_question(lexemes) or lexemes[0].has(*VERBS):
+    if len(text.split()) < _MIN_NEWS or asks_for_something(text, presets) or is_question(lexemes) or lexemes[0].has(*VERBS):
         return False
     return is_statement(lexemes) or not any(x.has(*VERBS) for x in lexemes)
 
@@ -188,12 +188,12 @@ def _is_news(text: str, presets: tuple[str, ...]) -> bool:
 def _is_remark(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a text is a statement that asks for nothing."""
     plain = text.replace("’", "'")
-    if len(plain.split()) < _MIN_WORDS or _asks(plain, presets):
+    if len(plain.split()) < _MIN_WORDS or asks_for_something(plain, presets):
         return False
     return _STATEMENT.fullmatch(plain) is not None or is_statement(lexemes_of(plain))
 
 
-def _asks(text: str, presets: tuple[str, ...]) -> bool:
+def asks_for_something(text: str, presets: tuple[str, ...]) -> bool:
     """Return whether a text contains words that must not be ignored."""
     plain = _HARMLESS.sub("", text.replace("’", "'"))
     words = set(re.findall(r"\w+", plain.lower()))

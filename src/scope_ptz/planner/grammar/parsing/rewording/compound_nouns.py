@@ -1,0 +1,89 @@
+"""Read words for commands as nouns where they are part of a compound: "the tilt truck", "the penalty spot", "call buttons"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
+from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
+
+_MODIFIERS = frozenset({
+    "tilt", "zoom", "pan", "degree", "film", "show", "record", "call", "help", "check", "centre", "center", "camera", "search",
+    "watch", "track", "tracking", "point", "turn", "head", "focus", "shot", "cover", "stop", "step", "home", "picture", "photo",
+    "capture", "swing", "look", "tell", "face", "parking", "moving", "end", "spot", "scan", "frame",
+})  # fmt: skip
+"""Words for commands that can begin a compound noun."""
+
+_INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check", "call", "help", "home"})
+"""Those that can stand between two nouns: "the visitor centre sign". Others may be verbs there: "does the floor look wet"."""
+
+_CAMERA_NOUNS = frozenset({
+    "angle", "angles", "level", "levels", "position", "positions", "speed", "setting", "settings", "value", "values", "axis", "axes",
+    "limit", "limits", "factor", "amount", "motor", "motors", "direction", "range", "view", "preset", "presets", "feed", "picture",
+    "image", "shot", "one", "ones", "please", "now", "pose", "percent", "magnification", "increments", "steps", "degrees", "side",
+    "back", "again", "slightly", "straight", "slowly", "gently", "more",
+})  # fmt: skip
+"""Words after which a modifier is about the camera itself: "the tilt angle"."""
+
+_HEADS = frozenset({
+    "spot", "spots", "camera", "cameras", "pan", "pans", "circle", "cover", "covers", "watch", "post", "posts", "stop", "stops",
+    "point", "points", "frame", "frames", "head", "heads", "film", "step", "steps", "board", "stand", "guard", "check", "swing",
+})  # fmt: skip
+"""Words for commands, or for the camera, that can end a compound noun."""
+
+_BREAKS = ("COMMA", "STOP", "QUESTION", "PREP", "AND", "OR", "BUT", "BE", "HAVEV", "MODAL", "THEN", "DASH", "REL", "VISIBLE")
+_LOOKED_FOR = frozenset({"on", "at", "onto", "find", "locate", "follow", "track", "count", "of", "see", "is", "are", "has"})
+
+
+def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes in which each word of a compound noun is a noun."""
+    out = list(lexemes)
+    for i, x in enumerate(lexemes):
+        if x.has("FREE") or not i:
+            continue
+        after = lexemes[i + 1] if i + 1 < len(lexemes) else None
+        if _is_modifier(out, i, after) or _is_head(out, i, after):
+            out[i] = x.reworded(x.word, "FREE")
+    return out
+
+
+def _begins_noun_phrase(lexeme: Lexeme) -> bool:
+    return lexeme.has("DET", "HOWMANY", "ANY") and not lexeme.has("NUM") and lexeme.word not in {"it", "all", "that", "them"}
+
+
+def _is_noun(lexeme: Lexeme) -> bool:
+    return lexeme.has("FREE") and "NOUN" in parts_of_speech(lexeme.word) and lexeme.word not in _CAMERA_NOUNS
+
+
+def _is_modifier(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
+    """Return whether a word stands before the noun of a compound: "the tilt truck", unlike "the tilt angle"."""
+    first = _first_of(lexemes, i)
+    words = _MODIFIERS if first == i - 1 else _INNER
+    return lexemes[i].word in words and after is not None and _is_noun(after) and _begins_noun_phrase(lexemes[first])
+
+
+def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
+    """Return whether a word ends a compound: "zoom in on the penalty spot", "how many covers are open?"."""
+    if after is not None and (not after.has(*_BREAKS) or after.has(*DIRECTIONS)):
+        return False
+    x, before, first = lexemes[i], lexemes[i - 1], _first_of(lexemes, i)
+    if not _begins_noun_phrase(lexemes[first]):
+        return False
+    if first == i - 1:
+        is_counted = before.has("HOWMANY") and x.has(*(f"{verb}-S" for verb in VERBS))
+        is_subject = x.word == "watch" and after is not None and after.has("BE", "HAVEV")
+        return is_counted or is_subject  # "my watch has stopped"
+    if x.word not in _HEADS or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing")):
+        return False
+    asked_before = lexemes[first - 1] if first else None
+    return asked_before is None or asked_before.word in _LOOKED_FOR or asked_before.has("FIND", "TRACK", "COMMA", "FILLER", "STOP")
+
+
+def _first_of(lexemes: Sequence[Lexeme], i: int) -> int:
+    """Return the index of the word before the free words that precede a position; 0 if there is none."""
+    first = i - 1
+    while first > 0 and lexemes[first].has("FREE"):
+        first -= 1
+    return first
