@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import reworded_text, rewordings
 from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import without_remarks
+from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
 from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_separate_questions
@@ -12,7 +13,7 @@ from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
 
 _SHORTHAND = rewordings(SHORTHAND)
-_WORDINGS = rewordings((*WITHDRAWALS, *REMARKS, *MOVES, *QUESTIONS))
+_WORDINGS = rewordings((*WITHDRAWALS, *REMARKS, *MOVES, *QUESTIONS, *COUNTS))
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
 
 

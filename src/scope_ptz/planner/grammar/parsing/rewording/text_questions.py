@@ -1,10 +1,10 @@
-"""Patterns for questions, counts and conditions in the text of an instruction, with plainer words that mean the same."""
+"""Patterns for questions and conditions in the text of an instruction, with plainer words that mean the same."""
 
 from __future__ import annotations
 
 import re
 
-from scope_ptz.english import plural
+from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
 _TAGS = "right|correct|yeah|is there|are they|is that right"
 _INVERTED = r"(?:is|are|does|do|has|have) (?:the|there|any|anyone|anybody|someone|somebody|all|an?)\b"
@@ -17,12 +17,6 @@ _NOT_JOINED = re.compile(r"\b(?:if|or|than|more|fewer|same|both|between|each|tot
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 
 _MAX_TOPIC = 7  # maximum number of words before "is he ...?"
-_NO_TOPIC = re.compile(
-    r"\b(?:zoom|pan|tilt|turn|go|take|count|follow|track|look|find|check|tell|show|read|see|how|what|which|who|is|are|was|has|if|there|any"
-    r"|please|ok|okay|hey|hi|hiya|hello|right|so|now|and|left|up|down|home|move|swing|point|aim|focus|hold|wait|stop|yes|no)\b",
-    re.IGNORECASE,
-)
-
 QUESTIONS = (
     (r"\bppl\b", "people"),
     (r"\bhows\b", "how's"),
@@ -110,95 +104,6 @@ QUESTIONS = (
     (r", (?:the )?whole (?:site|place|yard|area), look all around\b", " all around"),
     (r"\b(?:across|over) the (?:full|whole|entire) surroundings\b", "in the whole scene"),
     (r", not (?:just|only) what is in (?:the )?(?:frame|view|shot|picture)\W*$", ""),
-    # Counts
-    (r"\btally up\b", "count"),
-    (r"\b(how m[ae]ny [\w ]+? have (?:we|i|you) got) left\b", r"\1"),
-    (r"^head ?count at (the [\w -]+?) ?[-–—,:] ?how many (\w+)\W*$", r"how many \2 are at \1"),
-    (r", how many, then\b", ", then"),
-    (r"\b(how many [\w ]+?) are out\?*$", r"\1 are there?"),
-    (r"^([\w ]+?), how many can (?:you|u) see\W*$", lambda match: _counted(match)),
-    (r"^(?!.*\b(?:then|and)\b)([\w' ]+?)\. (find|follow|zoom in on|track) it\W*$", lambda match: _found(match)),
-    (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
-    (r"^([\w ]+?)\. how many\W*$", lambda match: _counted(match)),
-    (r"\b(currently|presently) (?=visible|in view|in the picture|on screen)", ""),
-    (r"\b((?:how many|number of) [\w ]+?)(?: are)? out (?=(?:at|on|in) the )", r"\1 "),
-    (
-        r"^(?:any|are there any) more ([\w ]+?) (at|in|on) (.+?) than (?:at |in |on )?(.+?)\?*$",
-        r"are there more \1 \2 \3 than \2 \4?",
-    ),
-    (r"^out of (.+?),? and (.+?), (?:where are|where is|which has) the most ([\w ]+)\?*$", r"which has the most \3, \1 or \2?"),
-    (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {plural(match[1])} at each preset"),
-    (r"^([\w ]+?) (in|at|on) (?:the )?([\w -]+), how many\W*$", r"how many \1 are \2 the \3?"),
-    (
-        r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
-        r"|track|snap|look|report)\b)"
-        r"([\w ]+)\W*$",
-        r"count the \1, then count the \2",
-    ),
-    (r"^((?:number of|how many)\b.*) in (picture|shot|frame)(?=\W*$)", r"\1 in the \2"),
-    (r"^(.*\b(?:count|how many)\b.*)[,.;] i (?:just |only )?want(?:ed)? to know how many [\w ]+\W*$", r"\1"),
-    (r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b", r"\1 are there"),
-    (r"\b(how m[ae]ny [\w ]+?) are left\b", r"\1 are there"),
-    (r"\b(how m[ae]ny [\w ]+?) is (?=still|in|at|on\b)", r"\1 are "),
-    (r"\bhead ?count (?:on|for) (?=the )", "head count of "),
-    (r"\b(count up) them (?=\w)", r"\1 the "),
-    (r"^count they (?=\w+ \w+)", "count the "),
-    (r"\bmore ([\w ]+?) round it(?: tonight| now)?,", r"more \1,"),
-    (
-        r"\b(how m[ae]ny [^,.;?]+?) (?:have (?:we|i)(?: still)?(?: got)?|we(?:['’]ve)? got|have you got|you(?:['’]ve| "
-        r"have)? got|have they(?: put out| got| "
-        r"left(?: out)?)|are you seeing|do you make it)(?= (?:at|in|on|down|up|over|out|by)\b|\W*$)",
-        r"\1 are there",
-    ),
-    (r" (?:at|in) this (?:hour|time of (?:day|night|year))(?=\W|$)", ""),
-    (r"^(?:need|i need|want)(?: a| the)? (?=number of\b)", ""),
-    (r"\b(how many [^?.]*?\b(?:is|are)) (?:currently|presently|now|still) (?=\w)", r"\1 "),
-    (
-        r"^((?:so |now |and )?(?:how many|is|are|any|has|have|did|who|what)\b.*?) this (?:morning|afternoon|evening"
-        r"|minute)(?=[?.!]*$)",
-        r"\1",
-    ),
-    (r"\bhi vis\b", "hi-vis"),
-    (r"^total (?=(?:people|\w+s)\b)", "number of "),
-    (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan| scene)\W*$", " all around"),
-    (
-        r",? (?:and )?not (?:just|only) (?:in |at |on )?(?:this|that) (?:part|bit|area|side|corner|section|end)"
-        r"(?: of (?:it|the (?:picture|scene|view|frame|shot)))?",
-        "",
-    ),
-    (r"^head ?count(?: please)?,? (?:just|only) (?:the )?(?:ones|those) (?=with|in|wearing)", "count the people "),
-    (
-        r"^compare the (?:number|numbers|count) of ([\w ]+?) (?:in|at|on) (.+?) (?:with|to|and|against) (?:the "
-        r"(?:number|count|one)s? )?(?:in|at|on) "
-        r"(.+?)\W*$",
-        r"which has more \1, \2 or \3?",
-    ),
-    (r",? (?:and )?not (?:just|only) (?:here|there)(?=\W*$)", ""),
-    (r"\bexcl?\. (?=\w)", "except "),
-    (r"\b(?:no\.|qty\.?|quantity) (?:of )?(?=[a-z])", "number of "),
-    (
-        r"\b(on|of|at|the|count|count me|find|see|follow) them (?!for|at|in|on|across|until|as|with|to|from|and|is"
-        r"|was|towards|past|all)(?=(?:\w+ )?\w+s\b)",
-        r"\1 the ",
-    ),
-    (
-        r"\bdo (?:us|me) a (?:full |quick )?(?:sweep|scan)(?: right round| all round| all around| round| around)* and "
-        r"(?=(?:tell|count|see)\b)",
-        "sweep the scene and ",
-    ),
-    (r"\bseparately (?=on|at|in\b)", ""),
-    (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
-    (r",? each (?:one )?(?:on its own|on their own|separately|individually|by itself)(?=[.!?]|$)", " separately"),
-    (r"^((?:\w+ ){1,3}and(?: \w+){1,3}): how many of each\b(?: are there)?([^?]*)\?*$", r"count the \1\2"),
-    (
-        r"^(\w+) (in|at|on) (the [\w -]+), (\w+) (in|at|on) (the [\w -]+): how many of each\?*$",
-        r"count the \1 \2 \3, then count the \4 \5 \6",
-    ),
-    (
-        r"^is it busier at (.+?) or (?:at )?(.+?)\? count the (\w+) at (?:both|each)(?: of them)?\.?$",
-        r"count the \3 at \1 and at \2",
-    ),
-    (r"^how many ([\w ]+?) and how many ([\w ]+?) (?=(?:are )?(?:at|on|in) the )", r"how many \1 and \2 "),
     # Corrections: "how many impala, I mean kudu, are there?", "bikes at the racks? Bike racks I mean"
     (
         r"^((?:how many|number of|count)(?: the)?) [\w ]{2,30}?(?:,|\.{2,3}|…| -+)? "
@@ -216,19 +121,9 @@ QUESTIONS = (
 """Patterns with the words that replace them."""
 
 
-def _counted(match: re.Match[str]) -> str:
-    """Return "count the bins" for "bins, how many?"; a text with other words is returned unchanged."""
-    return match[0] if _NO_TOPIC.search(match[1]) else f"count the {match[1]}"
-
-
-def _found(match: re.Match[str]) -> str:
-    """Return "find the dummy" for "dummy. Find it"; a text with other words is returned unchanged."""
-    return match[0] if _NO_TOPIC.search(match[1]) else f"{match[2]} the {match[1]}"
-
-
 def _about_topic(match: re.Match[str]) -> str:
     """Return "is that man carrying a box?" for "that man, is he carrying a box?"; other texts unchanged."""
-    if len(match[1].split()) > _MAX_TOPIC or _NO_TOPIC.search(match[1]):
+    if len(match[1].split()) > _MAX_TOPIC or NO_TOPIC.search(match[1]):
         return match[0]
     article = "" if re.match(r"(?:the|that|my|our)\b", match[1], re.IGNORECASE) else "the "
     return f"{match[2]} {article}{match[1]} {match[3]}?"
