@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import CancelledError, Future
+from functools import partial
+from queue import SimpleQueue
 from typing import TypeVar
 
 import anyio
@@ -12,6 +14,7 @@ from anyio.from_thread import BlockingPortal
 
 EXIT_CHECK_INTERVAL_S = 0.5  # seconds between checks of whether the main thread has ended
 _T = TypeVar("_T")
+_E = TypeVar("_E")
 
 
 class EventLoopThread:
@@ -56,7 +59,7 @@ class EventLoopThread:
         An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. The exception is raised again after
         the coroutine has finished, so that a cancelled run has a complete trace.
         """
-        future, finished = self.start(work)
+        future, finished = self._start(work)
         try:
             return future.result()
         except CancelledError:
@@ -67,7 +70,28 @@ class EventLoopThread:
                 finished.wait()
             raise
 
-    def start(self, work: Callable[[], Awaitable[_T]]) -> tuple[Future[_T], threading.Event]:
+    def iterate(self, work: Callable[[Callable[[_E], None]], Awaitable[object]]) -> Iterator[_E]:
+        """Run a coroutine, and yield its events as they happen.
+
+        The coroutine starts when the first event is requested. Closing the iterator early cancels the coroutine and waits until it
+        has finished. An exception of the coroutine is raised after its last event.
+
+        Args:
+            work: Coroutine function that passes its events to the listener that it is given.
+        """
+        events: SimpleQueue[_E | None] = SimpleQueue()
+        future, finished = self._start(partial(work, events.put))
+        future.add_done_callback(lambda _: events.put(None))
+        try:
+            while (event := events.get()) is not None:
+                yield event
+            future.result()
+        finally:
+            if not future.done():
+                future.cancel()
+                finished.wait()
+
+    def _start(self, work: Callable[[], Awaitable[_T]]) -> tuple[Future[_T], threading.Event]:
         """Start a coroutine. Return its future and an event that is set when it has finished or its cancellation is complete."""
         finished = threading.Event()
 

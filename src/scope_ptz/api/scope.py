@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import suppress
 from functools import partial
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from scope_ptz.api.async_scope import View
@@ -133,17 +132,7 @@ class Scope:
             count_objects
         """
         self._require_open()
-        events: SimpleQueue[Event | None] = SimpleQueue()
-        future, finished = self._loop.start(partial(self._session.run_with_events, instruction, events.put))
-        future.add_done_callback(lambda _: events.put(None))
-        try:
-            while (event := events.get()) is not None:
-                yield event
-            future.result()
-        finally:
-            if not future.done():
-                future.cancel()
-                finished.wait()
+        yield from self._loop.iterate(partial(self._session.run_with_events, instruction))
 
     def cancel(self) -> None:
         """Cancel the run or tool call in progress, if any. Call it from another thread.

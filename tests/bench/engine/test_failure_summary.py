@@ -52,7 +52,7 @@ def test_server_failures_are_reported_with_address_and_advice() -> None:
     assert failure_summary(evaluation.trials[5:], evaluation.card) == []
     console = Console(width=400)
     with console.capture() as output:
-        for table in sweep_tables({"qwen3-4b+moondream2": evaluation}, 400):
+        for table in sweep_tables({"qwen3-4b+moondream2": evaluation}, console):
             console.print(table)
     assert "Server failures" in output.get() and planner in output.get() and perception in output.get()
 

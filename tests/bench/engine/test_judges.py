@@ -128,7 +128,7 @@ def test_reference_planners_and_perception_are_not_ranked_in_a_sweep(log_copy: P
     def table_lines(width: int) -> list[str]:
         console = Console(width=width, file=io.StringIO(), record=True)
         for table in sweep_tables(
-            {"small+moondream2": small, "grammar+ground-truth": exact, "big+moondream2": "No server."}, width
+            {"small+moondream2": small, "grammar+ground-truth": exact, "big+moondream2": "No server."}, console
         ):
             console.print(table)
         return console.export_text().splitlines()

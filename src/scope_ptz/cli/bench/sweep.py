@@ -13,7 +13,7 @@ from scope_ptz.cli.options import JsonOption, ModelFlags
 from scope_ptz.errors import InputError, ScopeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rich.console import Console
     from rich.table import Table
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from scope_ptz.factory.evaluation_options import EvaluationOptions, EvaluationResult
     from scope_ptz.factory.models import ModelOptions
 
-MIN_WIDTH_FOR_CATEGORIES = 160
-"""Minimum terminal width, in characters, for showing one column per category."""
-PAIR_COLUMN_WIDTH = 36  # minimum width, in characters, of the pair-name column
+PAIR_COLUMN_WIDTH = 36
+"""Width, in characters, of the pair-name column. Longer names widen it, and narrow terminals make it narrower."""
+UNLIMITED_WIDTH = 10_000  # terminal width, in characters, for measuring a table that is not wrapped
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ def sweep(
             {name: {"error": result} if isinstance(result, str) else evaluation_summary(result) for name, result in results.items()}
         )
     else:
-        for table in sweep_tables(results, console.width):
+        for table in sweep_tables(results, console):
             console.print(table, "")
     if any(isinstance(result, str) or not is_complete(result) for result in results.values()):
         print_error("some pairs are incomplete; running the same command again resumes them.")
@@ -144,50 +144,73 @@ def is_complete(evaluation: Evaluation) -> bool:
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
-def sweep_tables(results: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
+def sweep_tables(results: dict[str, Evaluation | str], console: Console) -> Iterator[Table]:
     """Yield tables for model pairs, built-in baselines, server failures, and pairs that did not run.
 
-    ``width`` is the terminal width in characters. If the terminal is wide enough, there is a column per category.
+    If the terminal is wide enough, there is a column per category.
     """
+    from rich.cells import cell_len
+    from rich.text import Text
+
     from scope_ptz.bench.engine.failure_summary import failure_summary
 
+    pair_width = min(max([PAIR_COLUMN_WIDTH, *map(cell_len, results)]), console.width // 2)
     evaluations = [(name, e) for name, e in results.items() if not isinstance(e, str)]
     ranked, others = [row for row in evaluations if row[1].card.ranked], [row for row in evaluations if not row[1].card.ranked]
     if ranked:
-        yield _pairs_table("Pairs of models, best first", ranked, width)
+        yield _fitting_pairs_table("Pairs of models, best first", ranked, pair_width, console)
     if others:
-        yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not model results", others, width)
+        title = "Rule-based planner or ground-truth perception: baselines, not model results"
+        yield _fitting_pairs_table(title, others, pair_width, console)
     failures = [(name, line) for name, e in evaluations for line in failure_summary(e.trials, e.card)]
     not_run = [(name, message) for name, message in results.items() if isinstance(message, str)]
     for title, rows in (("Server failures", failures), ("Not run", not_run)):
         if rows:
-            table = _table(title)
+            table = _table(title, pair_width)
             table.add_column("reason", overflow="fold")
-            for row in rows:
-                table.add_row(*row)
+            for name, reason in rows:
+                table.add_row(name, Text(reason))  # plain text, because "scope-ptz[local]" is not markup
             yield table
 
 
-def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int) -> Table:
-    from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy, macro_accuracy
+def _fitting_pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], pair_width: int, console: Console) -> Table:
+    """Return the most detailed table that fits in the terminal.
 
-    categories = CATEGORIES if width >= MIN_WIDTH_FOR_CATEGORIES else ()
-    table = _table(title)
-    for column in ("macro", "micro", *(c.replace("_", " ") for c in categories), "runs", "failed"):
-        table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "failed"))
+    The category columns have headers of one line, or else of two lines, or else they are omitted. If the table is still too wide,
+    its pair names are wrapped.
+    """
+    from scope_ptz.bench.engine.run_totals import CATEGORIES
+
+    one_line = {category: category.replace("_", " ") for category in CATEGORIES}
+    two_lines = {category: "\n".join(header.rsplit(" ", 1)) for category, header in one_line.items()}
+    unlimited = console.options.update_width(UNLIMITED_WIDTH)
+    for category_headers in (one_line, two_lines, {}):
+        table = _pairs_table(title, rows, category_headers, pair_width)
+        excess = console.measure(table, options=unlimited).maximum - console.width
+        if excess <= 0:
+            return table
+    return _pairs_table(title, rows, {}, max(1, pair_width - excess))
+
+
+def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], category_headers: Mapping[str, str], pair_width: int) -> Table:
+    from scope_ptz.bench.engine.run_totals import accuracy, macro_accuracy
+
+    table = _table(title, pair_width)
+    for column in ("macro", "micro", *category_headers.values(), "runs", "failed"):
+        table.add_column(column, justify="right", no_wrap=True)
     for name, evaluation in sorted(rows, key=lambda row: -(macro_accuracy(row[1].trials) or 0.0)):
         trials = evaluation.trials
         fractions = [macro_accuracy(trials), accuracy(trials)]
-        fractions += [accuracy([t for t in trials if t.task.category == category]) for category in categories]
+        fractions += [accuracy([t for t in trials if t.task.category == category]) for category in category_headers]
         failed = sum(t.headline == "infrastructure" for t in trials)
         cells = [f"{100 * fraction:.1f}" if fraction is not None else "-" for fraction in fractions]
         table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(failed) if failed else "-")
     return table
 
 
-def _table(title: str) -> Table:
+def _table(title: str, pair_width: int) -> Table:
     from rich.table import Table
 
     table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="bold")
-    table.add_column("pair", overflow="fold", min_width=PAIR_COLUMN_WIDTH)
+    table.add_column("pair", overflow="fold", width=pair_width)
     return table
