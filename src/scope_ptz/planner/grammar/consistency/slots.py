@@ -38,6 +38,9 @@ _SWALLOWED = tuple(
         r"^see (?:the|my|our)\b.*",
         r"\b(?:left|right|up|down) (?:by )?\d+$",
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
+        r"\bso (?:can|could) you\b.*",
+        r"^(?:list|name) (?:the|all|your|my) (?:presets|positions|views)\b.+",
+        r"^What (?:is|are) .*\bto (?:open|close|move|stop|come|get|go|leave|wait|clear|pick|put|bring|shut|step|hurry)\b.*",
         r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )
 )

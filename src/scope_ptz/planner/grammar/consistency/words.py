@@ -32,7 +32,8 @@ _NEGATING = frozenset(
 REPAIRING = frozenset({
     "no", "nah", "naw", "nope", "sorry", "wait", "oops", "er", "erm", "actually", "rather", "mean", "meant", "make", "correction",
     "scratch", "scrap", "strike", "belay", "cancel", "forget", "disregard", "negative", "instead", "skip", "drop", "leave",
-    "thoughts", "excuse", "pardon", "apologise", "apologize", "hang", "hold", "except", "exc", "mistake", "wrong", "ignore", "other",
+    "thoughts", "excuse", "pardon", "apologise", "apologize", "hang", "hold", "except", "exc", "mistake", "wrong", "ignore",
+    "other",
 })  # fmt: skip
 """Words after which a speaker repairs, or takes back, what was said before them."""
 

@@ -41,6 +41,7 @@ _RELATIVE = (
     ),
     (re.compile(r"\b(?:who|that|which)(?: (?:are|is)|['’](?:re|s)) (?=\w)", re.IGNORECASE), ""),
     (re.compile(r"(?<!\bthat)(?<!\bwho)(?<!\bwhich) (?:have|has) (?=\w)", re.IGNORECASE), " with "),
+    (re.compile(r"^an? (?=little \w)", re.IGNORECASE), ""),
     (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:of|in) the (?:picture|frame|image|view|shot|screen|scene)$", re.IGNORECASE), ""),
     (re.compile(r" (?:in|on) (?:it|them)$", re.IGNORECASE), ""),

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
-from scope_ptz.planner.grammar.parsing.parts.statements import is_only_noun
 
 _MODIFIERS = frozenset({
     "tilt", "zoom", "pan", "degree", "film", "show", "record", "call", "help", "check", "centre", "center", "camera", "search",
@@ -20,8 +19,8 @@ _INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check
 """Those that can stand between two nouns: "the visitor centre sign". Others may be verbs there: "does the floor look wet"."""
 
 _CAMERA_NOUNS = frozenset({
-    "angle", "angles", "level", "levels", "position", "positions", "speed", "setting", "settings", "value", "values", "axis", "axes",
-    "limit", "limits", "factor", "amount", "motor", "motors", "direction", "range", "view", "preset", "presets", "feed", "picture",
+    "angle", "angles", "level", "levels", "position", "positions", "speed", "setting", "settings", "value", "values", "axis",
+    "axes", "limit", "limits", "factor", "amount", "motor", "motors", "direction", "range", "view", "preset", "presets", "feed", "picture",
     "image", "shot", "one", "ones", "please", "now", "pose", "percent", "magnification", "increments", "steps", "degrees", "side",
     "back", "again", "slightly", "straight", "slowly", "gently", "more",
 })  # fmt: skip
@@ -33,7 +32,24 @@ _HEADS = frozenset({
 })  # fmt: skip
 """Words for commands, or for the camera, that can end a compound noun."""
 
-_BREAKS = ("COMMA", "STOP", "QUESTION", "PREP", "AND", "OR", "BUT", "BE", "HAVEV", "MODAL", "THEN", "DASH", "REL", "VISIBLE")
+_PLACES = frozenset({"pitch", "track", "swing", "stand", "roll"})
+_BREAKS = (
+    "COMMA",
+    "STOP",
+    "QUESTION",
+    "PREP",
+    "AND",
+    "OR",
+    "BUT",
+    "BE",
+    "HAVEV",
+    "MODAL",
+    "THEN",
+    "DASH",
+    "REL",
+    "VISIBLE",
+    "FILLER",
+)
 _LOOKED_FOR = frozenset({"on", "at", "onto", "find", "locate", "follow", "track", "count", "of", "see", "is", "are", "has"})
 
 
@@ -74,7 +90,8 @@ def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
     if first == i - 1:
         is_counted = before.has("HOWMANY") and x.has(*(f"{verb}-S" for verb in VERBS))
         is_subject = x.word == "watch" and after is not None and after.has("BE", "HAVEV")
-        return is_counted or is_subject  # "my watch has stopped"
+        is_place = x.word in _PLACES and i > 1 and lexemes[i - 2].has("PREP")  # "the sprinklers on the pitch"
+        return is_counted or is_subject or is_place  # "my watch has stopped"
     if x.word not in _HEADS or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing")):
         return False
     asked_before = lexemes[first - 1] if first else None

@@ -13,7 +13,8 @@ from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
 
 _SHORTHAND = rewordings(SHORTHAND)
-_WORDINGS = rewordings((*WITHDRAWALS, *REMARKS, *MOVES, *QUESTIONS, *COUNTS))
+_ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
+_WORDINGS = rewordings((*MOVES, *QUESTIONS, *COUNTS))
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
 
 
@@ -21,7 +22,7 @@ def without_asides(text: str, presets: tuple[str, ...] = ()) -> str:
     """Return a text without remarks and withdrawn parts, and with abbreviations written out. The rest is as the user said it."""
     if len(text) > _MAX_CHARS:
         return text
-    return without_part_left_out(without_remarks(reworded_text(text, _SHORTHAND), presets))
+    return reworded_text(without_part_left_out(without_remarks(reworded_text(text, _SHORTHAND), presets)), _ASIDES)
 
 
 def plainer(text: str, presets: tuple[str, ...] = ()) -> str:

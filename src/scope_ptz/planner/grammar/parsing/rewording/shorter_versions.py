@@ -10,6 +10,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import VERBS
 from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause, is_polite
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
+from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import NUMBER, asks_for_something
 
 _MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
@@ -18,9 +19,10 @@ _MIN_WORDS = 2
 
 _BOUNDARY = re.compile(
     r"(?:[,;.!?]+|:| -+| –| —)\s+(?:(?:and so|so|and|but|anyway)\b,? )?"
-    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|go)\b)"
+    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|go|zoom|pan|tilt|count|take|turn"
+    r"|find|follow|read|check|show)\b)"
     r"| (?=(?:i['’]?m|we['’]?re|they['’]?re|(?:it|he|she|that|there|some(?:one|body|thing)|nobody)['’]s|(?:some(?:one|body)|nobody) "
-    r"(?:just|has|is|was)|i can['’]?t|my \w+ says|go ahead and|please|can you|could you)\b)",
+    r"(?:just|has|is|was)|its (?:fine|ok|good|too|been|just)|i can['’]?t|go ahead and|please|can you|could you)\b)",
     re.IGNORECASE,
 )
 """Where a sentence, a clause, or a subject with its verb begins: people who dictate leave punctuation out."""
@@ -50,7 +52,9 @@ _EXCLAMATION = re.compile(
     r"|dreadful|horrible|awful|rotten|cold|busy|quiet|funny|miserable|glorious|proper|typical) [\w ]+"
     r"|hear(?:ing)? (?:reports?|complaints?) [\w ]+|(?:had|got|getting|having) (?:an? )?(?:reports?|complaints?|calls?|word|news)"
     r"\b[\w' ]*|(?:good )?(?:morning|afternoon|evening)(?: \w+)?|hiya|hello(?: \w+){0,2}|hi(?: \w+){0,2}"
-    r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
+    r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|(?:i )?(?:think|reckon|bet|guess) (?:its?|it['’]s|he|she|they|that|the)\b[\w' ]*"
+    r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
+    r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
     r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",
     re.IGNORECASE,
 )
@@ -60,10 +64,10 @@ _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|t
 
 
 def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
-    """Yield shorter versions of an instruction, those without the fewest words first.
+    """Yield shorter versions of an instruction, the longest first.
 
-    Only remarks are left out: statements, exclamations and courtesy without any word that may ask for something, restrict it or take
-    it back, without a preset, and without a number after another number. What comes after a remark must begin like a request, and
+    Only remarks are left out: statements, exclamations and courtesy without any word that may ask for something, restrict it or
+    take it back, without a preset, and without a number after another number. What comes after a remark must begin like a request, and
     must not refer to the remark ("there is a van by the fence, follow it").
     """
     if len(text) > _MAX_CHARS:
@@ -89,7 +93,7 @@ def _is_lead(lead: str, rest: str, presets: tuple[str, ...]) -> bool:
     if not _opens_request(rest, presets) or _refers_back(rest):
         return False
     parts = [part for part in _BOUNDARY.split(lead) if part.strip()]
-    return all(_is_harmless(part, presets) for part in parts)
+    return all(_is_harmless(part, presets) for part in parts) or _is_harmless(lead, presets)
 
 
 def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
@@ -121,12 +125,16 @@ def _is_harmless(text: str, presets: tuple[str, ...], *, may_be_empty: bool = Fa
     plain = text.replace("’", "'").strip(" .,!?;")
     if not plain:
         return may_be_empty
-    lexemes = lexemes_of(plain, presets)
+    lexemes = with_compound_nouns(lexemes_of(plain, presets))
     if is_polite(lexemes):
         return True
-    if asks_for_something(plain, presets) or _REFUSAL.match(plain) or is_question(lexemes) or lexemes[0].has(*VERBS):
+    if asks_for_something(plain, presets) or _REFUSAL.match(plain):
         return False
-    return _EXCLAMATION.fullmatch(plain) is not None or is_statement(lexemes) or is_comment(lexemes)
+    if _EXCLAMATION.fullmatch(plain):
+        return True
+    if is_question(lexemes) or lexemes[0].has(*VERBS):
+        return False
+    return is_statement(lexemes) or is_comment(lexemes)
 
 
 def _without_relaying(text: str) -> str:

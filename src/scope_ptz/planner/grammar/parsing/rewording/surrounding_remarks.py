@@ -63,7 +63,10 @@ _ASKED = re.compile(
 """Words with which a statement may ask for something, restrict what was asked, or take it back."""
 
 _HARMLESS = re.compile(
-    r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b", re.IGNORECASE
+    r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b"
+    r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
+    r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
+    re.IGNORECASE,
 )
 NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
 _BOUNDARY = re.compile(r"(?:[,;.!?]|(?<=\w) -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")

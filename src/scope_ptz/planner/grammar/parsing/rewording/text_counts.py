@@ -31,7 +31,7 @@ COUNTS = (
     ),
     (r"^out of (.+?),? and (.+?), (?:where are|where is|which has) the most ([\w ]+)\?*$", r"which has the most \3, \1 or \2?"),
     (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {plural(match[1])} at each preset"),
-    (r"^([\w ]+?) (in|at|on) (?:the )?([\w -]+), how many\W*$", r"how many \1 are \2 the \3?"),
+    (r"^([\w -]+?) (in|at|on) ((?:the )?[\w -]+), how many\W*$", r"how many \1 are \2 \3?"),
     (
         r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
         r"|track|snap|look|report)\b)"
@@ -102,6 +102,29 @@ COUNTS = (
         r"count the \3 at \1 and at \2",
     ),
     (r"^how many ([\w ]+?) and how many ([\w ]+?) (?=(?:are )?(?:at|on|in) the )", r"how many \1 and \2 "),
+    (
+        r"\b(?:let me have|give me|i need|i want|get me) (?:one|a) (?:figure|number|count|total) for (the [\w ]+?) and (?:another|one"
+        r"|a second one|one more) for (the [\w ]+)",
+        r"count \1, then count \2",
+    ),
+    (r"^(.*\bhow many [\w ]+?) (?:right |over |out |down |up )there\?*$", r"\1?"),
+    (
+        r"\bhow many ([\w ]+?) (?:do|can|could) (?:you|u|we|i) see ((?:on|in|at|by|near|under|behind) (?:the )?[\w ]+?)\?*$",
+        r"how many \1 are there \2?",
+    ),
+    (
+        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:ground|stadium|lot|park|car ?park|garden|field|harbou?r|port)\b",
+        "in the whole scene",
+    ),
+    (
+        r"^(?:take a |have a )?look (?:everywhere|all (?:a)?round|all over)(?: (?:around|in|on) the \w+| the \w+)?,? (?:and )?"
+        r"((?:is|are|how many|can)\b[^?]*)\?*$",
+        r"\1 in the whole scene?",
+    ),
+    (
+        r"\b(count (?:the |all the )?[\w ]+?)(?: for (?:me|us))?, everywhere, all the way (?:a)?round\b",
+        r"\1 all around",
+    ),
 )
 """Patterns with the words that replace them."""
 

@@ -22,6 +22,7 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (r"^.*\b(?:the same way|that way too|the same direction)\b.*$", lambda match: _same_direction(match[0])),
     (r"\b(as far as (?:it|she|he)(?:['’]ll| will)? go(?:es)?), all the way\b", r"\1"),
     (r",? so (?:that )?the (?:whole|entire) [\w ]+? (?:is|fits) in (?:the )?(?:picture|view|frame|shot)\W*$", ""),
     (
@@ -184,6 +185,46 @@ MOVES = (
     (r"\b(?:anywhere|everywhere) all around\b", "all around"),
     (rf"\beverywhere (?:that )?you can see(?: from (?:the (?:{_MAST})|up there|there|where you are))?{_END}", "everywhere"),
     (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
+    (r"\b(?:run|drive|slew) (?:the|that) (pan|tilt) (?=all|to|left|right|up|down)", r"\1 "),
+    (
+        r"((?:images|photos|pictures|stills|shots|snaps|pics)),? (?:in (?:direct|quick|immediate|rapid) succession|in a row"
+        r"|one after (?:the other|another)|back to back|straight after each other)\b",
+        r"\1",
+    ),
+    (r"\bmake (?:one|a) (?:single |combined |simultaneous )*move(?:ment)? of ", "move "),
+    (
+        r"\b(?:may|can|could|might) (?:i|we) (?:please )?have (?:the|this) (?:picture|view|image|shot) (?=\w+ times (?:closer|bigger"
+        r"|larger)\b)",
+        "zoom in ",
+    ),
+    (r"\bbring (?:the camera|it) (?:back |again |round )*to (?:its |the )?home\b", "go home"),
+    (r"^(?:i )?(?:need|want|get)(?: me)?(?: an?)? close[ -]?up of ", "zoom in on "),
+    (r"\bget ((?:the|that) [\w ]+?) (?:up close|nice and close|close up)(?=\W*$)", r"zoom in on \1"),
+    (
+        r"^i (?:want|need|would like) to see ((?:the|that) [\w ]+?)(?: from (?:near|close)| up close| better| properly)?[,.] zoom "
+        r"(?:in )?(?:on|onto|to) it\b",
+        r"zoom in on \1",
+    ),
+    (
+        rf"\b((?:{_PICTURES})) of what(?:ever)? (?:you(?:['’]ve)?(?: have)? got|we(?:['’]ve)?(?: have)? got|you have|you see|i see)"
+        r"(?: right now| now| there| here| on screen)*",
+        r"\1",
+    ),
+    (
+        r"^.*\b(?:views|spots|presets|positions|places) (?:are|have (?:we|you|i)(?: got)?|there are) (?:saved|stored|set up)[^,.?]*[,.?] "
+        r"(?:so )?(?:read|give) (?:me|us) the list\b.*$",
+        "list the presets",
+    ),
+    (
+        r"\bread (?:me |us )?(?:off |out )?(?:me )?the list(?: of (?:the |all )?(?:saved |stored )?(?:spots|positions|presets|views"
+        r"|places))(?: for (?:me|us))?",
+        "list the presets",
+    ),
+    (
+        r"^(?:what|which) (?:presets|saved views|saved positions|saved spots) (?:have (?:we|you|i) got|do (?:we|you|i) have|are there|are)"
+        r"(?: saved| stored| set up| programmed)?(?: (?:in|on|for|with) (?:this|the|here)(?: (?:one|camera|thing|system|site))?)?\W*$",
+        "list the presets",
+    ),
 )
 """Patterns with their replacements: words, or a function of the match."""
 
@@ -194,7 +235,10 @@ def _same_direction(text: str) -> str:
     if len(named) != 1:
         return text
     return re.sub(
-        r"(?:a further |another )?([\w-]+ degrees) in the same direction\b", rf"\1 to the {named[0]}", text, flags=re.IGNORECASE
+        r"(?:a further |another )?([\w-]+)(?: degrees)? (?:in the same direction|the same way|that way too)\b",
+        rf"\1 degrees to the {named[0]}",
+        text,
+        flags=re.IGNORECASE,
     )
 
 

@@ -7,11 +7,14 @@ from functools import lru_cache
 
 from scope_ptz.english import is_plural, plural
 from scope_ptz.planner.grammar.lexing.preset_names import short_names
+from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import asks_for_something
+from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
 _STATES = (
     "open|shut|closed|locked|unlocked|clear|empty|full|free|busy|quiet|blocked|wet|dry|lit|occupied|flooded|icy|manned|staffed|"
     "on|off|up|down|raised|lowered"
 )
+_PICTURES = r"(?:photo|photograph|picture|pic|snap|shot|still|image)"
 _COUNTS = r"(?:how many|number of|count(?: the)?|total(?: of)?)"
 
 
@@ -34,9 +37,9 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
         (rf"^right,? (?=(?:the )?(?:{names}) first\b)", ""),
         (rf"^(?:the )?({names}) first, (?:then )?", r"go to the \1, then "),
         (
-            rf"^(?:does|do|has|have) (?:the )?({names}) or (?:the )?({names}) (?:have|got|has|hold) more ([\w ]+?)(?: "
+            rf"^(?:does|do|has|have) (?:the )?({names}) or (?:the )?({names}) (?:have|got|has|hold) (more|fewer) ([\w ]+?)(?: "
             rf"in it| there| on it)?\?*$",
-            r"which has more \3, \1 or \2?",
+            r"which has \3 \4, \1 or \2?",
         ),
         (rf"^(?:the )?({names})[,.] go\W*$", r"go to the \1"),
         (rf"^(?:stick|put|get) (?:her|it|him|the camera) on (?:the )?({names})\b", r"go to the \1"),
@@ -92,10 +95,51 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"^(?:the )?((?:{names})(?: \w+)?) ((?:{_STATES})(?: or (?:{_STATES}))?(?: yet| still| now| again)?)\?",
             lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
         ),
+        (
+            rf"\b((?:take|get|grab|make|snap) (?:me )?)(?:a|one) ({_PICTURES}) (?:at|of|from) (?:the )?({names}),? (?:and|then|and then) "
+            rf"(?:another one|another|one|one more|a second(?: one)?) (?:at|of|from) (?:the )?({names})",
+            r"\1a \2 at the \3 and at the \4",
+        ),
+        (
+            rf"^([\w ]+?),? (?:at |in |on )?(?:the )?({names}) (?:vs\.?|versus|v|against) (?:the )?({names})(?:, (?:count both"
+            rf"|how many|which has more|count))?\W*$",
+            lambda match: (
+                match[0] if NO_TOPIC.search(match[1]) else f"count the {match[1]} at the {match[2]} and at the {match[3]}"
+            ),
+        ),
+        (
+            rf"\bwhich (?:one )?of (?:the|these) (?:two )?(?:presets|places|views|positions|two),? (?:the )?({names}) (?:or|and) (?:the )?"
+            rf"({names}),? (?:contains|has|shows|holds|have|has got) (?:the )?(more|most|fewer) ([\w ]+)",
+            r"which has \3 \4, \1 or \2",
+        ),
+        (rf"^(?:the )?({names})[,:] ((?:{_STATES}) or (?:{_STATES}))\W*$", r"is the \1 \2?"),
+        (rf"\blet['’]?s have the camera (?:on|at|over|over at) (?:the )?({names})(?: for \w+)?\b", r"go to the \1"),
+        (
+            rf"^(?:.*, )?(?:or )?(?:actually )?no, forget (?:about )?(?:the )?(?:{names}), it(?:['’]s| is| was) (?:the )?({names}) (?:that )?"
+            rf"(?:i|we) (?:wanted|want|meant|mean|need)\b.*$",
+            r"go to the \1",
+        ),
+        (
+            rf"^(?:the )?({names})(?:,| and)? then (?:the )?({names})[,.] *(?:(?:actually|no|wait|sorry)[, ]+)*(?:skip|forget|leave out|drop"
+            rf"|not) (?:the )?({names})\W*$",
+            lambda match: _visits_without(match),
+        ),
+        (
+            rf"^(?P<news>.*?)\b(?:at|in|on|by|near|over by|over at|out at|outside|about) (?:the )?(?P<place>{names}),? "
+            rf"(?:so |and )?(?:please |can you |could you |would you )*(?:(?:go|pop|head|nip|run|get) (?:over|down|up|across|out)? ?there"
+            rf"|(?:show (?:me|us)|go to|bring up|take (?:me|us) to) (?:that one|it|there))\b",
+            lambda match: match[0] if asks_for_something(match["news"], ()) else f"go to the {match['place']}",
+        ),
         (rf"\bsee (?:the )?({names}) (?:car ?park|parking|area|place|side|bit)\b", r"see the \1"),
     ):
         text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
     return text
+
+
+def _visits_without(match: re.Match[str]) -> str:
+    """Return "go to the yard" for "yard then gate. Actually skip the gate"."""
+    kept = [name for name in match.group(1, 2) if name.lower() != match[3].lower()]
+    return f"go to the {kept[0]}" if len(kept) == 1 else match[0]
 
 
 def _without_apostrophes(text: str, presets: tuple[str, ...]) -> str:

@@ -117,6 +117,10 @@ QUESTIONS = (
         r"and if \1 \2, ",
     ),
     (r"^if ([^,]+?),? (?:i|we) can [^,]+, so (?:please )?check(?: it| that)? and if so,? ", r"if \1, "),
+    (
+        r"^(raining|snowing|dark|foggy|windy|wet|busy|quiet|icy|flooded|sunny|cloudy|clear|muddy|dusty)(?: (?:out|down|up))?(?: there| here)?\?$",
+        r"is it \1?",
+    ),
 )
 """Patterns with the words that replace them."""
 

@@ -77,5 +77,61 @@ REMARKS = (
     (rf"^(how (?:full|empty)\b[^?]*\?)(?:\s*{_SHARES}\?)+$", r"\1"),
     (r", do (?:i|we) need (?:my|me|a|an|our) \w+\s*\?", "?"),
     (rf"\b(if|when|should|in case)\b(.+?)[;,.]\s*(?:if not|otherwise),? (?:{_NOTHING_ELSE})\s*[.!]*$", r"\1\2"),
+    (
+        r"\b(?:now |please |just )?do (?:me|us|an? [\w ]{2,20}?) (?:a|one) (?:quick |small |little |big )?favou?r(?:,? and|[,:.])? ",
+        "",
+    ),
+    (r"^(?:please )?(?:settle|help me settle) an? (?:argument|bet|debate|dispute)\b[^.?!:]*[.?!:] ", ""),
+    (r"\b(photo|picture|pic|shot|snap|still) for (?:us|me) to \w+[^,.;]*$", r"\1"),
+    (r",? so that (?:i|we) can (?:listen|hear|check|test|log|record|compare|measure)\b[^,.;]*\W*$", ""),
+    (
+        r"^(?:now |right |ok |so )*(?:let['’]?s|let us|let me|i want to|i['’]d like to) see what(?:['’]s| is) behind "
+        r"(?:us|me|you|the camera)[,.;]? (?:so )?(?=(?:please )?(?:turn|spin|swing|rotate)\b)",
+        "",
+    ),
+    (
+        r"\b(?:i|we) (?:just )?(?:want|wanted|need|would like|['’]d like) to see the whole (?:lot|thing|place|yard|site|picture),? "
+        r"(?:so )?(?:go ahead and )?(?=zoom out)",
+        "",
+    ),
+    (
+        r"^i(?:['’]d| would) like to know how (?:busy|full|quiet|crowded|things)\b[^,;.]*[,;] so (?=(?:please )?(?:go|count|take|check"
+        r"|visit|tour|sweep)\b)",
+        "",
+    ),
+    (r",? the one (?:that )?(?:i|we|you|they|he|she)(?:['’]ve| have)? been \w+ing (?:about|on about)\b[^,.;]*$", ""),
+    (r"(?<=\w)[,.;]? (?:can|could|would|will) (?:you|u) count (?:both|them both|them all|all of them)(?: for (?:me|us))?\W*$", ""),
+    (r"^(afternoon|morning|evening|hi|hello|hiya), ", ""),
+    (
+        r",? for (?:the|my|our|an?|this) (?:[\w-]+ ){0,2}(?:check|tests?|survey|inspection|handover|series|trial|demo|meeting|newsletter"
+        r"|website|briefing|presentation)\W*$",
+        "",
+    ),
+    (
+        r",? before (?:i|we) (?:can )?(?:begin|start|sign|hand|lock|close|clock|knock|file|submit|send|report|finish|order|ring|call"
+        r"|phone|set off|leave)\b(?!.*\b(?:pan|tilt|zoom|turn|mov|count|photo|picture))[^,.;]*\W*$",
+        "",
+    ),
+    (r"^(?:oh,? )?(?:is|are|was)n['’]t (?:it|that|this|the|they)\b[^?.!,]*[!.,] (?=\w)", ""),
+    (
+        r"^(?:if i may ask for|i have|i['’]ve got|just) (?:one|two|three|a couple of|a few) (?:small |quick |little )?(?:things?"
+        r"|requests?|questions?|favou?rs?)[,:.] ",
+        "",
+    ),
+    (r"^(?:pardon|forgive|excuse) me for \w+ing,? (?:but )?", ""),
+    (
+        r"\b((?:photo|picture|pic|shot|snap|still)\b.*?) for my (?:sister|brother|wife|husband|mum|dad|mother|father|son|daughter"
+        r"|grandson|granddaughter|friend|colleague|neighbou?r)\W*$",
+        r"\1",
+    ),
+    (r"\b(photo|picture|pic|shot|snap|still) of it all\b", r"\1"),
+    (r",? if (?:nobody|no one) (?:else )?(?:needs|wants|is using) (?:the|this) camera\b", ""),
+    (r",? as (?:two|three|four|five|six|\d|separate)(?: separate| individual| distinct)? (?:moves|steps|movements)\b", ""),
+    (r"\bin the present (frame|view|picture|image|shot)\b", r"in the current \1"),
+    (
+        r"^(?:there(?:['’]s| is)|i (?:can )?see|we(?:['’]ve| have)(?: got)?) (an? [\w ]+?),? (?:who|that|which)\b[^,.;]*[,.;] (?:so )?"
+        r"(?:please |can you |could you |would you )*(follow|track|zoom in on|keep an eye on) (?:him|her|it|them)\b(?: with the camera)?",
+        r"\2 \1",
+    ),
 )
 """Patterns of remarks, with what is left of them."""

@@ -76,5 +76,27 @@ SHORTHAND = (
     (r"\b(it|you|they|that)ll\b", r"\1'll"),
     (r", any ideas?\W*$", "?"),
     (r"^(?:good (?:morning|afternoon|evening)|hello|hiya|hi)[.!] ", ""),
+    (r"\blk (?=at|left|right|up|down)", "look "),
+    (r"\btk (?=a |an |the |pic|photo)", "take "),
+    (r"\bbk (?=to|home|left|right|up|down|out)", "back "),
+    (r"\b(can|do) u c\b", r"\1 you see"),
+    (r"^hw (?=many|much)", "how "),
+    (r"\bno\.? of (?!course\b)(?=[a-z])", "number of "),
+    (r"(?<=\w) n (?=[a-z])", " and "),
+    (r"\bwhat am i saying\b", "i mean"),
+    (r",? i do apologi[sz]e,? ", ", sorry, "),
+    (rf"\b(left|right|up|down), \1\b", r"\1"),
+    (r"(?:^|(?<=[.;,] )|(?<=\n))step (?:\d|one|two|three|four|five|six) ?[:.,–-] *", ""),
+    (
+        r",? (?:and,? |then,? )?(?:once|when|after) (?:that|the|this) (?:move|movement|turn|pan|tilt|zoom) (?:has|is) "
+        r"(?:finished|done|complete|completed|ended|over),? ",
+        ", then ",
+    ),
+    (r"\ba full (?=minute|hour|second)", "a "),
+    (r"\bmind (?:terribly|awfully|very much|ever so much) ", "mind "),
+    (r"\b(could|can|might|would) (?:possibly|perhaps|kindly) ", r"\1 "),
+    (r",? \b(?:dude|bro|bruv|buddy)\b(?= (?:we|it|its|you|i|the|there|they)\b)", ","),
+    (r"\bteh\b", "the"),
+    (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),
 )
 """Patterns with the words that replace them."""

@@ -55,6 +55,26 @@ WITHDRAWALS = (
         r"(?=(?:just|only) \w)",
         "scratch that, ",
     ),
+    (
+        r"^(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *(?:(?:oh|no|actually|wait|sorry)[, ]+)*(?:never ?mind|forget)"
+        r"(?: about)? (?:him|her|it|them|that)[,.] *(?:[^,.]+, )?(?:just |instead )?(?=(?:go|take|count|zoom|pan|tilt|home)\b)",
+        "",
+    ),
+    (
+        r"^count (the [\w]+)(?: (?:on|in|at|by|near) [\w ]+)?[,.] *(?:(?:actually|no|nah|wait|sorry)[, ]+)*(?:forget|never ?mind) \1, "
+        r"(?=count\b)",
+        "",
+    ),
+    (
+        r" and (?:then )?(follow|track|count|read|zoom in on) (?:it|him|her|them)\b[,.;]? *(?:(?:actually|no|wait|sorry|oh)[, ]+)+"
+        r"(?:never ?mind|forget|skip|leave out|leave) (?:about )?the \1(?:ing|ning)? (?:part|bit)\W*$",
+        "",
+    ),
+    (
+        r"[,;]? (?:with|while|keeping|leaving) (?:the )?(?:pan|tilt|zoom)(?:,? and (?:the )?(?:pan|tilt|zoom))? (?:left |kept |staying )?"
+        r"(?:as (?:they are|it is)|unchanged|untouched|alone|where (?:they are|it is))\W*$",
+        "",
+    ),
 )
 """Patterns with the words that replace them."""
 
@@ -66,14 +86,16 @@ _PARTS = {
     "picture": _TAKING,
     "count": r"count\b",
     "follow": r"follow\b",
+    "home": r"(?:go|return|come) (?:back )?home\b",
+    "going home": r"(?:go|return|come) (?:back )?home\b",
     "track": r"(?:track|follow)\b",
 }
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
-    rf"thoughts?)[, ]+)*{_LEAVE_OUT} (?:the |that )?"
-    rf"(?P<what>pan|tilt|zoom|count|follow|track|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
+    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|correction|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
+    rf"thoughts?)[,: ]+)*{_LEAVE_OUT} (?:the |that )?"
+    rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
     rf"|go there|do that|count|look))?\W*",
     re.IGNORECASE,
 )
