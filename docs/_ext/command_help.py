@@ -36,8 +36,11 @@ class CommandHelp(SphinxDirective):
 
 def _walk(command: Any, path: list[str]) -> list[list[str]]:
     """Return the words of a command and of all commands below it, in the order of the help."""
-    below = [words for name, child in getattr(command, "commands", {}).items() for words in _walk(child, [*path, name])]
-    return [path, *below]
+    if not hasattr(command, "list_commands"):
+        return [path]
+    context = command.make_context(" ".join(["scope", *path]), [], resilient_parsing=True)
+    children = {name: command.get_command(context, name) for name in command.list_commands(context)}
+    return [path, *(words for name, child in children.items() for words in _walk(child, [*path, name]))]
 
 
 def _section(title: str, words: list[str]) -> nodes.section:

@@ -13,8 +13,8 @@ import typer
 from typer.core import TyperGroup
 from typer.testing import CliRunner
 
-from scope_ptz.cli.options import JsonOption, ModelFlags, PairFlags, SessionFlags, command
-from scope_ptz.cli.parameters import LeanGroup
+from scope_ptz.cli.options import JsonOption, ModelFlags, PairFlags, SessionFlags
+from scope_ptz.cli.typer_extensions import LeanGroup, command
 from scope_ptz.errors import InputError, PlannerError
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.cli.startup import prepare_help
+from scope_ptz.cli import prepare_help
 from tests.cli.conftest import SCENE, Scope
 from tests.support.programs import start_program
 
@@ -69,7 +69,7 @@ def test_tools_loads_the_bundled_schemas_and_no_models(tmp_path: Path) -> None:
 def test_plan_loads_no_models_no_images_and_no_grammar_compiler(tmp_path: Path) -> None:
     modules = modules_of("plan", "pan right 5, then count the cars", folder=tmp_path)
     assert packages_of(modules) <= LIGHT
-    assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.display"}
+    assert not modules & {"scope_ptz.planner.base", "scope_ptz.agent.records", "scope_ptz.tools.registry", "scope_ptz.cli.ask"}
 
 
 @pytest.mark.full

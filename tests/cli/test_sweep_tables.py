@@ -11,7 +11,7 @@ from rich.table import Table
 
 from scope_ptz.bench.engine.run_totals import CATEGORIES
 from scope_ptz.bench.scoring.trials import Evaluation
-from scope_ptz.cli.bench.sweep import sweep_tables
+from scope_ptz.cli.bench.run import sweep_tables
 from tests.bench.reports.sample_evaluations import evaluation, facts
 
 TASKS = facts(2)

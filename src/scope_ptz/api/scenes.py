@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.factory.scenes import open_scene, scene_search
+from scope_ptz.factory.scenes import draw_presets, open_scene, scene_search
 from scope_ptz.registry import Model, Role, load_registry
 from scope_ptz.settings import load_settings
+from scope_ptz.simulator.card import object_counts
 from scope_ptz.simulator.pack import Scene, list_scenes
 
 if TYPE_CHECKING:
@@ -53,30 +53,14 @@ class SceneInfo:
     @cached_property
     def objects(self) -> dict[str, int]:
         """Number of objects in the scene by category, the most frequent first. Moving objects are included."""
-        file = self._scene.file
-        categories = [instance.category for instance in file.instances] + [actor.category for actor in file.actors]
-        return dict(Counter(categories).most_common())
+        return dict(object_counts(self._scene.file))
 
     @cached_property
     def contact_sheet(self) -> Image.Image:
         """A picture with the views at all presets, drawn on first use."""
         from scope_ptz.api.event_loop import run_in_thread
 
-        return run_in_thread(self._draw)
-
-    async def _draw(self) -> Image.Image:
-        from PIL import Image
-
-        from scope_ptz.agent.contact_sheet import contact_sheet
-        from scope_ptz.camera.simulated import SimulatedCamera
-        from scope_ptz.simulator.clock import SceneClock
-
-        camera = SimulatedCamera(self._scene, clock=SceneClock(self._scene.file.start_s))
-        pictures = []
-        for name, viewpoint in self.presets.items():
-            await camera.go_to_preset(name)
-            pictures.append((f"{name} · {viewpoint}", Image.fromarray((await camera.frame()).image)))
-        return contact_sheet(self.title, pictures)
+        return run_in_thread(partial(draw_presets, self._scene))
 
     def __repr__(self) -> str:
         return f"<SceneInfo {self.name}: {len(self.viewpoints)} viewpoints, {len(self.presets)} presets>"

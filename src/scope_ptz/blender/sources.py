@@ -7,7 +7,7 @@ import importlib.util
 from hashlib import sha256
 from pathlib import Path
 
-from scope_ptz.errors import BlenderError
+from scope_ptz.errors import BlenderError, UnknownNameError
 
 PACKAGE = "scope_studio"
 
@@ -55,6 +55,19 @@ def scene_file(source: str) -> Path:
 def scene_names() -> list[str]:
     """Return the names of the scenes that can be built from code."""
     return sorted(f.parent.name.replace("_", "-") for f in (studio_folder() / "scenes").glob("*/__init__.py"))
+
+
+def check_scene_name(source: str) -> None:
+    """Check that a scene can be built from code, for a clear error before Blender starts.
+
+    Raises:
+        UnknownNameError: ``source`` is neither an existing Python file nor the name of a built-in scene.
+    """
+    if source.endswith(".py") and Path(source).is_file():
+        return
+    known = scene_names()
+    if source not in known:
+        raise UnknownNameError("scene", source, known)
 
 
 def _imported_modules(start: Path) -> set[Path]:

@@ -1,4 +1,4 @@
-"""The commands of ``scope``, except those in lazily loaded groups. Imports are inside the commands, so that help starts fast."""
+"""The ``scope`` app, with the commands outside lazily loaded groups. Imports are inside the commands, so that help starts fast."""
 
 from __future__ import annotations
 
@@ -9,29 +9,39 @@ from typing import Annotated
 import typer
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
+from scope_ptz.cli import pause_garbage_collection
 from scope_ptz.cli.bench import HELP as BENCH_HELP
 from scope_ptz.cli.bench import BenchGroup
 from scope_ptz.cli.camera import HELP as CAMERA_HELP
 from scope_ptz.cli.camera import CameraGroup
 from scope_ptz.cli.exit import EXIT_CODES
-from scope_ptz.cli.options import (
-    JsonOption,
-    ModelFlags,
-    OutputFile,
-    PairFlags,
-    SeedOption,
-    ServerFlags,
-    SessionFlags,
-    StartFlags,
-    TokensFile,
-    command,
-)
-from scope_ptz.cli.parameters import LeanGroup
-from scope_ptz.cli.runs import HELP as RUNS_HELP
-from scope_ptz.cli.runs import RunsGroup
-from scope_ptz.cli.startup import pause_garbage_collection
+from scope_ptz.cli.options import JsonOption, ModelFlags, PairFlags, ServerFlags, SessionFlags, TokensFile
+from scope_ptz.cli.typer_extensions import LazyGroup, LeanGroup, command
 
 _HELP = {"help_option_names": ["-h", "--help"]}
+_RUNS_HELP = """Stored runs: list, show, index, export and prune them; list audit logs.
+
+Runs are stored in the runs folder (SCOPE_RUNS_DIR, or --runs-dir). Its file `store.sqlite` is an index that can be rebuilt.
+"""
+
+
+class _RunsGroup(LazyGroup):
+    """The commands for stored runs."""
+
+    def load_app(self) -> typer.Typer:
+        from scope_ptz.cli.runs import runs_app
+
+        return runs_app
+
+
+class _SceneGroup(LazyGroup, LeanGroup):
+    """The commands for scenes."""
+
+    def load_app(self) -> typer.Typer:
+        from scope_ptz.cli.scenes import scene_app
+
+        return scene_app
+
 
 app = typer.Typer(
     cls=LeanGroup,
@@ -42,7 +52,7 @@ app = typer.Typer(
     add_completion=False,
     context_settings=_HELP,
 )
-scene_app = typer.Typer(cls=LeanGroup, help="List, show, view, build, bake and verify scenes.", no_args_is_help=True)
+scene_app = typer.Typer(cls=_SceneGroup, help="List, show, view, build, bake and verify scenes.", no_args_is_help=True)
 models_app = typer.Typer(
     cls=LeanGroup, help="List models, pairs and plug-ins, and print how to serve a model.", invoke_without_command=True
 )
@@ -55,12 +65,11 @@ app.add_typer(token_app, name="token", rich_help_panel="Set up")
 app.add_typer(
     typer.Typer(cls=CameraGroup, help=CAMERA_HELP, no_args_is_help=True), name="camera", rich_help_panel="Talk to a camera"
 )
-app.add_typer(typer.Typer(cls=RunsGroup, help=RUNS_HELP, no_args_is_help=True), name="runs", rich_help_panel="Talk to a camera")
+app.add_typer(typer.Typer(cls=_RunsGroup, help=_RUNS_HELP, no_args_is_help=True), name="runs", rich_help_panel="Talk to a camera")
 app.add_typer(typer.Typer(cls=BenchGroup, help=BENCH_HELP, no_args_is_help=True), name="bench", rich_help_panel="Measure")
 
-Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]
-SceneName = Annotated[str, typer.Argument(help="Name of the scene; see `scope scene list`.")]
-SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a Python file with `build(stage)`.")]
+_INSTRUCTION = typer.Argument(help="What the camera should do, in plain words.")
+TokenUser = Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")]
 ModelName = Annotated[str, typer.Argument(metavar="NAME", help="Name of the model; see `scope models`.")]
 
 
@@ -83,7 +92,7 @@ def _root(
 @app.command(epilog=EXIT_CODES, rich_help_panel="Talk to a camera")
 @command
 def ask(
-    instruction: Instruction,
+    instruction: Annotated[str, _INSTRUCTION],
     session: SessionFlags,
     models: PairFlags,
     next_steps: Annotated[bool, typer.Option("--next-steps", help="Print commands to try next.")] = False,
@@ -108,7 +117,7 @@ def chat(session: SessionFlags, models: PairFlags) -> int:
 @app.command(rich_help_panel="Talk to a camera")
 @command
 def plan(
-    instruction: Annotated[str | None, typer.Argument(help="What the camera should do, in plain words.")] = None,
+    instruction: Annotated[str | None, _INSTRUCTION] = None,
     presets: Annotated[str | None, typer.Option("--presets", help="Names of the camera's presets, separated by commas.")] = None,
     source: Annotated[
         Path | None, typer.Option("--from", help='File of {"instruction", "presets"} lines; "-" reads stdin.')
@@ -129,7 +138,7 @@ def replay(
     as_json: JsonOption = False,
 ) -> int:
     """Repeat a run from its trace, without models, and report whether the results are the same."""
-    from scope_ptz.cli.replay import replay as run
+    from scope_ptz.cli.ask import replay as run
 
     return run(run_dir, as_json=as_json)
 
@@ -194,16 +203,23 @@ def addon_build(
     as_json: JsonOption = False,
 ) -> None:
     """Build one zip file that Blender 3.4 to 4.1 installs as an add-on, and Blender 4.2 or later as an extension."""
-    from scope_ptz.cli.blender_addon import build
+    from scope_ptz.blender.addon_zip import write_addon_zip
+    from scope_ptz.cli.exit import put, put_json
 
-    build(out, as_json=as_json)
+    write_addon_zip(out)
+    if as_json:
+        put_json({"file": str(out.absolute())})
+        return
+    put(f"Wrote {out}.")
+    put("Blender 4.2 or later: Edit > Preferences > Get Extensions > menu at the top right > Install from Disk.")
+    put("Blender 3.4 to 4.1: Edit > Preferences > Add-ons > Install, then enable SCOPE.")
 
 
 # Tokens ----------------------------------------------------------------------------------------------------------------
 @token_app.command("add")
 @command
 def token_add(
-    name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")],
+    name: TokenUser,
     role: Annotated[str, typer.Option("--role", help="Role: viewer (can watch) or operator (can also send commands).")] = "viewer",
     tokens: TokensFile = None,
     as_json: JsonOption = False,
@@ -225,9 +241,7 @@ def token_list(tokens: TokensFile = None, as_json: JsonOption = False) -> None:
 
 @token_app.command("remove")
 @command
-def token_remove(
-    name: Annotated[str, typer.Argument(help="Name of the person or program that uses the token.")], tokens: TokensFile = None
-) -> None:
+def token_remove(name: TokenUser, tokens: TokensFile = None) -> None:
     """Remove a token. A running server rejects it from the next request onwards."""
     from scope_ptz.cli.serve import remove_token
 
@@ -329,100 +343,3 @@ def models_pairs(as_json: JsonOption = False) -> None:
     from scope_ptz.cli.models import list_pairs
 
     list_pairs(as_json=as_json)
-
-
-# Scenes ----------------------------------------------------------------------------------------------------------------
-@scene_app.command("list")
-@command
-def scene_list(as_json: JsonOption = False) -> int:
-    """List the installed scenes, and report those that cannot be loaded."""
-    from scope_ptz.cli.scenes import list_scenes
-
-    return list_scenes(as_json=as_json)
-
-
-@scene_app.command("show")
-@command
-def scene_show(
-    name: SceneName,
-    everything: Annotated[bool, typer.Option("--all", help="Print the whole card, with all text, objects and checksums.")] = False,
-    contact_sheet: Annotated[
-        Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
-    ] = None,
-    open_picture: Annotated[
-        bool | None, typer.Option("--open/--no-open", help="Open the picture (default: open it if there is a desktop).")
-    ] = None,
-    as_markdown: Annotated[bool, typer.Option("--markdown", help="Print only the card, as a Markdown page.")] = False,
-) -> None:
-    """Print a scene's card: its viewpoints, presets, objects and text. Also draw a picture of all presets."""
-    from scope_ptz.cli.scenes import print_markdown, show_scene
-
-    if as_markdown:
-        print_markdown(name, contact_sheet)
-    else:
-        show_scene(name, contact_sheet, open_sheet=open_picture, everything=everything)
-
-
-@scene_app.command("view")
-@command
-def scene_view(
-    start: StartFlags,
-    out: OutputFile,
-    name: Annotated[str | None, typer.Argument(help="Name of the scene, unless --camera or --scene is given.")] = None,
-    pan: Annotated[
-        float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: that of the start pose).")
-    ] = None,
-    tilt: Annotated[
-        float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: that of the start pose).")
-    ] = None,
-    zoom: Annotated[
-        float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: that of the start pose).")
-    ] = None,
-) -> None:
-    """Save the camera's view at a pose as a picture file."""
-    from scope_ptz.cli.scenes import view_scene
-
-    view_scene(start, name, (pan, tilt, zoom), out)
-
-
-@scene_app.command("build")
-@command
-def scene_build(
-    name: SceneSource,
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="Blender file to write (default: NAME.blend).")] = None,
-) -> None:
-    """Build a scene from its code in Blender and save it as a .blend file."""
-    from scope_ptz.cli.bake import build_scene
-
-    build_scene(name, out)
-
-
-@scene_app.command("bake")
-@command
-def scene_bake(
-    name: SceneSource,
-    quality: Annotated[str, typer.Option("--quality", help="Render quality: draft, standard or high.")] = "standard",
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="Scene folder to write (default: scenes/NAME).")] = None,
-    viewpoint: Annotated[list[str] | None, typer.Option("--viewpoint", help="Bake only this viewpoint (repeatable).")] = None,
-) -> int:
-    """Render a scene's viewpoints into packs. Running the same command again resumes an interrupted bake."""
-    from scope_ptz.cli.bake import bake_scene
-
-    return bake_scene(name, out, quality, viewpoint or [])
-
-
-@scene_app.command("verify")
-@command
-def scene_verify(
-    name: SceneName,
-    seed: SeedOption = 1,
-    wide: Annotated[int, typer.Option("--wide", min=0, help="Number of random poses at the widest zoom, at any tilt.")] = 8,
-    zoomed: Annotated[
-        int, typer.Option("--zoomed", min=0, help="Number of random poses at 2x to 5x, where the pack has tiles.")
-    ] = 8,
-    keep: Annotated[Path | None, typer.Option("--keep", help="Folder in which to save the live renders.")] = None,
-) -> int:
-    """Compare views from a scene's packs with live Blender renders of the same poses."""
-    from scope_ptz.cli.bake import verify_scene
-
-    return verify_scene(name, seed, wide, zoomed, keep)

@@ -18,10 +18,9 @@ from rich.text import Text
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
-from scope_ptz.cli.display import LiveView, show_end, show_planned
+from scope_ptz.cli.display import LiveView, sanitize, show_end, show_planned
 from scope_ptz.cli.exit import has_input, print_error
 from scope_ptz.cli.options import SessionFlags
-from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import InputError
 from scope_ptz.factory.models import ModelOptions
 from scope_ptz.planner.base import PastTurn

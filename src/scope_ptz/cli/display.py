@@ -1,20 +1,26 @@
-"""Terminal output of runs: live steps and a final summary."""
+"""Terminal output: strings that are safe to print, the live steps and the result of a run, and progress bars."""
 
 from __future__ import annotations
 
-from pathlib import Path
+import json
+from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.padding import Padding
-from rich.status import Status
 from rich.table import Table
 from rich.text import Text
 
-from scope_ptz.agent.records import Called, Decided, Ended, Started
-from scope_ptz.agent.timing import Timings
-from scope_ptz.cli.texts import arguments_text, sanitize, seconds_text, shorten
-from scope_ptz.planner.base import CallTools, ToolCall
+if TYPE_CHECKING:
+    from pathlib import Path
 
+    from rich.console import Console
+    from rich.progress import TaskID
+    from rich.status import Status
+
+    from scope_ptz.agent.records import Called, Decided, Ended, Started
+    from scope_ptz.agent.timing import Timings
+    from scope_ptz.planner.base import ToolCall
+
+MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 MAX_PLANNED = 12  # maximum number of dry-run commands to print
 MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
 _OUTCOME_TITLES = {
@@ -29,6 +35,27 @@ _OUTCOME_TITLES = {
 }
 
 
+def sanitize(text: str) -> str:
+    """Replace control characters in text, so that output from models and scenes cannot control the terminal."""
+    return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
+
+
+def shorten(text: str, limit: int = MAX_SHOWN_CHARS) -> str:
+    """Truncate text to ``limit`` characters, and append its full length if it was longer."""
+    return text if len(text) <= limit else f"{text[:limit].rstrip()}… ({len(text)} characters)"
+
+
+def arguments_text(arguments: dict[str, Any]) -> str:
+    """Format arguments for display, such as ``pan_deg=15, view=current``."""
+    parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
+    return sanitize(shorten(", ".join(parts)))
+
+
+def seconds_text(value: float) -> str:
+    """Format a duration in seconds or milliseconds."""
+    return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
+
+
 class LiveView:
     """A run listener that prints each step as it happens."""
 
@@ -37,6 +64,9 @@ class LiveView:
         self._status: Status | None = None
 
     def __call__(self, record: Started | Decided | Called | Ended) -> None:
+        from scope_ptz.agent.records import Called, Decided, Started
+        from scope_ptz.planner.base import CallTools
+
         self._show_status(None)
         match record:
             case Started():
@@ -125,3 +155,35 @@ def timings_text(timings: Timings) -> str:
     parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
     breakdown = ", ".join(f"{name} {seconds_text(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
     return f"{seconds_text(timings.total_s)} in total: {breakdown}."
+
+
+class ProgressBars:
+    """Progress bars with the remaining time, one for each part of a task.
+
+    Args:
+        console: The console to print on.
+        enabled: Whether to show the bars.
+        description: Format of the text before each bar.
+    """
+
+    def __init__(self, console: Console, *, enabled: bool = True, description: str = "{task.description}") -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+        self._progress = Progress(
+            TextColumn(description), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
+            console=console, disable=not enabled,
+        )  # fmt: skip
+        self._tasks: dict[str, TaskID] = {}
+
+    def __enter__(self) -> ProgressBars:
+        self._progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+    def __call__(self, part: str, done: int, total: int, seconds: float = 0.0) -> None:  # noqa: ARG002 - the bars measure time
+        """Show how much of a part is done."""
+        if part not in self._tasks:
+            self._tasks[part] = self._progress.add_task(part, total=total)
+        self._progress.update(self._tasks[part], completed=done, total=total)

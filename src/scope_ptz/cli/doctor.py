@@ -17,8 +17,8 @@ from rich.console import Console
 from rich.text import Text
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
+from scope_ptz.cli.display import sanitize
 from scope_ptz.cli.exit import FAILED, put_json, run_async
-from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import ConfigError, InputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models

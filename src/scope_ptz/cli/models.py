@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from scope_ptz.cli.display import sanitize
 from scope_ptz.cli.exit import put, put_json
-from scope_ptz.cli.texts import sanitize
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry import Model, Registry, Role, load_registry
 from scope_ptz.registry.model_entries import RUNTIME_GB, WINDOW

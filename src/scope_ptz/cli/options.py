@@ -1,29 +1,18 @@
-"""Options shared by several commands, and the decorator that adds them to a command.
+"""Options shared by several commands: single options, and groups of options for cameras, models, judges and servers.
 
-An option group is a frozen dataclass whose fields are annotated with ``typer.Option``. To include a group in a command, annotate a
-parameter with the dataclass. The decorator ``command`` expands the group into the flat signature that Typer expects::
-
-    @app.command()
-    @command
-    def ask(instruction: Instruction, session: SessionFlags, models: PairFlags, as_json: JsonOption = False) -> int:
-        ...
-
-If such a parameter has a default, it must be an instance of the group, which contains the default values of the options.
+To include a group in a command, annotate a parameter with its dataclass; see ``scope_ptz.cli.typer_extensions``.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass
-from functools import wraps
-from inspect import Parameter, Signature, signature
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.exit import exit_on_error
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
@@ -34,6 +23,8 @@ CAMERA_PANEL, RUN_PANEL, MODEL_PANEL, JUDGE_PANEL = "Camera", "Run", "Models", "
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print only JSON.")]
 SeedOption = Annotated[int, typer.Option("--seed", help="Seed for every random choice.")]
+RunSeedOption = Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)]
+PortOption = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")]
 OutputFile = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
 
 
@@ -124,7 +115,7 @@ class SessionFlags(StartFlags):
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
-    seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
+    seed: RunSeedOption = 0
 
     def in_real_time(self, *, as_json: bool = False) -> bool:
         """Return whether to move in real time: as requested or, by default, if the output is a terminal."""
@@ -337,7 +328,7 @@ class ServerFlags:
     host: Annotated[str, typer.Option("--host", help="Address to listen on. Addresses other than loopback need tokens.")] = (
         "127.0.0.1"
     )
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000
+    port: PortOption = 8000
     name: Annotated[
         list[str] | None, typer.Option("--name", help="Additional host name of the server, such as that of a proxy (repeatable).")
     ] = None
@@ -350,49 +341,3 @@ class ServerFlags:
     until_eof: Annotated[
         bool, typer.Option("--until-eof", help="Exit when standard input is closed, for programs that start the server.")
     ] = False
-
-
-def command(function: Callable[..., int | None]) -> Callable[..., None]:
-    """Convert a function with option groups to a function that Typer can register.
-
-    Each parameter annotated with a group is expanded to one keyword parameter per field of the group. The function's return value
-    becomes the exit code. SCOPE's errors are converted to one line on stderr and an exit code (see ``scope_ptz.cli.exit``). If the
-    parameter ``as_json`` is set, errors are also printed as JSON.
-    """
-    hints = get_type_hints(function, include_extras=True)
-    groups: dict[str, type[Any]] = {}
-    parameters: list[Parameter] = []
-    for parameter in signature(function).parameters.values():
-        annotation = hints[parameter.name]
-        if isinstance(annotation, type) and is_dataclass(annotation):
-            groups[parameter.name] = annotation
-            parameters += _expand_group(annotation, None if parameter.default is Parameter.empty else parameter.default)
-        else:
-            parameters.append(parameter.replace(annotation=annotation, kind=Parameter.KEYWORD_ONLY))
-
-    @wraps(function)
-    def run(**values: Any) -> None:
-        with exit_on_error(as_json=bool(values.get("as_json"))):
-            group_values = {
-                name: annotation(**{f.name: values.pop(f.name) for f in fields(annotation)}) for name, annotation in groups.items()
-            }
-            if code := function(**values, **group_values):
-                sys.exit(code)
-
-    del run.__wrapped__
-    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
-    run.__annotations__ = {p.name: p.annotation for p in parameters}
-    return run
-
-
-def _expand_group(group: type[Any], defaults: Any) -> list[Parameter]:
-    hints = get_type_hints(group, include_extras=True)
-    return [
-        Parameter(
-            field.name,
-            Parameter.KEYWORD_ONLY,
-            default=field.default if defaults is None else getattr(defaults, field.name),
-            annotation=hints[field.name],
-        )
-        for field in fields(group)
-    ]

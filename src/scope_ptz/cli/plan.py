@@ -1,15 +1,18 @@
-"""``scope plan``: show the tool calls for an instruction without moving the camera."""
+"""``scope plan``: show the tool calls for an instruction, or for each line of a file, without moving the camera."""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
+from scope_ptz.cli.display import arguments_text, sanitize, shorten
 from scope_ptz.cli.exit import BAD_INPUT, print_error, put_json
-from scope_ptz.cli.texts import arguments_text, sanitize, shorten
 from scope_ptz.errors import InputError
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
@@ -17,6 +20,14 @@ from scope_ptz.planner.plan import Plan
 from scope_ptz.planner.plan import plan as make_plan
 
 _INDENT = 5
+
+
+@dataclass(frozen=True, slots=True)
+class InstructionLine:
+    """A line in an instruction file. Additional fields are ignored, so that task files can also be used."""
+
+    instruction: str
+    presets: list[str] = field(default_factory=list)
 
 
 def plan(instruction: str | None, presets: str | None, source: Path | None, *, as_json: bool) -> int:
@@ -33,8 +44,6 @@ def plan(instruction: str | None, presets: str | None, source: Path | None, *, a
 
 
 def _plan_file(source: Path, *, as_json: bool) -> int:
-    from scope_ptz.cli.instruction_file import read_instructions
-
     code = 0
     for number, line in read_instructions(source):
         try:
@@ -45,6 +54,40 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
             print_error(f"{source}, line {number}: {error}")
             code = BAD_INPUT
     return code
+
+
+def read_instructions(source: Path) -> Iterator[tuple[int, InstructionLine | InputError]]:
+    """Yield the number of each non-empty line, and its parsed content or an error.
+
+    Args:
+        source: The file; "-" means standard input.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    adapter = TypeAdapter(InstructionLine)
+    for number, line in enumerate(_lines(source), 1):
+        if not line.strip():
+            continue
+        try:
+            yield number, adapter.validate_json(line, strict=True)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            yield number, InputError(f"{f'{where}: ' if where else ''}{first['msg']}.")
+
+
+def _lines(source: Path) -> Iterator[str]:
+    try:
+        if str(source) == "-":
+            yield from sys.stdin
+            return
+        with source.open(encoding="utf-8") as file:
+            yield from file
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{source} cannot be read: {error}.") from error
 
 
 def _make_plan(instruction: str, presets: list[str]) -> Plan:

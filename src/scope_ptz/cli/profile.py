@@ -14,8 +14,8 @@ from rich.progress import Progress, TextColumn
 from rich.text import Text
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
+from scope_ptz.cli.display import sanitize
 from scope_ptz.cli.exit import FAILED, put_json, run_async
-from scope_ptz.cli.texts import sanitize
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera

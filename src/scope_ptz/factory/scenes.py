@@ -10,6 +10,8 @@ from scope_ptz.settings import ScopeSettings, load_settings
 from scope_ptz.version import __version__
 
 if TYPE_CHECKING:
+    from PIL import Image
+
     from scope_ptz.simulator.pack import Scene
 
 
@@ -44,3 +46,19 @@ def open_scene(name: str, *, cache_pictures: bool = False) -> Scene:
     settings = load_settings()
     cache = PictureCache(settings.pictures_folder(), f"{__version__} {RENDERING_VERSION}") if cache_pictures else None
     return load_scene(name, scene_search(settings), tile_bytes=settings.tile_bytes(), picture_cache=cache)
+
+
+async def draw_presets(scene: Scene) -> Image.Image:
+    """Draw a contact sheet with a scene's views at all presets."""
+    from PIL import Image
+
+    from scope_ptz.agent.contact_sheet import contact_sheet
+    from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.simulator.clock import SceneClock
+
+    camera = SimulatedCamera(scene, clock=SceneClock(scene.file.start_s))
+    pictures = []
+    for preset in scene.file.presets:
+        await camera.go_to_preset(preset.name)
+        pictures.append((f"{preset.name} · {preset.viewpoint}", Image.fromarray((await camera.frame()).image)))
+    return contact_sheet(scene.file.title, pictures)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from scope_ptz.simulator.models import CapturedFrom, Layer, Manifest, ScenePreset, SceneViewpoint
+from scope_ptz.simulator.models import CapturedFrom, Layer, Manifest, SceneFile, ScenePreset, SceneViewpoint
 from scope_ptz.simulator.pack import Scene
 
 
@@ -35,6 +35,20 @@ def megabytes(size: int) -> str:
     return f"{size / 1e6:.1f} MB"
 
 
+def object_counts(file: SceneFile) -> list[tuple[str, int]]:
+    """Return the categories of a scene's objects with their numbers, the most frequent first. Moving objects are included."""
+    return Counter([instance.category for instance in file.instances] + [actor.category for actor in file.actors]).most_common()
+
+
+def contents(file: SceneFile) -> Iterator[tuple[str, list[str]]]:
+    """Yield the lists of a short card, each with a title: objects, texts, moving objects, and objects that are absent."""
+    counts = [f"{count} {category}" for category, count in object_counts(file)]
+    yield f"Objects ({len(file.instances) + len(file.actors)})", counts
+    yield f"Texts ({len(file.texts)})", [f"“{text}”" for text in dict.fromkeys(" ".join(t.text.split()) for t in file.texts)]
+    yield "Moving objects", [actor.name for actor in file.actors]
+    yield "Deliberately absent", list(file.absent)
+
+
 def card(scene: Scene) -> Iterator[CardSection]:
     """Yield the sections of a scene's card."""
     file = scene.file
@@ -45,10 +59,10 @@ def card(scene: Scene) -> Iterator[CardSection]:
         yield CardSection("Captured", tuple(_capture_details(scene, file.captured)))
         yield CardSection("Checksums (SHA-256)", tuple(_checksums(scene)))
         return
-    categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
-    inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
+    counts = object_counts(file)
+    inventory = ", ".join(f"{count} {category}" for category, count in counts)
     yield CardSection(
-        f"{len(file.instances)} static and {len(file.actors)} moving objects in {len(categories)} categories", (("", inventory),)
+        f"{len(file.instances)} static and {len(file.actors)} moving objects in {len(counts)} categories", (("", inventory),)
     )
     readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
     texts = "; ".join(f"{text} ({n} times)" if n > 2 else text for text, n in readable.items())

@@ -10,7 +10,7 @@ from rich.console import Console
 from scope_ptz.bench.engine.failure_summary import failure_summary
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench.sweep import sweep_tables
+from scope_ptz.cli.bench.run import sweep_tables
 from tests.bench.engine.yard_tasks import TASKS, turning_tasks
 from tests.bench.reports.sample_evaluations import card, facts, trial
 from tests.cli.conftest import Scope

@@ -18,7 +18,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import RequiredCall
 from scope_ptz.bench.tasks.task_facts import TaskFacts
-from scope_ptz.cli.bench.progress import unscored_lines
+from scope_ptz.factory.evaluation_display import unscored_lines
 from tests.bench.engine.yard_tasks import SCENE
 from tests.bench.reports.sample_evaluations import card, facts
 from tests.bench.reports.sample_evaluations import trial as report_trial

@@ -14,7 +14,7 @@ from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench.sweep import sweep_tables
+from scope_ptz.cli.bench.run import sweep_tables
 from tests.bench.engine.yard_tasks import TASKS
 from tests.cli.conftest import Scope
 from tests.support.misbehaving import Exchange, Misbehaving, Say, good, status
@@ -148,7 +148,7 @@ def test_reference_planners_and_perception_are_not_ranked_in_a_sweep(log_copy: P
 
 
 def test_the_pairs_of_the_paper_have_a_short_name() -> None:
-    from scope_ptz.cli.bench.sweep import pair_names
+    from scope_ptz.cli.bench.run import pair_names
 
     names = pair_names(None, paper=True)
     assert len(names) == 19

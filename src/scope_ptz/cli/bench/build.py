@@ -1,4 +1,4 @@
-"""Commands that build and validate a dataset: ``build``, ``card``, ``validate``, and ``gold`` for gold runs."""
+"""Commands that build and check a dataset: ``build``, ``card``, ``validate``, ``schema``, and ``gold`` for gold runs."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import ScenesOption, TasksOption
+from scope_ptz.cli.bench.flags import GoldOption, ScenesOption, TasksOption
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
-from scope_ptz.cli.options import JsonOption, command
+from scope_ptz.cli.options import JsonOption
+from scope_ptz.cli.typer_extensions import command
 from scope_ptz.errors import InputError, OutputError
 
 if TYPE_CHECKING:
@@ -150,6 +151,13 @@ def validate(
     return 0 if report.sound else FAILED
 
 
+def schema() -> None:
+    """Print the JSON schema of a task."""
+    from scope_ptz.bench.tasks.task import schema as task_schema
+
+    put_json(task_schema(), indent=2)
+
+
 @gold_app.command("make")
 @command
 def gold_make(
@@ -176,7 +184,7 @@ def gold_make(
 @gold_app.command("check")
 @command
 def gold_check(
-    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
+    gold: GoldOption = None,
     tasks: TasksOption = "core",
     as_json: JsonOption = False,
 ) -> int:

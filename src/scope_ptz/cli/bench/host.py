@@ -11,7 +11,7 @@ import typer
 
 from scope_ptz.cli.bench.flags import SPLITS
 from scope_ptz.cli.exit import put, put_json, run_async
-from scope_ptz.cli.options import JsonOption
+from scope_ptz.cli.options import JsonOption, PortOption
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def host(
     address: Annotated[
         str, typer.Option("--host", help="Address to listen on. Outside loopback, use a proxy that terminates TLS.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port to listen on; 0 for any free one.")] = 8000,
+    port: PortOption = 8000,
     name: Annotated[
         list[str] | None, typer.Option("--name", help="Additional host name, such as that of a proxy (repeatable).")
     ] = None,

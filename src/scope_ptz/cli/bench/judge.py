@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import TasksOption, judge_settings
-from scope_ptz.cli.bench.reading import print_findings, read_log
+from scope_ptz.cli.bench.flags import GoldOption, TasksOption, judge_settings
+from scope_ptz.cli.bench.verify import print_findings, read_log
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption, JudgeFlags
 from scope_ptz.errors import InputError
@@ -154,7 +154,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
 def judge_gold(
     out: Annotated[Path, typer.Option("--out", help="File for verdicts (JSONL). Verdicts already in it are not requested again.")],
     judge: JudgeFlags,
-    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published file).")] = None,
+    gold: GoldOption = None,
     tasks: TasksOption = "core",
     passing: Annotated[int, typer.Option(min=0, help="Number of runs without faults to add.")] = 60,
     repeats: Annotated[int, typer.Option(min=1, help="Number of judgements per run.")] = 1,

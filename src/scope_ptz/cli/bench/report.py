@@ -1,4 +1,4 @@
-"""Commands that read logs: ``report``, ``gate``, and ``submission`` (files for a public leaderboard)."""
+"""Commands that present results: ``report``, ``gate``, ``submission`` (files for a public leaderboard), and ``leaderboard``."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.flags import HostKeysOption, published_tasks
-from scope_ptz.cli.bench.reading import print_findings, read_log
-from scope_ptz.cli.bench.verify import verify_and_show
+from scope_ptz.cli.bench.flags import SPLITS, HostKeysOption, published_tasks
+from scope_ptz.cli.bench.verify import print_findings, read_log, verify_and_show
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
-from scope_ptz.cli.options import JsonOption, command
+from scope_ptz.cli.options import JsonOption
+from scope_ptz.cli.typer_extensions import command
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from scope_ptz.bench.leaderboard.entries import TaskSet
     from scope_ptz.bench.reports.task_pages import OpenedRun
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
     from scope_ptz.bench.submissions.submission import Header, TrialLine
@@ -134,13 +135,13 @@ def submission_make(
     """
     require_report_packages()
     from scope_ptz.bench.submissions.submission import submission_lines, write_submission
-    from scope_ptz.bench.tasks.splits import SPLITS
+    from scope_ptz.bench.tasks.splits import SPLITS as KNOWN_SPLITS
 
     evaluation = _read(log)
     print_findings(evaluation)
     with_traces = traces and log.suffix != HUMAN_RESULT_SUFFIX
     header, lines = _lines_with_traces(log, evaluation) if with_traces else submission_lines(evaluation)
-    skip_coverage = partial and tasks is None and header.card.split not in SPLITS
+    skip_coverage = partial and tasks is None and header.card.split not in KNOWN_SPLITS
     faults = [] if skip_coverage else _coverage_faults(header, lines, tasks)
     if faults and not partial:
         raise InputError(
@@ -190,6 +191,54 @@ def submission_validate(
         if verification is not None and result.runs:
             put("frames are not part of a submission, so they were not compared; `scope bench verify LOG` compares them")
     return FAILED if result.faults or differing else 0
+
+
+def leaderboard(
+    folder: Annotated[Path, typer.Argument(help="Folder with submissions (*.jsonl) and their signatures (*.jsonl.sig).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="HTML file to write.")],
+    tasks: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--tasks", help=f"Task file or split that submissions may cover (repeatable; splits: {SPLITS}; default: core)."
+        ),
+    ] = None,
+    host_key: HostKeysOption = None,
+    title: Annotated[str, typer.Option("--title", help="Title of the page.")] = "SCOPE leaderboard",
+    as_json: JsonOption = False,
+) -> None:
+    """Write a leaderboard from submissions, as one self-contained HTML page.
+
+    Submissions that are not valid are listed with the reason at the end of the page.
+    """
+    require_report_packages()
+    from scope_ptz.bench.leaderboard.entries import read_entries
+    from scope_ptz.bench.leaderboard.page import write_leaderboard
+    from scope_ptz.bench.signatures.keys import read_trusted_keys
+
+    entries, refused = read_entries(folder, [_task_set(name) for name in tasks or ["core"]], read_trusted_keys(host_key or ()))
+    tables = write_leaderboard(entries, refused, out, title=title)
+    if as_json:
+        rows = [{"file": e.file, "name": e.name, "labels": e.labels, "ranked": e.ranked} for e in entries]
+        put_json({"page": str(out), "entries": rows, "refused": [{"file": r.file, "reason": r.reason} for r in refused]}, indent=1)
+        return
+    for submission in refused:
+        print_error(f"{submission.file}: not listed: {submission.reason}")
+    rows_text = "1 entry" if len(entries) == 1 else f"{len(entries)} entries"
+    put(f"{out}: {rows_text} in {len(tables)} {'table' if len(tables) == 1 else 'tables'}")
+
+
+def _task_set(name: str) -> TaskSet:
+    from scope_ptz.bench.leaderboard.entries import TaskSet
+    from scope_ptz.factory.evaluation import load_entries
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.library import Library
+
+    entries = load_entries(name, Library(scene_search(load_settings())))
+    tasks = tuple(entry.task for entry in entries if entry.task is not None)
+    if not tasks:
+        raise InputError(f"{name} contains no tasks with executable checks, so it cannot have a leaderboard.")
+    return TaskSet(Path(name).name, tasks, {entry.facts.id: entry.facts for entry in entries})
 
 
 def _lines_with_traces(log: Path, evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:

@@ -1,23 +1,26 @@
-"""``scope bench verify``: repeat the calls of the runs in logs, and compare the results with the traces."""
+"""Read evaluation logs, and ``scope bench verify``: repeat the calls of their runs, and compare the results with the traces."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench.reading import print_findings, progress_bar, read_log
 from scope_ptz.cli.exit import FAILED, print_error, put, put_json
 from scope_ptz.cli.options import JsonOption
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.traces.verification import RunToVerify
     from scope_ptz.bench.engine.traces.verification_results import VerificationResult
+    from scope_ptz.bench.scoring.trials import Evaluation
 
 MAX_RUNS_LISTED = 50
+MIN_SAMPLES_SHOWN = 40
+"""Minimum number of samples for which a progress bar is shown."""
 
 
 def verify(
@@ -78,3 +81,40 @@ def verify_and_show(runs: Iterable[RunToVerify], total: int, name: str, *, quiet
         for line in result.summary:
             put(f"{name}: {line}")
     return result
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function that shows the number of finished items and the total number. Without a terminal, nothing is shown."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(title, total=None, visible=False)
+
+        def show(done: int, total: int) -> None:
+            progress.update(task, completed=done, total=total, visible=total >= MIN_SAMPLES_SHOWN)
+
+        yield show
+
+
+def read_log(path: Path) -> Evaluation:
+    """Read a log, and recompute its verdicts from the traces. For a large log, a progress bar is shown.
+
+    Raises:
+        TraceError: The log does not exist or is damaged.
+    """
+    from scope_ptz.bench.engine.logs import read_evaluation
+
+    with progress_bar(f"Scoring {path.name}") as progress:
+        return read_evaluation(path, progress)
+
+
+def print_findings(evaluation: Evaluation) -> None:
+    """Print the contradictions between a log and its traces to stderr."""
+    from scope_ptz.bench.reports.log_findings import finding_lines
+
+    for line in finding_lines(evaluation):
+        print_error(line)

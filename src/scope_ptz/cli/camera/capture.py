@@ -15,8 +15,6 @@ from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from scope_ptz.camera.capture.frame_taking import CaptureOptions
     from scope_ptz.factory.cameras.captures import CapturedScene, CapturePlan
 
@@ -50,8 +48,11 @@ def capture(
     The camera moves for a few minutes and then returns to its original pose. Running the same command again resumes an interrupted
     capture.
     """
+    from rich.console import Console
+
     from scope_ptz.camera.capture.frame_taking import CaptureOptions
     from scope_ptz.camera.capture.plan import Ranges
+    from scope_ptz.cli.display import ProgressBars
     from scope_ptz.factory.cameras.captures import capture_scene, scene_folder
     from scope_ptz.settings import load_settings
 
@@ -65,7 +66,8 @@ def capture(
         _print_plan(camera, options, target, as_json=as_json)
         return
     scenes: list[CapturedScene] = []
-    with _ProgressBars(enabled=not as_json) as bars:
+    show_bars = sys.stderr.isatty() and not as_json
+    with ProgressBars(Console(stderr=True), enabled=show_bars, description="{task.description:20}") as bars:
 
         async def work() -> None:
             scenes.append(await capture_scene(camera, target, options, bars))
@@ -144,31 +146,3 @@ def _scene_lines(scene: CapturedScene) -> list[str]:
         f"Try: SCOPE_SCENES_DIR={scene.folder.parent} scope ask --scene {scene.name} --perception MODEL 'what do you see?'"
     )
     return lines
-
-
-class _ProgressBars:
-    """Progress bars on stderr, one for each phase. They are shown only on a terminal."""
-
-    def __init__(self, *, enabled: bool) -> None:
-        from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-        self._progress = Progress(
-            TextColumn("{task.description:20}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
-            console=Console(stderr=True), disable=not (enabled and sys.stderr.isatty()),
-        )  # fmt: skip
-        self._tasks: dict[str, int] = {}
-
-    def __enter__(self) -> _ProgressBars:
-        self._progress.start()
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self._progress.stop()
-
-    def __call__(self, part: str, done: int, total: int) -> None:
-        from rich.progress import TaskID
-
-        if part not in self._tasks:
-            self._tasks[part] = self._progress.add_task(part, total=total)
-        self._progress.update(TaskID(self._tasks[part]), completed=done, total=total)

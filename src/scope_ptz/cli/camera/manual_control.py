@@ -1,4 +1,4 @@
-"""``scope camera snapshot|move|presets|watch|password``: control a camera manually."""
+"""``scope camera snapshot|move|focus|iris|presets|watch|password``: control a camera manually."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import getpass
 import math
 import sys
 from contextlib import aclosing, asynccontextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -17,14 +17,16 @@ from scope_ptz.cli.options import JsonOption
 from scope_ptz.errors import InputError, OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
+    from collections.abc import AsyncIterator, Awaitable, Callable
 
     from scope_ptz.camera.base import Arrival, Camera, Frame
+    from scope_ptz.camera.lens import FocusAction, IrisAction, LensState
 
 CameraSpecArgument = Annotated[
     str, typer.Argument(metavar="CAMERA", help="Camera: a name in scope.yaml, axis://USER@HOST, onvif://USER@HOST, sim:SCENE, ...")
 ]
 DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Print what the camera would do, without doing it.")]
+LensStep = Annotated[float, typer.Option("--step", help="Size of a step, as a fraction of the range.")]
 
 
 def snapshot(
@@ -116,6 +118,59 @@ def move(
         put(pose_text(pose) + note)
 
     run_async(work)
+
+
+def focus(
+    camera: CameraSpecArgument,
+    action: Annotated[
+        str | None, typer.Argument(help="auto, manual (hold), once (focus and hold), near, or far. Without it, print the focus.")
+    ] = None,
+    step: LensStep = 0.05,
+    dry_run: DryRunOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Set the focus, or print it."""
+
+    async def adjust(opened_camera: Camera) -> LensState:
+        return await (opened_camera.lens() if action is None else opened_camera.set_focus(cast("FocusAction", action), step=step))
+
+    _adjust_lens(camera, adjust, "focus", dry_run=dry_run, as_json=as_json)
+
+
+def iris(
+    camera: CameraSpecArgument,
+    action: Annotated[str | None, typer.Argument(help="auto, manual (hold), open, or close. Without it, print the iris.")] = None,
+    step: LensStep = 0.05,
+    dry_run: DryRunOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Set the iris, or print it."""
+
+    async def adjust(opened_camera: Camera) -> LensState:
+        return await (opened_camera.lens() if action is None else opened_camera.set_iris(cast("IrisAction", action), step=step))
+
+    _adjust_lens(camera, adjust, "iris", dry_run=dry_run, as_json=as_json)
+
+
+def _adjust_lens(
+    spec: str, adjust: Callable[[Camera], Awaitable[LensState]], setting: str, *, dry_run: bool, as_json: bool
+) -> None:
+    """Adjust a camera's lens, and print the state of one setting."""
+
+    async def work() -> None:
+        async with open_for_command(spec, dry_run=dry_run) as opened_camera:
+            state = await adjust(opened_camera)
+        put_json(asdict(state)) if as_json else put(_lens_text(state, setting))
+
+    run_async(work)
+
+
+def _lens_text(state: LensState, setting: str) -> str:
+    values: tuple[Any, Any] = (state.autofocus, state.focus) if setting == "focus" else (state.autoiris, state.iris)
+    mode = {True: "automatic", False: "manual", None: "mode not reported"}[values[0]]
+    ends = "near to far" if setting == "focus" else "closed to open"
+    position = "position not reported" if values[1] is None else f"at {values[1]:.0%} from {ends}"
+    return f"{setting}: {mode}, {position}"
 
 
 def presets(

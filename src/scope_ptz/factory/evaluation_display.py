@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
@@ -20,7 +20,6 @@ from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy
 from scope_ptz.bench.judging.deciding_judge import other_judges_note
 from scope_ptz.bench.judging.judgement_tally import lacks_verdict, needs_judgement
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
-from scope_ptz.cli.exit import print_error
 from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
 
 PRINT_EVERY_S = 15.0
@@ -37,10 +36,15 @@ GROUND_TRUTH_NOTE = (
 
 
 class LiveProgress(EvaluationProgress):
-    """Prints notes and the estimate, and shows a live table with the results so far."""
+    """Prints notes and the estimate, and shows a live table with the results so far.
 
-    def __init__(self, console: Console) -> None:
-        self._console = console
+    Args:
+        console: The console to print on.
+        notify: Function that prints a note.
+    """
+
+    def __init__(self, console: Console, notify: Callable[[str], None]) -> None:
+        self._console, self._notify = console, notify
         self._plan: EvaluationPlan | None = None
         self._trials: dict[str, Trial] = {}
         self._running: dict[str, float] = {}
@@ -48,7 +52,7 @@ class LiveProgress(EvaluationProgress):
         self._live: Live | None = None
 
     def note(self, text: str) -> None:
-        print_error(text)
+        self._notify(text)
 
     def _print(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True, markup=False)
