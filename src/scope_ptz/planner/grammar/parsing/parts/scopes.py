@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _TRIVIAL = ("FILLER", "COMMA", "LEADFILLER", "FIRSTLY", "INSTEAD", "QUOTE", "ATSAMETIME")
 _FIXED_TO_THINGS = frozenset({
     "sign", "signs", "text", "word", "words", "writing", "written", "letters", "lettering", "logo", "number", "name", "label",
-    "notice", "poster", "lock", "padlock", "handle", "says", "say", "printed", "painted", "colour", "color",
+    "notice", "poster", "lock", "padlock", "handle", "says", "say", "printed", "painted", "colour", "color", "time",
 })  # fmt: skip
 """Words for things fixed to other things: in "the sign on the gate", "gate" is not the preset."""
 
@@ -167,8 +167,8 @@ def _allows_place_after_on(before: Sequence[Lexeme]) -> bool:
 
 
 def _any_names_a_thing(places: Sequence[PresetRef]) -> bool:
-    """Return whether the name of any preset is also the name of a thing that can be in the picture: "the signs on the gantry"."""
-    return any(lexicon().concept(place.name.replace("-", " ")) is not None for place in places)
+    """Return whether the name of any preset is also a word for a thing that can be in the picture: "the signs on the gantry"."""
+    return any(place.name.isalpha() and lexicon().concept(place.name) is not None for place in places)
 
 
 def without_repetitions(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], int, bool]:

@@ -57,7 +57,7 @@ def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return lexemes in which each word of a compound noun is a noun."""
     out = list(lexemes)
     for i, x in enumerate(lexemes):
-        if x.has("FREE") or not i:
+        if x.has("FREE", "PRESET") or not i:
             continue
         after = lexemes[i + 1] if i + 1 < len(lexemes) else None
         if _is_modifier(out, i, after) or _is_head(out, i, after):

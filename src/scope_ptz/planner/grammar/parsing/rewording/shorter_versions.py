@@ -19,10 +19,10 @@ _MIN_WORDS = 2
 
 _BOUNDARY = re.compile(
     r"(?:[,;.!?]+|:| -+| –| —)\s+(?:(?:and so|so|and|but|anyway)\b,? )?"
-    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|go|zoom|pan|tilt|count|take|turn"
+    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|just|swing|get|give|go|zoom|pan|tilt|count|take|turn"
     r"|find|follow|read|check|show)\b)"
     r"| (?=(?:i['’]?m|we['’]?re|they['’]?re|(?:it|he|she|that|there|some(?:one|body|thing)|nobody)['’]s|(?:some(?:one|body)|nobody) "
-    r"(?:just|has|is|was)|its (?:fine|ok|good|too|been|just)|i can['’]?t|go ahead and|please|can you|could you)\b)",
+    r"(?:just|has|is|was)|its (?:fine|ok|good|too|been|just)|i can['’]?t|go ahead and|looks (?:a bit|like|as)|please|can you|could you)\b)",
     re.IGNORECASE,
 )
 """Where a sentence, a clause, or a subject with its verb begins: people who dictate leave punctuation out."""
@@ -54,7 +54,7 @@ _EXCLAMATION = re.compile(
     r"\b[\w' ]*|(?:good )?(?:morning|afternoon|evening)(?: \w+)?|hiya|hello(?: \w+){0,2}|hi(?: \w+){0,2}"
     r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|(?:i )?(?:think|reckon|bet|guess) (?:its?|it['’]s|he|she|they|that|the)\b[\w' ]*"
     r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
-    r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
+    r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*|looks? (?:an? (?:bit|little)|like|as|to be)\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
     r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",
     re.IGNORECASE,
 )

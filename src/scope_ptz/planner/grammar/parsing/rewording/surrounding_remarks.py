@@ -65,6 +65,8 @@ _ASKED = re.compile(
 _HARMLESS = re.compile(
     r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b"
     r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
+    r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
+    r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,
 )
@@ -77,7 +79,7 @@ _REASON = re.compile(
 )
 _PURPOSE = re.compile(
     r"(?P<done>.*(?:\d|\b(?:degrees|by \w+|picture|photo|pic|photograph|frame|zoom in on|show)\b).*?),? so (?:that )?"
-    r"(?P<aim>(?:i|we|those|the|they|he|she|my|our) .+)",
+    r"(?P<aim>(?:i|we)['’]\w+ .+|(?:i|we|those|the|they|he|she|my|our) .+)",
     re.IGNORECASE,
 )
 """A command with an amount or a thing, and what it is for: "tilt down by twelve, so that the bench comes into the picture"."""

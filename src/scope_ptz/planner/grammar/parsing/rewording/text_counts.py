@@ -125,6 +125,12 @@ COUNTS = (
         r"\b(count (?:the |all the )?[\w ]+?)(?: for (?:me|us))?, everywhere, all the way (?:a)?round\b",
         r"\1 all around",
     ),
+    (r"\b(?:give|get) (?:us|me) (?:a|the) (?:number|count|figure|total|tally) (?:on|for|of) ", "count "),
+    (r"^(count [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)(?=\W*$|[.;,])", r"\1 in the current view"),
+    (r"^full[- ]scene count: (?:the )?([\w ]+)", r"count the \1 in the whole scene"),
+    (r", and, separately, (?=the )|\band, separately, (?=the )", " and "),
+    (r"\bcount (the [\w ]+?) again(?=[.,;!?]|$| and\b)", r"count \1"),
+    (r"\b(how m[ae]ny [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
 )
 """Patterns with the words that replace them."""
 

@@ -10,6 +10,10 @@ _ENDS = {"lower": "down", "upper": "up", "left": "left", "right": "right"}
 _TURNED = {
     "rotated": "rotate", "panned": "pan", "turned": "turn", "tilted": "tilt", "moved": "move", "zoomed": "zoom", "pointed": "point",
 }  # fmt: skip
+_GERUNDS = {
+    "tak": "take", "zoom": "zoom", "go": "go", "mov": "move", "pan": "pan", "turn": "turn", "follow": "follow", "count": "count",
+    "track": "track",
+}  # fmt: skip
 _DONE = {"counted": "count", "checked": "check", "taken": "take", "read": "read"}
 _OPPOSITES = {"left": "right", "right": "left", "up": "down", "down": "up"}
 _TENS = {"ten": 10, "five": 5, "twentie": 20, "fifteen": 15, "thirtie": 30}
@@ -22,6 +26,10 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera"
 
 MOVES = (
+    (
+        r"\b(?:(?:pull|go|come|move|take|bring)(?: it| her| the camera)? )?right (in|out) as (?:wide|far|tight|close) as (?:it|she|he|you)(?:['’]ll| will| can)?(?: goes?| go)?\b",
+        r"zoom all the way \1",
+    ),
     (r"^.*\b(?:the same way|that way too|the same direction)\b.*$", lambda match: _same_direction(match[0])),
     (r"\b(as far as (?:it|she|he)(?:['’]ll| will)? go(?:es)?), all the way\b", r"\1"),
     (r",? so (?:that )?the (?:whole|entire) [\w ]+? (?:is|fits) in (?:the )?(?:picture|view|frame|shot)\W*$", ""),
@@ -225,6 +233,49 @@ MOVES = (
         r"(?: saved| stored| set up| programmed)?(?: (?:in|on|for|with) (?:this|the|here)(?: (?:one|camera|thing|system|site))?)?\W*$",
         "list the presets",
     ),
+    (
+        r"\bdon['’]t start (tak|zoom|go|mov|pan|turn|follow|count|track)(?:k|m|n)?(?:e)?(?:in|ing)\b",
+        lambda match: f"don't {_GERUNDS[match[1].lower()]}",
+    ),
+    (r"\b(?:drive|run|send) (?:the |that )?(zoom|pan|tilt) (?=all|to|left|right|up|down|in|out)", r"\1 "),
+    (
+        r"\b(?:can|could) (?:it|the camera|she) (?:please )?(go|come|move|turn|look|point|swing) (?=an?\b|to\b|further|left|right|up|down|slightly)",
+        r"\1 ",
+    ),
+    (r"\b(?:pull|go) (in|out) all the way(?: there)?\b", r"zoom all the way \1"),
+    (r"\bzoom (?:max|full|fully) (in|out)\b", r"zoom all the way \1"),
+    (r"\bput it back (?:to )?where it (?:normally |usually )?(?:sits|lives|belongs|goes|points|looks)\b", "go home"),
+    (
+        r"^what are (?:the|all the|your|our) (?:saved |stored )?(?:positions|presets|views|spots) (?:called|named)\b",
+        "list the presets",
+    ),
+    (
+        r"^what (?:spots|positions|views|presets|places) (?:have you|do you have|are) (?:saved|stored)(?: in [\w ]+)?\W*$",
+        "list the presets",
+    ),
+    (r"^(?:a )?close-?up of (the [\w ]+?) (?:required|needed|wanted|please)\W*$", r"zoom in on \1"),
+    (
+        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?),? (?:duration|for|time)?:? ?(\d+) ?(s|secs?|seconds?|mins?|minutes?)\b",
+        r"\1 the \2 for \3 \4",
+    ),
+    (r"(?<=, )(follow|track) (?:for )?(\d+|\w+) (s|secs?|seconds?|mins?|minutes?)\W*$", r"\1 it for \2 \3"),
+    (
+        r"\bi (?:should|would|['’]d) be (?:very |most )?(?:grateful|glad|obliged) for a (?:closer|better|good) look at ",
+        "zoom in on ",
+    ),
+    (r"^i (?:should|would|['’]d) like a (?:closer|better) look at ", "zoom in on "),
+    (r"\band lift (\w+)\b(?! the)", r"and tilt up \1"),
+    (r"^camera on (?:the )?([\w ]+?), close\W*$", r"zoom in on the \1"),
+    (r"^(?:photo|picture|pic|snap|shot|still) here(?: first)?, (?:then|and then) ", "take a picture, then "),
+    (r"\b(every (?:preset|view|position|spot)) there\b", r"\1"),
+    (
+        rf"\b((?:{_PICTURES})s?) of (?:the |that |this )?(?:(?:whole|entire|complete) [\w]+|sunset|sunrise|sky|landscape|scenery|skyline|panorama|view)\b",
+        r"\1",
+    ),
+    (r"\beach preset: (?:1[.)] )?go to (?:the|that|each) preset[;,.] (?:2[.)] )?(?:then |and )?", "each preset, "),
+    (r"\bswing (?:it )?over to the (left|right) by\b", r"pan \1 by"),
+    (r"\bgo back to 0\b", "pan to 0 degrees"),
+    (r"\bpoint at (-?\d+) degrees(?= ?, then pan to)", r"pan to \1 degrees"),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

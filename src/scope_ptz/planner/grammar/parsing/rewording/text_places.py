@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from scope_ptz.english import is_plural, plural
 from scope_ptz.planner.grammar.lexing.preset_names import short_names
+from scope_ptz.planner.grammar.parsing.rewording.preset_comparisons import with_presets_compared
 from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import asks_for_something
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
@@ -32,7 +33,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
     if not any(words & set(re.findall(r"[^\W_]+", preset.lower())) for preset in presets):
         return text
     names = _names(presets)
-    text = _without_apostrophes(text, presets)
+    text = with_presets_compared(_without_apostrophes(text, presets), names)
     for pattern, plain in (
         (rf"^right,? (?=(?:the )?(?:{names}) first\b)", ""),
         (rf"^(?:the )?({names}) first, (?:then )?", r"go to the \1, then "),
@@ -96,7 +97,20 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
         ),
         (
-            rf"\b((?:take|get|grab|make|snap) (?:me )?)(?:a|one) ({_PICTURES}) (?:at|of|from) (?:the )?({names}),? (?:and|then|and then) "
+            rf"\b(?:throw|fling|chuck|stick|put|get|bring) (?:her|it|him|the camera) (?:over )?(?:on|onto|to|at) (?:the )?({names})"
+            rf"(?: there)?\b",
+            r"go to the \1",
+        ),
+        (
+            rf"^(zoom in on|look at|find|follow|count|track) (?:the )?([\w ]+?), (?:at )?(?:the )?({names})\W*$",
+            r"go to the \3, then \1 the \2",
+        ),
+        (
+            rf"^(?:the )?({names})(?:,| -+| –|:) (?:the )?([\w ]+?) ({_STATES})\?+$",
+            lambda match: _state_asked(match),
+        ),
+        (
+            rf"\b((?:take|get|grab|make|snap) (?:me )?)(?:a|one) ({_PICTURES}) (?:at|of|from) (?:the )?({names}),? (?:and|then|and then|and afterwards) "
             rf"(?:another one|another|one|one more|a second(?: one)?) (?:at|of|from) (?:the )?({names})",
             r"\1a \2 at the \3 and at the \4",
         ),
@@ -134,6 +148,13 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
     ):
         text = re.sub(pattern, plain, text, flags=re.IGNORECASE)
     return text
+
+
+def _state_asked(match: re.Match[str]) -> str:
+    """Return "are the lights at the yard on?" for "yard - lights on?"; other texts are returned unchanged."""
+    if NO_TOPIC.search(match[2]):
+        return match[0]
+    return f"{'are' if is_plural(match[2].split(' ')[-1]) else 'is'} the {match[2]} at the {match[1]} {match[3]}?"
 
 
 def _visits_without(match: re.Match[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import NO_TOPIC
 
 _TAGS = "right|correct|yeah|is there|are they|is that right"
@@ -120,6 +121,21 @@ QUESTIONS = (
     (
         r"^(raining|snowing|dark|foggy|windy|wet|busy|quiet|icy|flooded|sunny|cloudy|clear|muddy|dusty)(?: (?:out|down|up))?(?: there| here)?\?$",
         r"is it \1?",
+    ),
+    (rf"^(?:please )?(?:determine|check|tell me|report) the state of (the [\w ]+?)[:,]? (\w+ or \w+)\?*$", r"is \1 \2?"),
+    (
+        r"[.?!] (?:please )?(?:look|check) (?:at|over|around|across) the (?:whole|entire|full) \w+ (?:before (?:you )?answer(?:ing)?|first)\W*$",
+        " in the whole scene?",
+    ),
+    (
+        r"^the ([\w ]+?), (what|which) (colou?r|size|make|shape) (is|are) (?:the |his |her |its |their )([\w ]+?)\?*$",
+        r"\2 \3 \4 the \5 of the \1?",
+    ),
+    (r"^looking all (?:a)?round(?: us| you| the \w+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (r"^all (?:a)?round (?:the \w+|us|you)[:,] ([^?]*?)(?: anywhere)?\?*$", r"\1 in the whole scene?"),
+    (
+        r"^(?:confirm|verify) (?:that )?(?:the )?([\w ]+?) (lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? (?:yes or no|y/n))?\W*$",
+        lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
     ),
 )
 """Patterns with the words that replace them."""

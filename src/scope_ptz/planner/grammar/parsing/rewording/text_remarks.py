@@ -133,5 +133,48 @@ REMARKS = (
         r"(?:please |can you |could you |would you )*(follow|track|zoom in on|keep an eye on) (?:him|her|it|them)\b(?: with the camera)?",
         r"\2 \1",
     ),
+    (
+        r",? if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any) (?:bother|trouble|problem|hassle)\b",
+        "",
+    ),
+    (r",? if you(?:['’]d| would| could) be so (?:good|kind)(?: as to)?\b", ""),
+    (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
+    (r"[.?!] that (?:should|ought to|will) (?:put|bring|get|give|show|do)\b[^?!]*$", ""),
+    (r"[.?!] then (?:i|we)(?: know| can| will| have|['’]ll)\b[^?!]*$", "."),
+    (r"[;,.] (?:both|they|these|all) (?:are|is) for (?:the|my|our)\b[^;.]*\W*$", ""),
+    (
+        r"\b(?:my|the|our) [\w'’ ]{2,30}? (?:says?|said|wants (?:me|you)|told me|tells me|asks (?:me|you)|asked me) to "
+        r"(?=(?:pan|tilt|zoom|point|turn|go|take|count|move|look|aim)\b)",
+        "",
+    ),
+    (r",? so (?:could|can|would|will) you (?:please )?do (?:that|it)(?: for me)?(?: please)?\W*$", ""),
+    (r"^i(?:['’]d| would) like to compare [^,.;]*[,.;] so ", ""),
+    (r"^can we do a (?:little |quick |short )?(?:tour|round|lap)\? ", ""),
+    (
+        r"[.?!,;] (?:i |we )?(?:just )?(?:want|need|like|would like) to know (?:should|which|where|what) (?:i|we|he|she|they|line|way)\b[^?.!]*\W*$",
+        "",
+    ),
+    (
+        r"[.?!] (?:the )?\w+ (?:wants|needs|would like) (?:the|a|some) (?:figures?|numbers?|report|list|result|answer|total)s?\W*$",
+        ".",
+    ),
+    (r"[.?!] my \w+ and i (?:have|are|were|had|want)\b[^?.]*\W*$", ""),
+    (
+        r"(?<=\w)[,.;?!] (?:customer|client|visitor|driver|guest|neighbour|police|manager)s? (?:request|complaining|waiting|asking|shouting|ringing|complaint|orders?)\b[^?.]*\W*$",
+        "",
+    ),
+    (r"[?.] i (?:ought to|should) (?:know|remember|have known)\b[^?]*$", "?"),
+    (r",? (?:like|as) this i (?:can['’]?t|cannot|can not) [\w ]+\W*$", ""),
+    (
+        r"\b(?:i|we) (?:need|want|have|would like) to see the (?:whole|complete|entire|full) [\w ]+?(?: for [\w ]+?)?, (?:so )?(?:please )?"
+        r"(?=zoom (?:all the way )?out)",
+        "",
+    ),
+    (
+        r"(\ball the way[\w ]*?|\bas far as it goes),? (?:till|until|so(?: that)?) (?:we|i|you) (?:get|have|can see|see) the (?:whole|entire) \w+(?: in (?:it|view|shot|the picture))?",
+        r"\1",
+    ),
+    (r"^(?:morning|night|late|early|day) shift here[,.:] ", ""),
+    (r"^before i (?:leave|go|start)\b[^,.;]*? i (?:must|need to|have to|want to) know ", "tell me "),
 )
 """Patterns of remarks, with what is left of them."""

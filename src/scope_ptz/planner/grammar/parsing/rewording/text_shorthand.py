@@ -98,5 +98,23 @@ SHORTHAND = (
     (r",? \b(?:dude|bro|bruv|buddy)\b(?= (?:we|it|its|you|i|the|there|they)\b)", ","),
     (r"\bteh\b", "the"),
     (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),
+    (r"\b(?:wud|wld)\b", "would"),
+    (r"\b(?:cud|cld)\b", "could"),
+    (r"\bye\b", "you"),
+    (r"\b(where['’]?s|where is|off|is) me (?!the\b|an?\b|and\b|please\b|some\b|all\b)(?=\w+)", r"\1 my "),
+    (r"\btrk\b", "track"),
+    (r"\bquik(?=ly)?", "quick"),
+    (r"\bim\b", "I'm"),
+    (r"\bcant\b", "can't"),
+    (r"\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all )", "it's "),
+    (r"^(?:tc|test|case|step|job|req|task)[- ]?[\d.]+ ?[:.] ", ""),
+    (r",? (?:oh,? )?i beg your pardon,? ", ", sorry, "),
+    (r"\bdon['’]?t be (?=\w+in)", "don't start "),
+    (
+        r"\bone (third|quarter|half|eighth|fifth|sixth) of a (?:full |whole |complete )?(?=turn|circle|rotation|revolution)",
+        r"a \1 of a ",
+    ),
+    (r"\bcuz\b", "because"),
+    (r"\bby like (?=\w)", "by "),
 )
 """Patterns with the words that replace them."""

@@ -6,9 +6,7 @@ import re
 
 _PICTURE = r"(?:pic|photo|picture|still|shot|snap|image)"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
-_LEAVE_OUT = (
-    r"(?:no|scratch|skip|strike|omit|forget|cancel|nvm|cut|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
-)
+_LEAVE_OUT = r"(?:(?:i|we) (?:no longer|don['’]?t) (?:need|want)|no|scratch|skip|strike|omit|forget|cancel|nvm|cut|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
 
 WITHDRAWALS = (
     (r",? (?:and )?(?:don['’]?t|do not) move (?:after|afterwards|after that)\W*$", ""),
@@ -75,8 +73,20 @@ WITHDRAWALS = (
         r"(?:as (?:they are|it is)|unchanged|untouched|alone|where (?:they are|it is))\W*$",
         "",
     ),
+    (
+        r"^((?:.*?)(?:1[.)] )?(?P<a>[^.;]+?)[.;] 2[.)] (?P<b>[^.;]+?)(?:[.;] 3[.)] (?P<c>[^.;]+?))?)[.;] *(?:correction[:,]? |actually,? )?"
+        r"(?:skip|omit|leave out|drop|ignore|forget) step (?P<n>[123])\W*$",
+        lambda match: _without_step(match),
+    ),
 )
 """Patterns with the words that replace them."""
+
+
+def _without_step(match: re.Match[str]) -> str:
+    """Return the steps of a numbered list without the one that is taken back."""
+    steps = [match["a"], match["b"], match["c"]]
+    return ", then ".join(step for i, step in enumerate(steps, 1) if step and i != int(match["n"]))
+
 
 _TAKING = rf"(?:take|get|grab|make|snap)\b.*\b{_PICTURE}\b|(?:photograph|{_PICTURE})\b"
 _PARTS = {
@@ -93,7 +103,7 @@ _PARTS = {
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)[,.;]+ *(?:(?:well|correction|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
+    rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
     rf"thoughts?)[,: ]+)*{_LEAVE_OUT} (?:the |that )?"
     rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
     rf"|go there|do that|count|look))?\W*",
