@@ -16,7 +16,7 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.consistency.acts import forbidden_actions, ignored_conditions, omitted_actions
 from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, ignored_directions, unnamed_directions
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
-from scope_ptz.planner.grammar.consistency.numbers import unused_numbers
+from scope_ptz.planner.grammar.consistency.numbers import is_amount, unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_command
 from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
@@ -83,7 +83,7 @@ def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[st
     _mark_described(words, evidence)
     _mark_presets(words, evidence)
     lost = (
-        *unused_numbers(words, evidence),
+        *(word for word in unused_numbers(words, evidence) if is_amount(words, word)),
         *ignored_directions(words, evidence),
         *contradicted_zoom(words, evidence),
         *unvisited_presets(words, evidence, presets),

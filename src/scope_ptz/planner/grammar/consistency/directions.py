@@ -85,7 +85,8 @@ def _is_direction(words: Sequence[Word], i: int, direction: str) -> bool:
     if before in {"the", "our", "its"} and after in _PARTS and direction in {"left", "right"}:
         return False  # "the light from the right side"
     if words[i].text == "right":
-        return after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"
+        is_tag = before == "," and after == "?"  # "nobody's there, right?"
+        return not is_tag and after not in _AFTER_RIGHT and before not in {"all", "straight", ""}  # "Right, count the cars"
     if words[i].text == "left":
         return before not in _BEFORE_LEFT
     if direction in {"up", "down"}:

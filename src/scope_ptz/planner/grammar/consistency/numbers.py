@@ -33,6 +33,12 @@ class StatedNumber:
 _BEFORE_HALF = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "got"})
 _AFTER_HALF = frozenset({"the", "full", "out", "empty", "open", "closed", "hidden", "cut", "missing", "gone"})
 """Words before and after "half" in a remark about what the picture shows."""
+_AFTER_AMOUNT = frozenset({
+    "degrees", "degree", "deg", "degs", "x", "times", "percent", "per", "seconds", "second", "secs", "sec", "minutes", "minute", "mins",
+    "min", "left", "right", "up", "down", "to", "in", "out", "please", "more", "further", "steps", "shots", "pictures", "photos",
+})  # fmt: skip
+"""Words after the number of an amount."""
+
 _LONG_TIMES = frozenset({"minute", "minutes", "min", "mins", "hour", "hours"})
 
 
@@ -46,13 +52,20 @@ def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
         together = (
             first.value * second.value,  # "three quarters of 20 degrees"
             360 * first.value * second.value,  # "three quarters of the way round"
-            first.value + second.value if second.is_fraction else first.value * second.value,  # "7 1/2 degrees"
+            first.value + second.value,  # "7 1/2 degrees", "20 plus 15"
             60 * first.value + second.value,  # "1 minute 30 seconds"
         )
         is_time = _is_among(together[-1], evidence.numbers)
         if second in unmatched and (is_time or (first in unmatched and any(_is_among(value, remaining) for value in together))):
             unmatched = [stated for stated in unmatched if stated not in (first, second)]
     return [word for stated in unmatched for word in stated.words]
+
+
+def is_amount(words: Sequence[Word], word: Word) -> bool:
+    """Return whether a number has a unit or direction, or ends its clause: "20 degrees", unlike "two guards"."""
+    i = next(i for i, other in enumerate(words) if other is word)
+    after = words[i + 1] if i + 1 < len(words) else None
+    return after is None or after.is_break or after.text in _AFTER_AMOUNT
 
 
 def _stated_numbers(words: Sequence[Word]) -> list[StatedNumber]:
