@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
-from scope_ptz.planner.grammar.consistency.check import not_understood, objection, objection_to_loss
+from scope_ptz.planner.grammar.consistency.check import not_understood, objection, objection_to_loss, objection_to_withdrawal
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
@@ -20,6 +21,13 @@ if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
 
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
+
+_MULTIPLE = re.compile(r"\b(?:twice|double|half|triple|three times) (?:that|this)\b(?! \w+ing)\W*(?:$|and\b|then\b)", re.IGNORECASE)
+_NAMED_AMOUNT = re.compile(
+    rf"\d|\b(?:{'|'.join(word for word in NUMBER_WORDS if word.isalpha() and word not in ('half', 'twice', 'double'))})\b|\b(?:bit|lot|touch|quarter turn)\b",
+    re.IGNORECASE,
+)
+"""An amount of which another may be a multiple: "left 10, then twice that"."""
 
 _NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)
 
@@ -50,6 +58,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
         return Understanding(clarification=question)
+    if (question := objection_to_withdrawal(instruction)) is not None:
+        return Understanding(clarification=question)
     said = continued_text(instruction, conversation, preset_names or ())
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
@@ -60,12 +70,11 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 
 def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequence[PastTurn]) -> Understanding:
     """Return the steps of a text, or a clarifying question."""
-    resolver = Resolver(preset_names, tuple(conversation))
     parsed = parse(said, preset_names or ())
     try:
         if parsed.steps is None:
             raise _question_about_unparsed(parsed)
-        bound = resolver.bind(parsed.steps)
+        bound = Resolver(preset_names, tuple(conversation)).bind(parsed.steps)
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
     if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
@@ -75,6 +84,8 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
     question = objection(parsed.text, bound, preset_names or ()) or (objection_to_loss(parsed.said, bound, preset_names or ()))
+    if question is None and not conversation and _MULTIPLE.search(said) and not _NAMED_AMOUNT.search(said):
+        question = "How much is that? Please say the amount."
     if question:
         return Understanding(clarification=question)
     return Understanding(bound)

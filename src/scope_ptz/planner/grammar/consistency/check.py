@@ -18,6 +18,7 @@ from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, 
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import is_amount, unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_command
+from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statement
 from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
@@ -94,6 +95,12 @@ def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[st
     if unnamed := unnamed_directions(words, evidence):
         return f"I am not sure that you mean {listing(unnamed, 'or')}. Which way shall I turn, and how far?"
     return None
+
+
+def objection_to_withdrawal(instruction: str) -> str | None:
+    """Return the question to ask if a statement seems to take back, forbid or change what is asked for; None if none does."""
+    words = withdrawing_statement(instruction)
+    return None if words is None else f'You say "{words}", so I did nothing. Please say only what I shall do.'
 
 
 def not_understood(phrases: Sequence[str]) -> str:

@@ -67,6 +67,10 @@ _CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
 
 _CAMERA_MOVED = "(FILLER)* (DET)? CAMERA (ADVERB|FILLER)* (PAN-ED|TILT-ED|ZOOM-ED|TURN-ED|CARRY-ED|SWITCH-ED)"
 """A report of a move, which is not a command: "the camera panned left"."""
+_THING_MOVES = "(DET|my|our)? FREE{1,3} BE (ADVERB|FILLER)* (CARRY-ING|TURN-ING|SWITCH-ING) (LEFT|RIGHT|UP|DOWN|AROUND)"
+"""A statement about a thing that moves, which is not a command: "things are moving up here"."""
+
+_ROLL = "(FILLER)* roll (DET|CAMERA|VIEWNOUN|PICTURE|it)* (LEFT|RIGHT|NUM|by) _*"
 _TO_CLOCK_POSITION = (
     f"(AIM|TURN|PAN|TILT|CARRY|SWITCH|ZOOM|SHOW|FIND|to|at|on|for|in|DET|SELF|GLUE|CAMERA|it|FILLER)* {CLOCK_POSITION} "
     f"(PRESETNOUN|SIDE|direction|FILLER)*"
@@ -101,6 +105,8 @@ class Reader:
         Raises:
             NotUnderstoodError: No interpretation covers all words of the clause.
         """
+        if not has_question_mark and match_start(_THING_MOVES, lexemes):
+            raise NotUnderstoodError(lexemes)
         if match_start(_CAMERA_MOVED, lexemes) or search(_SHOULD_HAVE_MOVED, lexemes):
             raise NotUnderstoodError(lexemes)
         if full_match(_CALL_SIGN, lexemes):
@@ -286,6 +292,8 @@ class Reader:
         failed: NotUnderstoodError | None = None
         if full_match(_RECORDING, lexemes):
             return (Unclear("I take single pictures and cannot record. Shall I take a picture?"),)
+        if full_match(_ROLL, lexemes):
+            return (Unclear("I can pan, tilt and zoom, but not roll. Which way shall I turn, and how far?"),)
         if full_match(_TO_CLOCK_POSITION, lexemes) and not has_question_mark:
             return (special_turn(lexemes) or Unclear("Which way shall I turn, and how far?"),)
         if (

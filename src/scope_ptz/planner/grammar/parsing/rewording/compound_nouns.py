@@ -66,7 +66,9 @@ def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
 
 
 def _begins_noun_phrase(lexeme: Lexeme) -> bool:
-    return lexeme.has("DET", "HOWMANY", "ANY") and not lexeme.has("NUM") and lexeme.word not in {"it", "all", "that", "them"}
+    return (
+        lexeme.has("DET", "HOWMANY", "ANY", "COUNT") and not lexeme.has("NUM") and lexeme.word not in {"it", "all", "that", "them"}
+    )
 
 
 def _is_noun(lexeme: Lexeme) -> bool:

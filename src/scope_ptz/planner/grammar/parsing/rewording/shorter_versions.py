@@ -11,21 +11,24 @@ from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause, is_pol
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
 from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import NUMBER, asks_for_something
+from scope_ptz.planner.grammar.parsing.rewording.remark_forms import EXCLAMATION, EXEMPT, REFUSAL, REPORT, SUBJECT
+from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import AMOUNT, NUMBER, asks_for_something, names_command
 
 _MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
-_MAX_VERSIONS = 8
+_MAX_VERSIONS = 10
 _MIN_WORDS = 2
 
+_LINKS = r"(?:(?:and so|so|and|but|anyway|as|since|because|for)\b,? )?"
 _BOUNDARY = re.compile(
-    r"(?:[,;.!?]+|:| -+| –| —)\s+(?:(?:and so|so|and|but|anyway)\b,? )?"
-    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|just|swing|get|give|go|zoom|pan|tilt|count|take|turn"
-    r"|find|follow|read|check|show)\b)"
-    r"| (?=(?:i['’]?m|we['’]?re|they['’]?re|(?:it|he|she|that|there|some(?:one|body|thing)|nobody)['’]s|(?:some(?:one|body)|nobody) "
-    r"(?:just|has|is|was)|its (?:fine|ok|good|too|been|just)|i can['’]?t|go ahead and|looks (?:a bit|like|as)|please|can you|could you)\b)",
+    rf"(?:[,;.!?]+|:| -+| –| —)\s+{_LINKS}"
+    r"| (?:so|but|and) (?=(?:i|we|i['’]d|could|can|would|will|please|tell|what|which|how|is|are|just|swing|get|give|go|zoom|pan"
+    r"|tilt|count|take|turn|find|follow|read|check|show)\b)"
+    rf"| (?=(?:{SUBJECT}|go ahead and|looks (?:a bit|like|as)|please|can you|could you)\b)"
+    rf"| (?:as|since|because|cos|coz|so|for) (?=(?:{SUBJECT})\b)",
     re.IGNORECASE,
 )
 """Where a sentence, a clause, or a subject with its verb begins: people who dictate leave punctuation out."""
+
 _RELAYED_QUESTION = re.compile(
     r".*\b(?:to know|(?:is|are|was|were|keeps?|been) (?:asking|wondering)(?: me)?|asks?(?: me)?|wonders?) "
     r"(?=(?:how|whether|if|what|which|where|who|is|are)\b)",
@@ -41,34 +44,23 @@ _EXTENT = re.compile(
 )
 """Words of a phrase with "for" or "as" that says how long or how far to go, which must not be left out."""
 
-_REFUSAL = re.compile(
-    r"\b(?:no|nah|nope|wait|hang on|hold on|stop|actually|instead|undo|never ?mind|forget|not|before|leave|skip|don['’]?t)\b",
+_UNFINISHED = re.compile(
+    r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|in|by|with"
+    r"|than|like|before|after|where|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
     re.IGNORECASE,
 )
-"""Words that may take back what was said, or say when not to do it."""
-
-_EXCLAMATION = re.compile(
-    r"(?:(?:oh|ah|well|my|gosh|goodness|now|and|just) )*(?:how \w+|what an? [\w ]+|(?:lovely|beautiful|nice|gorgeous|terrible"
-    r"|dreadful|horrible|awful|rotten|cold|busy|quiet|funny|miserable|glorious|proper|typical) [\w ]+"
-    r"|hear(?:ing)? (?:reports?|complaints?) [\w ]+|(?:had|got|getting|having) (?:an? )?(?:reports?|complaints?|calls?|word|news)"
-    r"\b[\w' ]*|(?:good )?(?:morning|afternoon|evening)(?: \w+)?|hiya|hello(?: \w+){0,2}|hi(?: \w+){0,2}"
-    r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|(?:i )?(?:think|reckon|bet|guess) (?:its?|it['’]s|he|she|they|that|the)\b[\w' ]*"
-    r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
-    r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*|looks? (?:an? (?:bit|little)|like|as|to be)\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
-    r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",
-    re.IGNORECASE,
-)
-"""Remarks that are no statements: "how romantic", "lovely day for it", "many thanks from all of us"."""
+"""The end of a text from which nothing can be left out: "pan right until" before "something moves"."""
 
 _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|these|ones?|both|same)\b", re.IGNORECASE)
+_REPEATS = re.compile(r"\b(?:back|again|same|that much|as before|undo|twice that|half that)\b", re.IGNORECASE)
 
 
 def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
     """Yield shorter versions of an instruction, the longest first.
 
     Only remarks are left out: statements, exclamations and courtesy without any word that may ask for something, restrict it or
-    take it back, without a preset, and without a number after another number. What comes after a remark must begin like a request, and
-    must not refer to the remark ("there is a van by the fence, follow it").
+    take it back, without a preset, and without an amount after another number. What comes after a remark must begin like a request,
+    and must not refer to the remark ("there is a van by the fence, follow it").
     """
     if len(text) > _MAX_CHARS:
         return
@@ -78,7 +70,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
             yield f"tell me {question}"
     cuts = [(0, 0), *((match.start(), match.end()) for match in _BOUNDARY.finditer(text))]
     begins = [end for start, end in cuts if _is_lead(text[:start], text[end:], presets)]
-    ends = [len(text), *(end for end in _ends(text, presets))]
+    ends = sorted({len(text), *_ends(text, presets)})
     versions = sorted(((begin, end) for begin in begins for end in ends if begin < end), key=lambda cut: cut[0] - cut[1])
     for begin, end in versions[:_MAX_VERSIONS]:
         kept = text[begin:end]
@@ -92,6 +84,8 @@ def _is_lead(lead: str, rest: str, presets: tuple[str, ...]) -> bool:
         return True
     if not _opens_request(rest, presets) or _refers_back(rest):
         return False
+    if REPORT.fullmatch(lead.strip(" ,.;!")) and not _REPEATS.search(rest):
+        return True
     parts = [part for part in _BOUNDARY.split(lead) if part.strip()]
     return all(_is_harmless(part, presets) for part in parts) or _is_harmless(lead, presets)
 
@@ -100,13 +94,18 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        parts = [part for part in _BOUNDARY.split(tail) if part.strip()]
-        if all(_is_harmless(part, presets) for part in parts) and not (NUMBER.search(said) and NUMBER.search(tail)):
+        if _UNFINISHED.search(said) is None and is_remark(tail, presets) and not (NUMBER.search(said) and AMOUNT.search(tail)):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]
         if not (asks_for_something(tail, presets) or NUMBER.search(tail) or _EXTENT.search(tail)):
             yield match.start()
+
+
+def is_remark(tail: str, presets: tuple[str, ...]) -> bool:
+    """Return whether all clauses of a text are remarks. Only the first must be recognised by its form."""
+    first, *others = [part for part in _BOUNDARY.split(tail) if part.strip()] or [""]
+    return _is_harmless(first, presets) and all(_asks_nothing(part, presets) for part in others)
 
 
 def _opens_request(text: str, presets: tuple[str, ...]) -> bool:
@@ -120,17 +119,25 @@ def _refers_back(text: str) -> bool:
     return _REFERENCE.search(_BOUNDARY.split(text)[0]) is not None
 
 
+def _asks_nothing(text: str, presets: tuple[str, ...]) -> bool:
+    plain = text.replace("’", "'").strip(" .,!?;")
+    lexemes = lexemes_of(plain, presets)
+    if is_polite(lexemes) and not names_command(plain):
+        return True
+    return not lexemes or not (asks_for_something(plain, presets) or REFUSAL.match(plain))
+
+
 def _is_harmless(text: str, presets: tuple[str, ...], *, may_be_empty: bool = False) -> bool:
     """Return whether a text is a remark that asks for nothing."""
     plain = text.replace("’", "'").strip(" .,!?;")
     if not plain:
         return may_be_empty
     lexemes = with_compound_nouns(lexemes_of(plain, presets))
-    if is_polite(lexemes):
+    if (is_polite(lexemes) and not names_command(plain)) or EXEMPT.fullmatch(plain):
         return True
-    if asks_for_something(plain, presets) or _REFUSAL.match(plain):
+    if asks_for_something(plain, presets) or REFUSAL.match(plain):
         return False
-    if _EXCLAMATION.fullmatch(plain):
+    if EXCLAMATION.fullmatch(plain) or re.match(rf"(?:{SUBJECT}) ", plain, re.IGNORECASE):
         return True
     if is_question(lexemes) or lexemes[0].has(*VERBS):
         return False

@@ -28,7 +28,7 @@ _STATEMENT = re.compile(
 """Statements that ``is_statement`` does not recognise: "Dave reckons it's getting too high", "looks funny from here"."""
 
 _COMMAND = (
-    r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn\w*|rotat\w*|swing\w*|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
+    r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn(?:s|ing)?|rotat(?:e|es|ing)|swing(?:s|ing)?|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
     r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check\w*|look(?:ing)? (?:at|for|up|down"
     r"|left|right|in|over)"
     r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
@@ -62,15 +62,25 @@ _ASKED = re.compile(
 )
 """Words with which a statement may ask for something, restrict what was asked, or take it back."""
 
+_COMMANDING = re.compile(rf"\b(?:{_COMMAND}|{_DIRECTION})\b", re.IGNORECASE)
 _HARMLESS = re.compile(
     r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b"
     r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
+    r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
+    r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
+    r"|\bshould be (?:bringing|coming|arriving|landing|starting|finishing|done|ready)\b"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,
 )
 NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
+AMOUNT = re.compile(
+    rf"(?:{NUMBER.pattern})(?=\W*$|\W* ?(?:degrees?|deg|x|times|percent|%|seconds?|secs?|minutes?|mins?|left|right|up|down|to|instead))",
+    re.IGNORECASE,
+)
+"""A number that may be the amount of a move, unlike the one in "there are 25 people waiting"."""
+
 _BOUNDARY = re.compile(r"(?:[,;.!?]|(?<=\w) -+| –| —)\s+(?=[\w'’]+[^.;!?]*[.!]*$)")
 _REASON = re.compile(
     r",? (?:as|because|'?cause|cos|coz|since|given that|seeing as|now that|and i (?:only )?ask (?:only )?because) "
@@ -93,7 +103,7 @@ _IDIOMS = re.compile(
     r"(?:,|[.?]| -+) (?:(?:i )?(?:don't|do not) like the look of (?:him|her|them|it|that)|(?:i|we)(?:'ve| have)? lost "
     r"(?:track|count)"
     r"|i keep losing (?:track|count)|i swear(?: to god)?|there's one just \w+ in|do i need (?:my|me|a|an) \w+"
-    r"|just wonderin(?:g)? (?:where|what|how|why|if|whether) [\w ]+|i like to know what's [\w' ]+|can (?:you|yer|u) "
+    r"|just wonderin(?:g)? (?:where|what|how|why|if|whether) [\w' ]+|i like to know what's [\w' ]+|can (?:you|yer|u) "
     r"count (?:them|em)|thanks a (?:million|bunch|lot)"
     r"|(?:need|want) to know (?:if|whether) (?:i|we) (?:should|need|have to|can) [\w ]+|can (?:you|u) see|trying to "
     r"(?:work out|figure out|see|decide) (?:if|whether|what|which) [\w' ]+|do (?:you|u) (?:reckon|think|know))[.!?]*$",
@@ -116,7 +126,7 @@ _NEWS_BEFORE_QUESTION = re.compile(
     r"(?P<news>[^?]+?)(?:, so|[.;,]) (?P<rest>(?:how many|is|are|what|which|has|have|any|could you tell me) [^.;]+\?*)",
     re.IGNORECASE,
 )
-_INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot)\b", re.IGNORECASE)
+_INTO_PICTURE = re.compile(r"\b(?:into|in) (?:the )?(?:picture|view|frame|shot|sight)\b", re.IGNORECASE)
 _NEWS_BEFORE_REQUEST = re.compile(
     r"(?P<news>[^?.;]+)[,;] (?P<rest>(?:(?:could|can|would|will) you|(?:please|kindly) (?!do\b)) ?(?:\w+ ){2}.+)", re.IGNORECASE
 )
@@ -196,6 +206,11 @@ def _is_remark(text: str, presets: tuple[str, ...]) -> bool:
     if len(plain.split()) < _MIN_WORDS or asks_for_something(plain, presets):
         return False
     return _STATEMENT.fullmatch(plain) is not None or is_statement(lexemes_of(plain))
+
+
+def names_command(text: str) -> bool:
+    """Return whether a text contains a word for a command or a direction."""
+    return _COMMANDING.search(text) is not None
 
 
 def asks_for_something(text: str, presets: tuple[str, ...]) -> bool:

@@ -113,7 +113,7 @@ COUNTS = (
         r"how many \1 are there \2?",
     ),
     (
-        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:ground|stadium|lot|park|car ?park|garden|field|harbou?r|port)\b",
+        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park|garden|field|harbou?r|port|yard|property|premises|estate|site|farm|compound|campus)\b",
         "in the whole scene",
     ),
     (
@@ -131,6 +131,15 @@ COUNTS = (
     (r", and, separately, (?=the )|\band, separately, (?=the )", " and "),
     (r"\bcount (the [\w ]+?) again(?=[.,;!?]|$| and\b)", r"count \1"),
     (r"\b(how m[ae]ny [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
+    (r"^head ?count[,:] (?:of )?(people\b[\w -]*|[\w ]+ in [\w -]+)\W*$", r"count the \1"),
+    (r"\bhow many ([\w ]+?) you (?:are able to|can) see\b", r"how many \1 can you see"),
+    (r"\bgive (?:us|me) a tally of (?:the )?", "count the "),
+    (r"\bnumber fo\b", "number of"),
+    (
+        r"^((?:how many|count|number of)\b[^?.!]*?), (?:the )?whole (?:yard|site|scene|area|lot|place) i mean\W*$",
+        r"\1 in the whole scene",
+    ),
+    (r"\b(how many [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
 )
 """Patterns with the words that replace them."""
 

@@ -276,6 +276,38 @@ MOVES = (
     (r"\bswing (?:it )?over to the (left|right) by\b", r"pan \1 by"),
     (r"\bgo back to 0\b", "pan to 0 degrees"),
     (r"\bpoint at (-?\d+) degrees(?= ?, then pan to)", r"pan to \1 degrees"),
+    (r"\bmake it double zoom\b", "double the zoom"),
+    (r"\b(?:the )?present (view|frame|picture|image|shot)\b", r"the current \1"),
+    (rf"^(?:please )?document (?:the|this) (?:current )?(?:view|scene|picture) with an? ({_PICTURES}|photograph)\b", r"take a \1"),
+    (r"^for the next ([\w ]+? (?:seconds|minutes)), please ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
+    (r"\bi (?:should|would|['’]d) (?:like|love|want) to see (the [\w ]+?) more closely\b", r"zoom in on \1"),
+    (r"\bi (?:should|would) be (?:delighted|pleased|glad|happy|grateful) to have a closer look at ", "zoom in on "),
+    (r"\bi (?:should|would) be (?:most |very )?(?:obliged|grateful) if you (?:could|would) let me see ", "show me "),
+    (r", ((?:\d+|[a-z]+|half a|a) (?:minutes?|seconds)) (?:is|are|will be) (?:enough|plenty|fine)\W*$", r" for \1"),
+    (r"^eyes on (?=the |that )", "zoom in on "),
+    (r"^keep on (?=the |that )(.+? for )", r"follow \1"),
+    (r"(?<=\w) see where (?:he|she|it|they) (?:goes|go)\b[^,.;]*\W*$", ""),
+    (
+        r"\b(pan|tilt)( the camera)? to ([+-]?\d+)(?: degrees)?,? (?:and )?then to ([+-]?\d+)(?: degrees)?",
+        lambda match: f"{match[1]} to {match[3].lstrip('+')} degrees, then {match[1]} to {match[4].lstrip('+')} degrees",
+    ),
+    (
+        r"\b(?:visit|go to|check) (?:each|every) preset(?: in turn)? and (count [\w ]+?) (?:at|in) (?:every|each)(?: one)?\b",
+        r"\1 at each preset",
+    ),
+    (r"^(?:what|which) (?:places|presets|views|spots) has (?:this|the) camera got(?: saved| stored)?\b[^?.]*", "list the presets"),
+    (
+        rf"^(take (?:a|one) (?:{_PICTURES}|photograph)) before and after (pan|tilt|zoom|turn)(?:n)?ing (.+?)\W*$",
+        r"\1, \2 \3, then \1",
+    ),
+    (r"^last of all,? ([^;.]+)[;.] (?:start|begin) with (.+?)\W*$", r"\2, then \1"),
+    (r"^(?:see|check) (?:if|whether) (the [\w ]+?) is (\w+ing) and if (?:it is|so),? ", r"if \1 is \2, "),
+    (r" should (?:just )?(?:about )?do (?:it|nicely)\W*$", ""),
+    (r"^(?:could|may|can) i have (?=an? (?:photo|picture|snap|shot|still)\b)", "take "),
+    (r"\b(get|bring) ((?:the|that) [\w ]+?) nice and close(?: for (?:me|us))?", r"zoom in on \2"),
+    (r"^let['’]?s see ((?:the|that) [\w ]+?) (?:up close|close up)\b", r"zoom in on \1"),
+    (r"^right (in|out) with the zoom\b", r"zoom all the way \1"),
+    (r"(\ball the way (?:in|out)), as far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

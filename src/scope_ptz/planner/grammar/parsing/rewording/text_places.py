@@ -56,6 +56,11 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             r"which has more \1, \2 or \3?",
         ),
         (rf"[.,] (?:never mind|forget|ignore|not) (?:about )?the ({names})\W*$", ""),
+        (
+            rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}) and counted (the [\w ]+?), ",
+            r"go to the \1, count \2, then ",
+        ),
+        (rf",? but (?:skip|not|leave out|ignore) (?:the )?(?:{names})\W*$", ""),
         (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
         (rf"^head ?count[,:]? (?:at )?(?:the )?({names})\W*$", r"how many people are at the \1?"),
         (

@@ -122,7 +122,7 @@ QUESTIONS = (
         r"^(raining|snowing|dark|foggy|windy|wet|busy|quiet|icy|flooded|sunny|cloudy|clear|muddy|dusty)(?: (?:out|down|up))?(?: there| here)?\?$",
         r"is it \1?",
     ),
-    (rf"^(?:please )?(?:determine|check|tell me|report) the state of (the [\w ]+?)[:,]? (\w+ or \w+)\?*$", r"is \1 \2?"),
+    (r"^(?:please )?(?:determine|check|tell me|report) the state of (the [\w ]+?)[:,]? (\w+ or \w+)\?*$", r"is \1 \2?"),
     (
         r"[.?!] (?:please )?(?:look|check) (?:at|over|around|across) the (?:whole|entire|full) \w+ (?:before (?:you )?answer(?:ing)?|first)\W*$",
         " in the whole scene?",
@@ -137,6 +137,7 @@ QUESTIONS = (
         r"^(?:confirm|verify) (?:that )?(?:the )?([\w ]+?) (lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? (?:yes or no|y/n))?\W*$",
         lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
     ),
+    (r"\bif it(?:['’]s| is) (fewer|less|more|greater) than (?=\w+)", r"if there are \1 than "),
 )
 """Patterns with the words that replace them."""
 

@@ -137,7 +137,6 @@ REMARKS = (
         r",? if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any) (?:bother|trouble|problem|hassle)\b",
         "",
     ),
-    (r",? if you(?:['’]d| would| could) be so (?:good|kind)(?: as to)?\b", ""),
     (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
     (r"[.?!] that (?:should|ought to|will) (?:put|bring|get|give|show|do)\b[^?!]*$", ""),
     (r"[.?!] then (?:i|we)(?: know| can| will| have|['’]ll)\b[^?!]*$", "."),
@@ -176,5 +175,21 @@ REMARKS = (
     ),
     (r"^(?:morning|night|late|early|day) shift here[,.:] ", ""),
     (r"^before i (?:leave|go|start)\b[^,.;]*? i (?:must|need to|have to|want to) know ", "tell me "),
+    (r"^(?:nobody|no one) (?:is|are) (?:allowed )?to [^.;]*[.;] ", ""),
+    (r",? for (?:job|case|incident|ticket|order|report|ref|reference|task|file) (?:no\.? |number |#)?[\w-]*\d[\w-]*\b", ""),
+    (r"^i(?:['’]ve| have)? (?:got|have|need) to (?:zoom|run|dash|pop|nip|head|go|shoot) off\b[^,.;]*[,.;] ", ""),
+    (r", not (?:after(?:wards)?|before|during)\W*$", ""),
+    (r", which (?:i|we) (?:seem|appear|believe|think|have|had|was|am|were)\b[^?.;]*", ""),
+    (
+        r"(?<=\w), where (?:the|my|our|i|we|they|he|she) [\w' ]+? (?:used to|is|was|are|were|has|had|lies|lay|stood|stands|lives)\b[^?.;,]*[.!]*$",
+        "",
+    ),
+    (r",? (?:and )?hold(?: it| there| position| steady)?\W*$", ""),
+    (r",? there should be (?:about |around |at least )?(?:\d+|\w+)\W*$", ""),
+    (r",? there(?:['’]?s| is| are)? (?:meant|supposed) to be (?:\d+|\w+)\W*$", ""),
+    (
+        r"^before (?:i|we) (?:turn off|set off|drive|leave|come|head|park)\b[^,.;]*, (?=(?:is|are|how|what|can|could|has|have|do|does)\b)",
+        "",
+    ),
 )
 """Patterns of remarks, with what is left of them."""

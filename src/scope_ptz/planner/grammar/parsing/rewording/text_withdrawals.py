@@ -78,6 +78,16 @@ WITHDRAWALS = (
         r"(?:skip|omit|leave out|drop|ignore|forget) step (?P<n>[123])\W*$",
         lambda match: _without_step(match),
     ),
+    (
+        r"^[^,.;]+[.,;] (?:actually|no|wait|on second thoughts?)[, ]+leave it (?:where|as|how) it (?:is|was)(?:,| and|;)? (?:just |only )?"
+        r"(?=\w+ )",
+        "",
+    ),
+    (r"\b(\w+), (?:sorry|no|wait),? not \1, (?:but )?(?=\w)", ""),
+    (r", or rather,? (?=(?:pan|tilt|zoom|turn|go|take)\b)", ", scratch that, "),
+    (r"\b(count (?:the )?\w+), not the \w+\W*$", r"\1"),
+    (r", no (?:picture|photo)s?(?: this time| please| needed| yet)?(?=,)", ""),
+    (r"^neither pan nor tilt[,;] (?:only|just) ", ""),
 )
 """Patterns with the words that replace them."""
 
@@ -103,10 +113,10 @@ _PARTS = {
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|nope|wait|sorry|oh|hang on|on second "
+    rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|naw|nope|wait|sorry|oh|hang on|on second "
     rf"thoughts?)[,: ]+)*{_LEAVE_OUT} (?:the |that )?"
     rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
-    rf"|go there|do that|count|look))?\W*",
+    rf"|go there|go home|do that|count|look))?\W*",
     re.IGNORECASE,
 )
 

@@ -1,0 +1,60 @@
+"""Forms of remarks: exclamations, reports of earlier moves, and the subjects with which statements begin."""
+
+from __future__ import annotations
+
+import re
+
+SUBJECT = (
+    r"i|i['’]?m|i['’]?ve|i['’]?ll|i['’]?d|we['’]re|we['’]?ve|he|he['’]?s|he['’]?d|she|she['’]s|they|they['’]?re|they['’]?ve|it['’]s|that['’]?s"
+    r"|there['’]?s|there (?:is|are|was|should|seems)|someone|somebody|something|nobody|everyone|everybody|some(?:one|body|thing)['’]?s|nobody['’]?s"
+    r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|the (?:boss|gaffer|manager|weather|lads?|sun)"
+)
+"""Words with which a statement begins, even if it is not separated by punctuation."""
+
+REFUSAL = re.compile(
+    r"\b(?:no|nah|nope|wait|hang on|hold on|stop|actually|instead|undo|never ?mind|forget|not|before|leave|skip|don['’]?t)\b",
+    re.IGNORECASE,
+)
+"""Words that may take back what was said, or say when not to do it."""
+
+EXCLAMATION = re.compile(
+    r"(?:(?:oh|ah|well|my|gosh|goodness|now|and|just) )*(?:how \w+|what an? [\w ]+"
+    r"|(?:is|are)n['’]?t (?:it|that|he|she|they) [\w ]+|can you believe (?:it|that)"
+    r"|(?:lovely|beautiful|nice|gorgeous|terrible"
+    r"|dreadful|horrible|awful|rotten|cold|busy|quiet|funny|miserable|glorious|proper|typical) [\w ]+"
+    r"|hear(?:ing)? (?:reports?|complaints?) [\w ]+|(?:had|got|getting|having) (?:an? )?(?:reports?|complaints?|calls?|word|news)"
+    r"\b[\w' ]*|(?:good )?(?:morning|afternoon|evening)(?: \w+)?|hiya|hello(?: \w+){0,2}|hi(?: \w+){0,2}"
+    r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
+    r"|(?:i )?(?:think|reckon|bet|guess|suspect|believe|fear) (?:its?|it['’]s|he|she|they|that|the)\b[\w' ]*"
+    r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
+    r"|(?:just )?(?:wondering|curious|checking|hoping) (?:if|whether|that)? ?(?:i|we|they|he|she|it)\b[\w' ]*"
+    r"|(?:first|second|third) (?:time|day|night|week|shift)\b[\w' ]*"
+    r"|looks? (?:an? (?:bit|little)|like|as|to be)\b[\w' ]*"
+    r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*"
+    r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",
+    re.IGNORECASE,
+)
+"""Remarks that are no statements: "how romantic", "lovely day for it", "many thanks from all of us"."""
+
+EXEMPT = re.compile(
+    r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed|limit) (?:test|check)"
+    r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
+    re.IGNORECASE,
+)
+"""Remarks with words that elsewhere ask for something."""
+
+_PAST = r"(?:panned|tilted|zoomed|swung|turned|moved|swivelled|rotated|pointed|aimed|went|used to (?:pan|tilt|zoom|turn|move))"
+_NO_REQUEST = r"(?!.*\b(?:please|should|must|shall|ought|want|need|can you|could you|would you|let['’]?s)\b)"
+REPORT = re.compile(
+    rf"{_NO_REQUEST}(?:"
+    r"(?:(?:earlier|yesterday|last (?:night|shift|time|week)|this morning|before|according to the log),? )?"
+    rf"(?:i|we|he|she|they|someone|somebody|(?:my|the|our|last) \w+|you just|(?-i:[A-Z]\w+)(?: (?:said|says|told me) (?:that )?(?:he|she|they|it))?)"
+    rf" (?:had |has |have |just |already )*{_PAST}\b.*"
+    r"|(?:i remember|last shift reported|(?-i:[A-Z]\w+) mentioned) (?:panning|tilting|zooming|turning|moving)\b.*"
+    r"|(?:earlier|yesterday|last (?:night|shift|week)),? the camera was (?:panned|tilted|zoomed|turned|moved)\b.*"
+    r"|(?!.*\b(?:camera|lens|view|picture|you) (?:is|are)\b)(?:the |a |my |our |his |that |some )?[\w]+(?: \w+)?(?:['’]s| is| are| was| were|"
+    r" keeps?) (?:really |still |just |now |always )?\w+ing\b.*)",
+    re.IGNORECASE,
+)
+"""Reports of earlier moves, and of what things do: "Dave panned left 20", "the crane is turning left again". Their directions and
+amounts are not asked for."""
