@@ -15,6 +15,7 @@ from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.consistency.check import not_understood, objection, objection_to_loss, objection_to_withdrawal
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
+from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import shorter_versions
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
         return understanding
-    versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(said, preset_names or ()))
+    versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(written_out(said), preset_names or ()))
     return next((version for version in versions if version.steps), understanding)
 
 

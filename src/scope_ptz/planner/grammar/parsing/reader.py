@@ -67,7 +67,9 @@ _CALL_SIGN = "CAMERA NUM? (from|this is) (LEADFILLER|CAMERA|FREE){1,2} NUM?"
 
 _CAMERA_MOVED = "(FILLER)* (DET)? CAMERA (ADVERB|FILLER)* (PAN-ED|TILT-ED|ZOOM-ED|TURN-ED|CARRY-ED|SWITCH-ED)"
 """A report of a move, which is not a command: "the camera panned left"."""
-_THING_MOVES = "(DET|my|our)? FREE{1,3} BE (ADVERB|FILLER)* (CARRY-ING|TURN-ING|SWITCH-ING) (LEFT|RIGHT|UP|DOWN|AROUND)"
+_THING_MOVES = (
+    "(DET|my|our)? (FREE|WHOLETHING){1,3} BE (ADVERB|FILLER)* (CARRY-ING|TURN-ING|SWITCH-ING) (LEFT|RIGHT|UP|DOWN|AROUND)"
+)
 """A statement about a thing that moves, which is not a command: "things are moving up here"."""
 
 _ROLL = "(FILLER)* roll (DET|CAMERA|VIEWNOUN|PICTURE|it)* (LEFT|RIGHT|NUM|by) _*"

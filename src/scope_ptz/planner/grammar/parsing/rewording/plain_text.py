@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.planner.grammar.lexing.spelling import is_english
@@ -19,15 +20,37 @@ from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRA
 _SHORTHAND = rewordings(SHORTHAND)
 _ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
 _WORDINGS = rewordings((*MOVES, *QUESTIONS, *COUNTS))
+_LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
 _SHORT_ENDING = re.compile(r"\b([A-Za-z]{2,}in)\b['’]?")
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
+
+
+def written_out(text: str) -> str:
+    """Return a text with abbreviations, dialect, shortened endings and misspelt nouns in standard English."""
+    return reworded_text(_with_endings(_with_nouns_corrected(text)), _SHORTHAND) if len(text) <= _MAX_CHARS else text
 
 
 def without_asides(text: str, presets: tuple[str, ...] = ()) -> str:
     """Return a text without remarks and withdrawn parts, and with abbreviations written out. The rest is as the user said it."""
     if len(text) > _MAX_CHARS:
         return text
-    return reworded_text(without_part_left_out(without_remarks(reworded_text(_with_endings(text), _SHORTHAND), presets)), _ASIDES)
+    return reworded_text(without_part_left_out(without_remarks(written_out(text), presets)), _ASIDES)
+
+
+def _with_nouns_corrected(text: str) -> str:
+    """Return "bollards" for "bolards" and "waterfall" for "watrefall"."""
+    return _LONG_WORD.sub(lambda match: _corrected_noun(match[0]), text)
+
+
+@lru_cache(maxsize=4096)
+def _corrected_noun(word: str) -> str:
+    """Return the only noun or adjective that results from swapping two letters or doubling one; any known word is unchanged."""
+    if parts_of_speech(word) or is_english(word) or verb_form(word) is not None:
+        return word
+    swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(1, len(word) - 1)}
+    doubled = {word[:i] + word[i] + word[i:] for i in range(1, len(word))}
+    meant = {other for other in swapped | doubled if parts_of_speech(other) & {"NOUN", "ADJ"}}
+    return meant.pop() if len(meant) == 1 else word
 
 
 def _with_endings(text: str) -> str:

@@ -7,7 +7,8 @@ import re
 SUBJECT = (
     r"i|i['’]?m|i['’]?ve|i['’]?ll|i['’]?d|we['’]re|we['’]?ve|he|he['’]?s|he['’]?d|she|she['’]s|they|they['’]?re|they['’]?ve|it['’]s|that['’]?s"
     r"|there['’]?s|there (?:is|are|was|should|seems)|someone|somebody|something|nobody|everyone|everybody|some(?:one|body|thing)['’]?s|nobody['’]?s"
-    r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|the (?:boss|gaffer|manager|weather|lads?|sun)"
+    r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ (?:has|have|is|are|was|were|says?|said|thinks?|reckons?|swears?|keeps?|loves?|likes?|just)"
+    r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)|the (?:boss|gaffer|manager|weather|lads?|sun)"
 )
 """Words with which a statement begins, even if it is not separated by punctuation."""
 
@@ -38,6 +39,8 @@ EXCLAMATION = re.compile(
 
 EXEMPT = re.compile(
     r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed|limit) (?:test|check)"
+    r"|the [\w ]+? (?:is|are)(?: not|n['’]t)(?: \w+){0,2} (?:in|into) (?:the )?(?:frame|picture|view|shot)"
+    r"|(?!the )[a-z]+(?: [a-z]+)? in (?:the )?(?:shot|way|picture|view)"
     r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
     re.IGNORECASE,
 )

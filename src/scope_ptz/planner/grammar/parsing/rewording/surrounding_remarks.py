@@ -69,7 +69,7 @@ _HARMLESS = re.compile(
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
-    r"|\bshould be (?:bringing|coming|arriving|landing|starting|finishing|done|ready)\b"
+    r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting|finishing|done|ready)\b"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,
@@ -110,7 +110,7 @@ _IDIOMS = re.compile(
     re.IGNORECASE,
 )
 _OCCASION = re.compile(
-    r"(?:good \w+[.!,] )?(?:for|ahead of|before|as(?! (?:soon|long|far|much))|since|because|given|in view of|due to"
+    r"(?:good \w+[.!,] )?(?:for(?! the next)|ahead of|before|as(?! (?:soon|long|far|much))|since|because|given|in view of|due to"
     r"|owing to|with) [^,]{3,90}?(?:,|(?= i(?:['’]d| should| would| need)))"
     r" (?:and )?(?=(?:please|kindly|could|can|would|will|i need you|i would|i should|i'd|we need|go to|move to|zoom"
     r"|pan|tilt|count|take|check)\b)",

@@ -159,5 +159,13 @@ SHORTHAND = (
     (r"(?<=\w) (?=it['’]s too \w+)", ", "),
     (r"\b(now|cos|because|as) were (?=done|off|closing|short|finished)", r"\1 we're "),
     (r",? do you (?:think|reckon),", ","),
+    (r"\b(a lot|a bit|in|out|left|right|up|down) man\b(?=,)", r"\1"),
+    (r"\bi require (?=an? |the |one )", "i need "),
+    (
+        r"[.;,] the (photograph|photo|picture|pan|tilt|zoom|count) (?:is|are) (?:not|no longer) (?:necessary|needed|required)(?: after all| any more)?\W*$",
+        r". No, skip the \1.",
+    ),
+    (r"\bfor (?:me|us) were (?=meant|supposed|short|missing|expecting)", "for me, we're "),
+    (r"\bwat\b", "what"),
 )
 """Patterns with the words that replace them."""
