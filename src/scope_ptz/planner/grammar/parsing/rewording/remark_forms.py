@@ -27,6 +27,8 @@ EXCLAMATION = re.compile(
     r"\b[\w' ]*|(?:good )?(?:morning|afternoon|evening)(?: \w+)?|hiya|hello(?: \w+){0,2}|hi(?: \w+){0,2}"
     r"|(?:many |so many )?thanks\b[\w' ]*|thank you\b[\w' ]*|bless (?:him|her|them|you)|as (?:usual|ever|always)"
     r"|(?:i )?(?:think|reckon|bet|guess|suspect|believe|fear) (?:its?|it['’]s|he|she|they|that|the)\b[\w' ]*"
+    r"|(?:i )?(?:swear|promise|know|remember|thought|hope|doubt|make it) (?:i|he|she|it|they|we|the|that|\w+)\b[\w' ]*"
+    r"|(?:i |we )?(?:need|want) (?:it|this|them|that) for [\w ]+"
     r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
     r"|(?:just )?(?:wondering|curious|checking|hoping) (?:if|whether|that)? ?(?:i|we|they|he|she|it)\b[\w' ]*"
     r"|(?:first|second|third) (?:time|day|night|week|shift)\b[\w' ]*"
@@ -41,6 +43,9 @@ EXEMPT = re.compile(
     r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed|limit) (?:test|check)"
     r"|the [\w ]+? (?:is|are)(?: not|n['’]t)(?: \w+){0,2} (?:in|into) (?:the )?(?:frame|picture|view|shot)"
     r"|(?!the )[a-z]+(?: [a-z]+)? in (?:the )?(?:shot|way|picture|view)"
+    r"|(?:i )?(?:don't|do not) care\b[\w' ]*"
+    r"|the (?:lower|upper|left|right|bottom|top) (?:part|half|side|edge) of (?:the|my) (?:picture|screen|view|frame) is (?:nothing but|all"
+    r"|just|only|mostly|full of) [\w ]+"
     r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
     re.IGNORECASE,
 )

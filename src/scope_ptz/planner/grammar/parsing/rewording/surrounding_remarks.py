@@ -29,7 +29,7 @@ _STATEMENT = re.compile(
 
 _COMMAND = (
     r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn(?:s|ing)?|rotat(?:e|es|ing)|swing(?:s|ing)?|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
-    r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check\w*|look(?:ing)? (?:at|for|up|down"
+    r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check(?:s|ing)?|look(?:ing)? (?:at|for|up|down"
     r"|left|right|in|over)"
     r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
     r"|pictures?|photos?|stills?|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
@@ -70,6 +70,8 @@ _HARMLESS = re.compile(
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
     r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting|finishing|done|ready)\b"
+    r"|\b(?:i|we) (?:don't|do not) want to (?:miss|lose|be late|upset|wake|disturb)\b"
+    r"|\btrying to (?:see|work out|figure out|find out) (?:if|whether|what|which|how)\b"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,

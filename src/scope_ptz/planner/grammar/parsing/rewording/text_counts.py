@@ -140,6 +140,23 @@ COUNTS = (
         r"\1 in the whole scene",
     ),
     (r"\b(how many [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
+    (r"^((?:how many|number of) [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)\W*$", r"\1 in the current view"),
+    (r"^((?:how many|number of|count) [\w -]+?),? (?:in )?all directions\W*$", r"\1 in the whole scene"),
+    (
+        r"^if (?:you|we|i) (?:had|have|took|take) a look (?:all the way |all |right )?(?:a)?round, ([^?]*?)(?: altogether| in all| in total)?\?*$",
+        r"\1 in the whole scene?",
+    ),
+    (
+        r"\b(how many [\w ]+?) (?:have |do )?(?:we|you|they)(?:['’]ve)? (?:have|got)(?: right)?(?: out| in| over| up| down)? (?:here|there)\?*$",
+        r"\1 are there?",
+    ),
+    (r"\b(how many [\w ]+?)(?: are)? lying (?:around|about)\b(?: here| there)?", r"\1 are there"),
+    (r"\b(how many [\w ]+?) are on(?=[,.;?]|$)", r"\1 are there"),
+    (
+        r"^([\w ]+?)[,.] (?:full|whole|entire) (?:scene|area|view|site)[,.] how many\?*$",
+        r"how many \1 are there in the whole scene?",
+    ),
+    (r"^(taking in the (?:whole|entire) (?:scene|area|site|place))(?: rather than [^,]+), ([^?]+)\?*$", r"\2 in the whole scene?"),
 )
 """Patterns with the words that replace them."""
 

@@ -23,7 +23,7 @@ _AS_FAR = (
     r"as (?:possible|(?:it|you|she|he|the camera)(?:['’]ll| will| can| could)?(?: ever| possibly)?"
     rf"(?: go(?:es)?| tilts?| pans?| turns?| moves?)?){_END}"
 )
-_MAST = "tower|mast|roof|pole|camera"
+_MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
     (
@@ -201,7 +201,7 @@ MOVES = (
     ),
     (r"\bmake (?:one|a) (?:single |combined |simultaneous )*move(?:ment)? of ", "move "),
     (
-        r"\b(?:may|can|could|might) (?:i|we) (?:please )?have (?:the|this) (?:picture|view|image|shot) (?=\w+ times (?:closer|bigger"
+        r"\b(?:may|can|could|might) (?:i|we) (?:please )?have (?:the|this) (?:picture|view|image|shot) (?=[\w ]+? times (?:closer|bigger"
         r"|larger)\b)",
         "zoom in ",
     ),
@@ -308,6 +308,49 @@ MOVES = (
     (r"^let['’]?s see ((?:the|that) [\w ]+?) (?:up close|close up)\b", r"zoom in on \1"),
     (r"^right (in|out) with the zoom\b", r"zoom all the way \1"),
     (r"(\ball the way (?:in|out)), as far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
+    (
+        r"^(?:an? )?(image|picture|photo|still|snapshot)(?: of (?:the )?(?:present|current) (?:view|scene))? (?:required|needed|wanted)\W*$",
+        r"take a \1",
+    ),
+    (rf"\b({_PICTURES}|photograph|image) of (?:the )?(?:present|current) (?:view|scene|frame)(?: first)?", r"\1"),
+    (r"\bget (?:a )?close(?:r|-up)? (?:view|look|shot) (?:of|at) ", "zoom in on "),
+    (r"\bget ((?:the|that) [\w ]+?) (?:nicely |right |properly )?in (?:the )?(?:frame|shot)\b", r"zoom in on \1"),
+    (r", ((?:half a|a|one|two) minutes?(?: and a half)?) (?:ought to|should|will|would) do(?: it| nicely)?\b", r" for \1"),
+    (r"\bnip it (up|down|left|right)\b", r"move it \1"),
+    (r"\b(?:give|get|show) (?:me|us) ((?:the|that) [\w'’ ]+?) in close[- ]?up\b", r"zoom in on \1"),
+    (r"\b(follow|track) for ([\w ]+? (?:minutes?|seconds?)) (the [\w ]+)", r"\1 \3 for \2"),
+    (
+        r"\b(?:point|aim)(?: the camera)? at (-?\d+) degrees,? (?:and )?then at (-?\d+) degrees",
+        r"pan to \1 degrees, then pan to \2 degrees",
+    ),
+    (
+        r"^.*\b(?:asked|asking|asks) about (the [\w ]+?), so (?:please |can you |could you )?(?:locate|find|zoom in on) (?:it|them)"
+        r"(?: and zoom in on (?:it|them))?\W*$",
+        r"zoom in on \1",
+    ),
+    (
+        r"\bkeep (the [\w'’ -]+?) in (?:view|frame|shot|the picture) as (?:it|he|she|they) (?:moves?|goes?|walks?|drives?)\b",
+        r"follow \1",
+    ),
+    (
+        r"\bi (?:would|should) be (?:ever so |very |most |so )?(?:grateful|glad|obliged) for (?=an? (?:picture|photo|photograph|image)\b)",
+        "take ",
+    ),
+    (
+        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?)\. (\d+) ?(s|secs?|seconds?|mins?|minutes?)\W*$",
+        r"\1 the \2 for \3 \4",
+    ),
+    (r"\btighten (?:it |her )?up(?: by)? (?=\w+ (?:percent|%|per cent))", "zoom in by "),
+    (
+        r"^((?:pan|tilt|turn) (?:up|down|left|right))[.,] not (?:much|far|a lot)[,:] ([\w -]+? degrees)(?: will do| is enough| should do)?\W*$",
+        r"\1 \2",
+    ),
+    (r", (?:and )?i mean (a lot|all the way|a bit)\W*$", r" \1"),
+    (
+        r"^.*\bwhich (?:positions|presets|views|spots) (?:have been|are) (?:saved|stored)\b[^;.?]*[;.?] (?:so )?(?:could|can|would|will) you "
+        r"(?:please )?list them\b.*$",
+        "list the presets",
+    ),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

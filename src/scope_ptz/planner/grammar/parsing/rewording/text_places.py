@@ -60,6 +60,24 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}) and counted (the [\w ]+?), ",
             r"go to the \1, count \2, then ",
         ),
+        (
+            rf"^.*[,.;] *(?:(?:oh|i['’]m sorry|sorry|no|actually)[, ]+)+forget that, (?:the )?({names}) (?:would|might|will) be (?:more helpful"
+            rf"|better|more useful|preferable)\W*$",
+            r"go to the \1",
+        ),
+        (rf"\blet['’]?s have (?:the )?({names})(?: up| on| on screen)*(?:, shall we)?(?=\W*$|,)", r"go to the \1"),
+        (
+            rf"^(?:the )?([\w ]+?) ({_STATES}) (at|in|on) (?:the )?({names})\?+$",
+            lambda match: (
+                match[0]
+                if NO_TOPIC.search(match[1])
+                else f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} at the {match[4]} {match[2]}?"
+            ),
+        ),
+        (
+            rf"\b(photograph|take a picture of) (?:the )?({names})([^,]*), and (?:then )?(?:the )?({names}) likewise",
+            r"\1 the \2 and the \4",
+        ),
         (rf",? but (?:skip|not|leave out|ignore) (?:the )?(?:{names})\W*$", ""),
         (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
         (rf"^head ?count[,:]? (?:at )?(?:the )?({names})\W*$", r"how many people are at the \1?"),
@@ -139,8 +157,8 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             r"go to the \1",
         ),
         (
-            rf"^(?:the )?({names})(?:,| and)? then (?:the )?({names})[,.] *(?:(?:actually|no|wait|sorry)[, ]+)*(?:skip|forget|leave out|drop"
-            rf"|not) (?:the )?({names})\W*$",
+            rf"^(?:(?:go|proceed|move) to )?(?:the )?({names})(?:,| and)? then (?:the )?({names})[,.] *(?:(?:actually|no|wait|sorry)[, ]+)*"
+            rf"(?:skip|forget|leave out|drop|disregard|cancel|ignore|not) (?:the )?({names})\W*$",
             lambda match: _visits_without(match),
         ),
         (

@@ -138,6 +138,10 @@ QUESTIONS = (
         lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
     ),
     (r"\bif it(?:['’]s| is) (fewer|less|more|greater) than (?=\w+)", r"if there are \1 than "),
+    (r"^they (\w+ed|put|got|done) (.+?) yet\?$", r"have they \1 \2 yet?"),
+    (r"\bif there(?:['’]s| is) (an? \w+) in, ", r"if there is \1, "),
+    (r"^(?!(?:is|are|any|anyone|what|which|how|it|there|nothing|who)\b)(\w+(?: \w+)?) visible\?$", r"is \1 visible?"),
+    (r"\b(whole scene), all the way (?:a)?round,", r"\1"),
 )
 """Patterns with the words that replace them."""
 

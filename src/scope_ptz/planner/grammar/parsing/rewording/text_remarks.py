@@ -191,5 +191,15 @@ REMARKS = (
         r"^before (?:i|we) (?:turn off|set off|drive|leave|come|head|park)\b[^,.;]*, (?=(?:is|are|how|what|can|could|has|have|do|does)\b)",
         "",
     ),
+    (r", then (?:i|we)(?:['’]ll| will| can| shall) (?:know|see|tell|decide)\b[^?.!;]*\W*$", ""),
+    (
+        r"(\bcount (?:the )?[\w ]+), (?:i|we) (?:must|have to|need to|want to) (?:know|be sure|make sure) (?:that|if|whether)\b[^.;?]*\W*$",
+        r"\1",
+    ),
+    (r",? and (?:stay|remain|wait) (?:there|put|here)\b", ""),
+    (r",? while (?:it|he|she|they) (?:taxis|walks?|drives?|moves?|goes?|works?|turns?)\b", ""),
+    (r"^(?:a )?bit too (?:close|tight|far|wide|high|low)(?:,? this)?[.!,] ", ""),
+    (r", who is, i (?:believe|think|fancy), [^?.;]*", ""),
+    (r" than it is (?:at present|now|at the moment|currently)\b", ""),
 )
 """Patterns of remarks, with what is left of them."""

@@ -7,6 +7,10 @@ _CLOSINGS = (
     r"(?:(?:kind|best|warm|with kind) regards|regards|many thanks|with thanks|thanks|best wishes|cheers|yours(?: \w+)?|thank you)"
 )
 
+_DIGITS = {
+    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "niner": 9,
+}  # fmt: skip
+
 SHORTHAND = (
     (rf"(?:(?<=[.?!])|,)\s*{_CLOSINGS},? {_NAMES}\s*[.!]?$", ""),
     (r"^dear (?:all|team|colleagues|sirs?),? ", ""),
@@ -167,5 +171,29 @@ SHORTHAND = (
     ),
     (r"\bfor (?:me|us) were (?=meant|supposed|short|missing|expecting)", "for me, we're "),
     (r"\bwat\b", "what"),
+    (r"\bnow,? now\b", "now"),
+    (r"^(?:oh,? )?do (?=look at|zoom|take|go|count|follow|show|find|tell)", ""),
+    (r"(^|ok |okay |right |so |well |now )were (?=done|off|closing|finished)", r"\1we're "),
+    (r"(?:^|(?<=[ ,]))['’]?bout (?=\w)", "about "),
+    (r",? or what\?$", "?"),
+    (r"\bhv\b", "have"),
+    (r"\bnum of\b", "number of"),
+    (r"\b(s|h)he?ll (?=go\b)", r"\1he'll "),
+    (r"(?<=\w) (?=(?:scratch that|no wait|actually no)\b)", ", "),
+    (r"\b(scratch that|no wait|actually no) (?=\w)", r"\1, "),
+    (r",? on reflection,? ", ", "),
+    (r"\bby no more than (?=\w)", "by "),
+    (r",? when you(?:['’]ve| have) (?:done|finished)(?: that| this| so)?,? ", " "),
+    (r",? (?:and,? )?once (?:we|you) are there,? ", ", then "),
+    (
+        r"(?<!and)(?<!then)(?<!please)(?<!you)(?<!to)(?<!can)(?<!could)(?<!or)(?<!just)(?<![,.;:]) (?=tell me (?:if|whether|how|what)\b)",
+        ", ",
+    ),
+    (r"\bi should very much like (?=an? |to )", "i should like "),
+    (r",? and (?:i['’]m )?sorry (?:for|to|about)\b[^,.;]*(?=\W*$|,)", ""),
+    (
+        r"\b(one|two|three|four|five|six|seven|eight|niner?) (zero|one|two|three|four|five|six|seven|eight|niner?) (?=seconds|degrees)",
+        lambda match: f"{_DIGITS[match[1].lower()]}{_DIGITS[match[2].lower()]} ",
+    ),
 )
 """Patterns with the words that replace them."""

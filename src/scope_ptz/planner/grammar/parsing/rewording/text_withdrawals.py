@@ -88,6 +88,21 @@ WITHDRAWALS = (
     (r"\b(count (?:the )?\w+), not the \w+\W*$", r"\1"),
     (r", no (?:picture|photo)s?(?: this time| please| needed| yet)?(?=,)", ""),
     (r"^neither pan nor tilt[,;] (?:only|just) ", ""),
+    (
+        r" and (?:then )?(?:follow|track|count|read|zoom in on) (?:it|him|her|them)\b[,.;]* *(?:(?:actually|no|wait|sorry|oh)[, ]+)+"
+        r"(?:don['’]?t|do not) (?:bother|worry about) \w+ing (?:it|him|her|them), (?:just )?(?=\w)",
+        ", ",
+    ),
+    (
+        r"^(?:follow|track|zoom in on|find|count|look at) [^,.]+[,.] *(?:(?:nah|no|actually|oh)[, ]+)+(?:nvm|never ?mind)[, ]+"
+        r"(?=(?:follow|track|zoom|find|count|go|take|pan|tilt)\b)",
+        "",
+    ),
+    (
+        r"^i (?:had meant|was going|meant|wanted) to ask (?:you )?(?:for|to)\b[^,;]*, but (?:please )?(?:don['’]?t|do not) (?:trouble|bother)"
+        r" (?:with|about) (?:that|it)(?: now)?[;,.] (?:simply |just )?",
+        "",
+    ),
 )
 """Patterns with the words that replace them."""
 
