@@ -117,7 +117,7 @@ def test_a_remark_asks_for_nothing(text: str, expected: bool) -> None:
     ("text", "expected"),
     [
         ("pan left 20, i take that back", "i take that back"),
-        ("zoom in, my mum says 2 is enough", None),
+        ("zoom in, my mum says it is enough", None),
         ("pan left 20, my mum says 15 is enough", "my mum says 15 is enough"),
         ("pan left 20", None),
     ],

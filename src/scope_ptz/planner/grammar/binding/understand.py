@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
 
 _MULTIPLE = re.compile(r"\b(?:twice|double|half|triple|three times) (?:that|this)\b(?! \w+ing)\W*(?:$|and\b|then\b)", re.IGNORECASE)
-_NAMED_AMOUNT = re.compile(
-    rf"\d|\b(?:{'|'.join(word for word in NUMBER_WORDS if word.isalpha() and word not in ('half', 'twice', 'double'))})\b|\b(?:bit|lot|touch|quarter turn)\b",
-    re.IGNORECASE,
-)
+_NUMBERS = "|".join(word for word in NUMBER_WORDS if word.isalpha() and word not in {"half", "twice", "double"})
+_NAMED_AMOUNT = re.compile(rf"\d|\b(?:{_NUMBERS}|bit|lot|touch|quarter turn)\b", re.IGNORECASE)
 """An amount of which another may be a multiple: "left 10, then twice that"."""
 
 _NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)

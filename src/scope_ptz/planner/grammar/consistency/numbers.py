@@ -34,8 +34,9 @@ _BEFORE_HALF = frozenset({"", ".", ",", "is", "are", "s", "ve", "have", "has", "
 _AFTER_HALF = frozenset({"the", "full", "out", "empty", "open", "closed", "hidden", "cut", "missing", "gone"})
 """Words before and after "half" in a remark about what the picture shows."""
 _AFTER_AMOUNT = frozenset({
-    "degrees", "degree", "deg", "degs", "x", "times", "percent", "per", "seconds", "second", "secs", "sec", "minutes", "minute", "mins",
-    "min", "left", "right", "up", "down", "to", "in", "out", "please", "more", "further", "steps", "shots", "pictures", "photos",
+    "degrees", "degree", "deg", "degs", "x", "times", "percent", "per", "seconds", "second", "secs", "sec", "minutes", "minute",
+    "mins", "min", "left", "right", "up", "down", "to", "in", "out", "please", "more", "further", "steps", "shots", "pictures",
+    "photos",
 })  # fmt: skip
 """Words after the number of an amount."""
 

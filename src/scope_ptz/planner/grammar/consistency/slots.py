@@ -44,6 +44,7 @@ _SWALLOWED = tuple(
         r"\bso (?:can|could) you\b.*",
         r"^(?:list|name) (?:the|all|your|my) (?:presets|positions|views)\b.+",
         r"^What (?:is|are) .*\bto (?:open|close|move|stop|come|get|go|leave|wait|clear|pick|put|bring|shut|step|hurry)\b.*",
+        r", (?:I|we|he|she|they) (?:sent|have|had|want|need|think|reckon|said|told|saw|left)\b.*",
         r"\bI (?:say|said|tell|told|shout|signal)\b.*",
     )
 )

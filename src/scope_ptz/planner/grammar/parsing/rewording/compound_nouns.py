@@ -20,9 +20,9 @@ _INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check
 
 _CAMERA_NOUNS = frozenset({
     "angle", "angles", "level", "levels", "position", "positions", "speed", "setting", "settings", "value", "values", "axis",
-    "axes", "limit", "limits", "factor", "amount", "motor", "motors", "direction", "range", "view", "preset", "presets", "feed", "picture",
-    "image", "shot", "one", "ones", "please", "now", "pose", "percent", "magnification", "increments", "steps", "degrees", "side",
-    "back", "again", "slightly", "straight", "slowly", "gently", "more",
+    "axes", "limit", "limits", "factor", "amount", "motor", "motors", "direction", "range", "view", "preset", "presets", "feed",
+    "picture", "image", "shot", "one", "ones", "please", "now", "pose", "percent", "magnification", "increments", "steps",
+    "degrees", "side", "back", "again", "slightly", "straight", "slowly", "gently", "more",
 })  # fmt: skip
 """Words after which a modifier is about the camera itself: "the tilt angle"."""
 

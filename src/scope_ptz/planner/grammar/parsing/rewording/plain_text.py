@@ -15,11 +15,12 @@ from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_separate_questions
 from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
 from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
+from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
 
 _SHORTHAND = rewordings(SHORTHAND)
 _ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
-_WORDINGS = rewordings((*MOVES, *QUESTIONS, *COUNTS))
+_WORDINGS = rewordings((*MOVES, *VIEWS, *QUESTIONS, *COUNTS))
 _LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
 _SHORT_ENDING = re.compile(r"\b([A-Za-z]{2,}in)\b['’]?")
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them

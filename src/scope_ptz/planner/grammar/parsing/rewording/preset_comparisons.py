@@ -3,159 +3,36 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 _COMPARED = re.compile(
     r"\b(?P<how>more|most|fewer|fewest|less|least|greater number of|larger number of|higher number of|highest number of)\b"
     r"(?: of the)? (?P<what>.+)",
     re.IGNORECASE,
 )
-_HOW = {"most": "more", "fewest": "fewer", "less": "fewer", "least": "fewer"}
+_FEWER = frozenset({"fewer", "fewest", "less", "least"})
 _STOP = re.compile(
     r"\b(?:where|at|in|on|over|by|there|than|or|and|standing|about|today|now|tonight|this|right|out|it"
     r"|go|take|zoom|can|could|count|than|between|which|across|of the two|around|currently|presently|please|left)\b|[,;:.?!–-]",
     re.IGNORECASE,
 )
-_FUNCTION_WORDS = frozenset(
-    [
-        "which",
-        "one",
-        "where",
-        "is",
-        "are",
-        "it",
-        "the",
-        "at",
-        "in",
-        "on",
-        "has",
-        "have",
-        "had",
-        "got",
-        "there",
-        "or",
-        "and",
-        "vs",
-        "versus",
-        "between",
-        "do",
-        "does",
-        "tell",
-        "me",
-        "us",
-        "know",
-        "check",
-        "see",
-        "if",
-        "whether",
-        "can",
-        "you",
-        "could",
-        "would",
-        "please",
-        "today",
-        "tonight",
-        "now",
-        "this",
-        "morning",
-        "afternoon",
-        "evening",
-        "standing",
-        "parked",
-        "waiting",
-        "sitting",
-        "lying",
-        "about",
-        "around",
-        "right",
-        "out",
-        "of",
-        "two",
-        "these",
-        "those",
-        "presets",
-        "preset",
-        "places",
-        "place",
-        "views",
-        "view",
-        "positions",
-        "compare",
-        "determine",
-        "find",
-        "report",
-        "say",
-        "whose",
-        "who",
-        "count",
-        "both",
-        "them",
-        "i",
-        "we",
-        "want",
-        "wonder",
-        "wondering",
-        "need",
-        "to",
-        "like",
-        "just",
-        "so",
-        "hey",
-        "hi",
-        "hello",
-        "ok",
-        "okay",
-        "then",
-        "a",
-        "an",
-        "bigger",
-        "higher",
-        "larger",
-        "greater",
-        "number",
-        "with",
-        "for",
-        "up",
-        "down",
-        "over",
-        "by",
-        "near",
-        "that",
-        "s",
-        "holds",
-        "contains",
-        "hosts",
-        "shows",
-        "holding",
-        "looks",
-        "busier",
-        "worse",
-        "better",
-        "currently",
-        "presently",
-        "settle",
-        "which's",
-        "where's's",
-        "me",
-        "id",
-        "d",
-        "quick",
-        "question",
-        "moment",
-        "would'd",
-        "ll",
-        "you'd",
-        "lets",
-        "let",
-        "think",
-        "find",
-        "see",
-        "be",
-    ]
-)
+_FUNCTION_WORDS = frozenset({
+    "a", "about", "afternoon", "an", "and", "are", "around", "at", "be", "better", "between", "bigger", "both", "busier", "by",
+    "can", "check", "compare", "contains", "could", "count", "currently", "d", "determine", "do", "does", "down", "evening",
+    "find", "for", "got", "greater", "had", "has", "have", "hello", "hey", "hi", "higher", "holding", "holds", "hosts", "i",
+    "id", "in", "is", "it", "just", "kindly", "know", "larger", "let", "lets", "like", "ll", "looks", "lying", "me",
+    "moment", "morning", "near", "need", "now", "number", "of", "ok", "okay", "on", "one", "or", "out", "over", "parked",
+    "place", "places", "please", "positions", "presently", "preset", "presets", "question", "quick", "report", "right", "s",
+    "say", "see", "settle", "shows", "sitting", "so", "stand", "standing", "stands", "tell", "that", "the", "them", "then",
+    "there", "these", "think", "this", "those", "to", "today", "tonight", "two", "up", "us", "versus", "view", "views", "vs",
+    "waiting", "want", "we", "where", "whether", "which", "who", "whose", "with", "wonder", "wondering", "worse", "would",
+    "you",
+})  # fmt: skip
 """Words that may surround a comparison without changing its meaning."""
 
 _GOES_THERE = re.compile(
-    r"[,.;?!] *(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?(?:there|to (?:it|that one))\W*$", re.I
+    r"[,.;?!] *(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?(?:there|to (?:it|that one))\W*$",
+    re.IGNORECASE,
 )
 
 
@@ -179,14 +56,16 @@ def with_presets_compared(text: str, names: str) -> str:
     if not what:
         return text
     start = compared.start("what") + compared["what"].index(what)
-    rest = "".join(
-        " " if any(a <= i < b for a, b in ((start, start + len(what)), *(m.span() for m in found))) else c
-        for i, c in enumerate(asked)
-    )
     how = compared["how"].lower()
-    words = re.findall(r"[^\W\d_]+", rest.lower())
-    if any(word not in _FUNCTION_WORDS and word not in how.split() for word in words) or re.search(r"\d", rest):
+    rest = _without_spans(asked, [(start, start + len(what)), *(match.span() for match in found)])
+    if re.search(r"\d", rest) or set(re.findall(r"[^\W\d_]+", rest.lower())) - _FUNCTION_WORDS - set(how.split()):
         return text
-    return f"which has {_HOW.get(how, how if how == 'fewer' else 'more')} {what}, {found[0][0]} or {found[1][0]}?" + (
-        " go there" if goes else ""
-    )
+    comparison = "fewer" if how in _FEWER else "more"
+    return f"which has {comparison} {what}, {found[0][0]} or {found[1][0]}?{' go there' if goes else ''}"
+
+
+def _without_spans(text: str, spans: Sequence[tuple[int, int]]) -> str:
+    """Return a text with spaces in place of the characters in the given spans."""
+    for start, end in spans:
+        text = text[:start] + " " * (end - start) + text[end:]
+    return text

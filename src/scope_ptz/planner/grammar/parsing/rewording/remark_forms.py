@@ -6,9 +6,13 @@ import re
 
 SUBJECT = (
     r"i|i['’]?m|i['’]?ve|i['’]?ll|i['’]?d|we['’]re|we['’]?ve|he|he['’]?s|he['’]?d|she|she['’]s|they|they['’]?re|they['’]?ve|it['’]s|that['’]?s"
-    r"|there['’]?s|there (?:is|are|was|should|seems)|someone|somebody|something|nobody|everyone|everybody|some(?:one|body|thing)['’]?s|nobody['’]?s"
-    r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ (?:has|have|is|are|was|were|says?|said|thinks?|reckons?|swears?|keeps?|loves?|likes?|just)"
-    r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)|the (?:boss|gaffer|manager|weather|lads?|sun)"
+    r"|there['’]?s|there (?:is|are|was|should|seems)|someone|somebody|something|nobody|everyone|everybody|some(?:one"
+    r"|body|thing)['’]?s|nobody['’]?s"
+    r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ "
+    r"(?:has|have|is|are|was|were|says?|said|thinks?|reckons?|swears?|keeps?|loves?|likes?|just)"
+    r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)|the (?:boss|gaffer|manager"
+    r"|weather|lads?|sun|\w+ shift)"
+    r"|people|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)"
 )
 """Words with which a statement begins, even if it is not separated by punctuation."""
 
@@ -40,11 +44,13 @@ EXCLAMATION = re.compile(
 """Remarks that are no statements: "how romantic", "lovely day for it", "many thanks from all of us"."""
 
 EXEMPT = re.compile(
-    r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed|limit) (?:test|check)"
+    r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed"
+    r"|limit) (?:test|check)"
     r"|the [\w ]+? (?:is|are)(?: not|n['’]t)(?: \w+){0,2} (?:in|into) (?:the )?(?:frame|picture|view|shot)"
     r"|(?!the )[a-z]+(?: [a-z]+)? in (?:the )?(?:shot|way|picture|view)"
     r"|(?:i )?(?:don't|do not) care\b[\w' ]*"
-    r"|the (?:lower|upper|left|right|bottom|top) (?:part|half|side|edge) of (?:the|my) (?:picture|screen|view|frame) is (?:nothing but|all"
+    r"|the (?:lower|upper|left|right|bottom|top) (?:part|half|side|edge) of (?:the|my) (?:picture|screen|view|frame) "
+    r"is (?:nothing but|all"
     r"|just|only|mostly|full of) [\w ]+"
     r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
     re.IGNORECASE,
@@ -56,11 +62,13 @@ _NO_REQUEST = r"(?!.*\b(?:please|should|must|shall|ought|want|need|can you|could
 REPORT = re.compile(
     rf"{_NO_REQUEST}(?:"
     r"(?:(?:earlier|yesterday|last (?:night|shift|time|week)|this morning|before|according to the log),? )?"
-    rf"(?:i|we|he|she|they|someone|somebody|(?:my|the|our|last) \w+|you just|(?-i:[A-Z]\w+)(?: (?:said|says|told me) (?:that )?(?:he|she|they|it))?)"
+    rf"(?:i|we|he|she|they|someone|somebody|(?:my|the|our|last) \w+|you just|(?-i:[A-Z]\w+)(?: (?:said|says|told me) "
+    rf"(?:that )?(?:he|she|they|it))?)"
     rf" (?:had |has |have |just |already )*{_PAST}\b.*"
     r"|(?:i remember|last shift reported|(?-i:[A-Z]\w+) mentioned) (?:panning|tilting|zooming|turning|moving)\b.*"
     r"|(?:earlier|yesterday|last (?:night|shift|week)),? the camera was (?:panned|tilted|zoomed|turned|moved)\b.*"
-    r"|(?!.*\b(?:camera|lens|view|picture|you) (?:is|are)\b)(?:the |a |my |our |his |that |some )?[\w]+(?: \w+)?(?:['’]s| is| are| was| were|"
+    r"|(?!.*\b(?:camera|lens|view|picture|you) (?:is|are)\b)(?:the |a |my |our |his |that |some )?[\w]+(?: \w+)?"
+    r"(?:['’]s| is| are| was| were|"
     r" keeps?) (?:really |still |just |now |always )?\w+ing\b.*)",
     re.IGNORECASE,
 )

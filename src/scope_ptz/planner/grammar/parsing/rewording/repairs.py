@@ -27,7 +27,10 @@ _RETRACTION = (
 )
 """Words that retract what was said just before them."""
 
-_SLIP = "hang on|hold on|hang_on|hold_on|no|nah|naw|nope|sorry|wait|oops|gah|argh|aargh|ugh|damn|dammit|drat|er|erm|actually|OR? rather|(make|made) (that|it)"
+_SLIP = (
+    "hang on|hold on|hang_on|hold_on|"
+    "no|nah|naw|nope|sorry|wait|oops|gah|argh|aargh|ugh|damn|dammit|drat|er|erm|actually|OR? rather|(make|made) (that|it)"
+)
 """Words that retract what was said before only if what follows replaces a part of it: "wait, zoom in" may be an extra command,
 and "no zoom" forbids zooming."""
 

@@ -12,7 +12,14 @@ from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
 from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
 from scope_ptz.planner.grammar.parsing.rewording.remark_forms import EXCLAMATION, EXEMPT, REFUSAL, REPORT, SUBJECT
-from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import AMOUNT, NUMBER, asks_for_something, names_command
+from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import (
+    AMOUNT,
+    DURATION,
+    FOLLOWING,
+    NUMBER,
+    asks_for_something,
+    names_command,
+)
 
 _MAX_CHARS = 500  # longer texts are not shortened: each version is parsed again
 _MAX_VERSIONS = 10
@@ -52,6 +59,7 @@ _UNFINISHED = re.compile(
 """The end of a text from which nothing can be left out: "pan right until" before "something moves"."""
 
 _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|these|ones?|both|same)\b", re.IGNORECASE)
+_INTERJECTION = re.compile(r"^(?:oo+h|oh|ah|argh|well|hey|right|ok|okay|now)\b,? (?!no\b|wait\b)", re.IGNORECASE)
 _REPEATS = re.compile(r"\b(?:back|again|same|that much|as before|undo|twice that|half that)\b", re.IGNORECASE)
 
 
@@ -94,12 +102,18 @@ def _ends(text: str, presets: tuple[str, ...]) -> Iterator[int]:
     """Yield each index at which a text may end because only remarks follow."""
     for match in _BOUNDARY.finditer(text):
         said, tail = text[: match.start()], text[match.end() :].rstrip(" .!?")
-        if _UNFINISHED.search(said) is None and is_remark(tail, presets) and not (NUMBER.search(said) and AMOUNT.search(tail)):
+        if _UNFINISHED.search(said) is None and is_remark(tail, presets) and not _is_amount(said, tail):
             yield match.start()
     for match in _PURPOSE.finditer(text):
         tail = text[match.end() :]
         if not (asks_for_something(tail, presets) or NUMBER.search(tail) or _EXTENT.search(tail)):
             yield match.start()
+
+
+def _is_amount(said: str, tail: str) -> bool:
+    """Return whether a number in the words after a command may be the amount of a move or how long to follow a thing."""
+    corrects = NUMBER.search(said) is not None and AMOUNT.search(tail) is not None
+    return corrects or (DURATION.search(tail) is not None and FOLLOWING.search(said) is not None)
 
 
 def is_remark(tail: str, presets: tuple[str, ...]) -> bool:
@@ -129,7 +143,7 @@ def _asks_nothing(text: str, presets: tuple[str, ...]) -> bool:
 
 def _is_harmless(text: str, presets: tuple[str, ...], *, may_be_empty: bool = False) -> bool:
     """Return whether a text is a remark that asks for nothing."""
-    plain = text.replace("’", "'").strip(" .,!?;")
+    plain = _INTERJECTION.sub("", text.replace("’", "'").strip(" .,!?;"))
     if not plain:
         return may_be_empty
     lexemes = with_compound_nouns(lexemes_of(plain, presets))

@@ -29,7 +29,8 @@ _STATEMENT = re.compile(
 
 _COMMAND = (
     r"zoom\w*|pan(?:s|ned|ning)?|tilt\w*|turn(?:s|ing)?|rotat(?:e|es|ing)|swing(?:s|ing)?|swivel\w*|point(?:ing)?|aim\w*|mov(?:e|ing)|degrees?|home|presets?"
-    r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check(?:s|ing)?|look(?:ing)? (?:at|for|up|down"
+    r"|snap\w*|count(?:s|ed|ing)?|(?<!lost )track(?:ing)?|follow\w*|(?<!to )read|find|check(?:s|ing)?|look(?:ing)? "
+    r"(?:at|for|up|down"
     r"|left|right|in|over)"
     r"|show (?:me|us)|tell|cameras?|closer|wider|higher|lower|stop|go to|goto|take (?:a|the|one|another|some)|leave (?:it|that)"
     r"|pictures?|photos?|stills?|shots?|images?|pics?|view|times|(?:look|see|have a look) (?:everywhere|anywhere)"
@@ -69,7 +70,8 @@ _HARMLESS = re.compile(
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
-    r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting|finishing|done|ready)\b"
+    r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting"
+    r"|finishing|done|ready)\b"
     r"|\b(?:i|we) (?:don't|do not) want to (?:miss|lose|be late|upset|wake|disturb)\b"
     r"|\btrying to (?:see|work out|figure out|find out) (?:if|whether|what|which|how)\b"
     r"|\b(?:asking|asked|talking|told me) about (?:the|this|our) (?:view|camera)\b"
@@ -78,7 +80,8 @@ _HARMLESS = re.compile(
 )
 NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
 AMOUNT = re.compile(
-    rf"(?:{NUMBER.pattern})(?=\W*$|\W* ?(?:degrees?|deg|x|times|percent|%|seconds?|secs?|minutes?|mins?|left|right|up|down|to|instead))",
+    rf"(?:{NUMBER.pattern})(?=\W*$|\W* ?(?:degrees?|deg|x|times|percent|%|seconds?|secs?|minutes?|mins?|left|right|up"
+    rf"|down|to|instead))",
     re.IGNORECASE,
 )
 """A number that may be the amount of a move, unlike the one in "there are 25 people waiting"."""
@@ -133,6 +136,8 @@ _NEWS_BEFORE_REQUEST = re.compile(
     r"(?P<news>[^?.;]+)[,;] (?P<rest>(?:(?:could|can|would|will) you|(?:please|kindly) (?!do\b)) ?(?:\w+ ){2}.+)", re.IGNORECASE
 )
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
+DURATION = re.compile(r"\bfor (?:half )?(?:an?|\d+|[a-z]+) ?(?:seconds?|secs?|minutes?|mins?)\b|\bduration\b", re.IGNORECASE)
+FOLLOWING = re.compile(r"\b(?:follow|track|keep|stay|watch)", re.IGNORECASE)
 _MIN_WORDS = 3
 _MIN_NEWS = 6  # minimum number of words
 _MAX_REMARKS = 3
@@ -164,8 +169,9 @@ def _without_last(text: str, presets: tuple[str, ...]) -> str:
         said = text[: boundary.start()]
         tail = re.sub(r"^which\b", "it", text[boundary.end() :].strip().rstrip(".!"), flags=re.IGNORECASE)
         is_correction = NUMBER.search(tail) is not None and NUMBER.search(said) is not None
+        is_duration = DURATION.search(tail) is not None and FOLLOWING.search(said) is not None
         parts = [part.strip() for part in tail.split(",")]
-        if len(said.split()) > 1 and not is_correction and all(_is_remark(part, presets) for part in parts):
+        if len(said.split()) > 1 and not (is_correction or is_duration) and all(_is_remark(part, presets) for part in parts):
             return said + ("?" if boundary[0].startswith("?") or text.rstrip().endswith("?") else "")
     return text
 

@@ -103,7 +103,8 @@ COUNTS = (
     ),
     (r"^how many ([\w ]+?) and how many ([\w ]+?) (?=(?:are )?(?:at|on|in) the )", r"how many \1 and \2 "),
     (
-        r"\b(?:let me have|give me|i need|i want|get me) (?:one|a) (?:figure|number|count|total) for (the [\w ]+?) and (?:another|one"
+        r"\b(?:let me have|give me|i need|i want|get me) (?:one|a) (?:figure|number|count|total) for (the [\w ]+?) "
+        r"and (?:another|one"
         r"|a second one|one more) for (the [\w ]+)",
         r"count \1, then count \2",
     ),
@@ -113,7 +114,8 @@ COUNTS = (
         r"how many \1 are there \2?",
     ),
     (
-        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park|garden|field|harbou?r|port|yard|property|premises|estate|site|farm|compound|campus)\b",
+        r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park"
+        r"|garden|field|harbou?r|port|yard|property|premises|estate|site|farm|compound|campus)\b",
         "in the whole scene",
     ),
     (
@@ -143,11 +145,13 @@ COUNTS = (
     (r"^((?:how many|number of) [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)\W*$", r"\1 in the current view"),
     (r"^((?:how many|number of|count) [\w -]+?),? (?:in )?all directions\W*$", r"\1 in the whole scene"),
     (
-        r"^if (?:you|we|i) (?:had|have|took|take) a look (?:all the way |all |right )?(?:a)?round, ([^?]*?)(?: altogether| in all| in total)?\?*$",
+        r"^if (?:you|we|i) (?:had|have|took|take) a look (?:all the way |all |right )?(?:a)?round, ([^?]*?)(?: "
+        r"altogether| in all| in total)?\?*$",
         r"\1 in the whole scene?",
     ),
     (
-        r"\b(how many [\w ]+?) (?:have |do )?(?:we|you|they)(?:['’]ve)? (?:have|got)(?: right)?(?: out| in| over| up| down)? (?:here|there)\?*$",
+        r"\b(how many [\w ]+?) (?:have |do )?(?:we|you|they)(?:['’]ve)? (?:have|got)(?: right)?(?: out| in| over| up| "
+        r"down)? (?:here|there)\?*$",
         r"\1 are there?",
     ),
     (r"\b(how many [\w ]+?)(?: are)? lying (?:around|about)\b(?: here| there)?", r"\1 are there"),
@@ -157,6 +161,12 @@ COUNTS = (
         r"how many \1 are there in the whole scene?",
     ),
     (r"^(taking in the (?:whole|entire) (?:scene|area|site|place))(?: rather than [^,]+), ([^?]+)\?*$", r"\2 in the whole scene?"),
+    (r"\b(how many [\w ]+?) (?:are (?:stored|kept|stacked|lying)|lie|sit|stand) (?=at|in|on)", r"\1 are "),
+    (
+        r"^(?:please )?look (?:at|over|around|across) the (?:whole|entire) \w+ and (?:give me a count of|count) "
+        r"(?:the )?([\w ]+?)\W*$",
+        r"count the \1 in the whole scene",
+    ),
 )
 """Patterns with the words that replace them."""
 

@@ -27,7 +27,8 @@ _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
     (
-        r"\b(?:(?:pull|go|come|move|take|bring)(?: it| her| the camera)? )?right (in|out) as (?:wide|far|tight|close) as (?:it|she|he|you)(?:['’]ll| will| can)?(?: goes?| go)?\b",
+        r"\b(?:(?:pull|go|come|move|take|bring)(?: it| her| the camera)? )?right (in|out) as (?:wide|far|tight|close) "
+        r"as (?:it|she|he|you)(?:['’]ll| will| can)?(?: goes?| go)?\b",
         r"zoom all the way \1",
     ),
     (r"^.*\b(?:the same way|that way too|the same direction)\b.*$", lambda match: _same_direction(match[0])),
@@ -39,40 +40,19 @@ MOVES = (
         "go home",
     ),
     (r"^((?:look at|zoom in on)\b.*), get it nice and (?:close|tight)\W*$", r"\1"),
-    (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
     (r", say (?=half a minute|a minute|\w+ (?:seconds|secs?|minutes)\b)", " for "),
     (r"\bhave a (?:little |quick |wee )?look (?=which|what|how many|if|whether)", "tell me "),
     (r"^zoom (?:to )?max(?:imum)?(?=\W*$|,)", "zoom all the way in"),
     (r"\bzoom in, (?=(?:two|three|four|five|\d+) times closer)", "zoom in "),
     (r"^.*\bthe other way\b.*$", lambda match: _other_way(match[0])),
-    (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
-    (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
     (r"\b(?:ha|['’])?av a (good|quick|proper) look at\b", r"have a \1 look at"),
     (r"\bback it off\b", "zoom out"),
     (r"\bto plus (?=\d)", "to "),
     (r"\b(as far as) it['’]?ll go\b", r"\1 it will go"),
     (r"^need it zoomed (in|out)\b", r"zoom \1"),
-    (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
-    (r"^(?:a )?closer look at (?=the |that |this )", "zoom in on "),
-    (r"^for the next ([\w ]+? (?:seconds|minutes)), ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
     (r"\bmax(?:imum)? zoom (in|out)\b", r"zoom all the way \1"),
     (r"(?<=\w), go\W*$", ""),
     (r"^hard (left|right),? all the way\b", r"all the way \1"),
-    (rf"\b((?:{_PICTURES})\b.*)\btake one there(?: as well| too)?\b", r"\1take a picture"),
-    (rf"\bfinish with a ({_PICTURES})\b", r"then take a \1"),
-    (
-        r"^(?:somebody|someone)(?:['’]s| has)? (?:left|lost|dropped|parked|dumped) (?:a|an|their|his|her) ([\w ]+?)"
-        r"(?: (?:out|there|here|outside|last night|earlier|today|again|somewhere))*, (?:please |can you |could you )?"
-        r"(find|zoom in on|look for) (?:it|the \w+)\b",
-        r"\2 the \1",
-    ),
-    (
-        r"^i(?:['’]ve| have)? (?:lost|misplaced) (?:the|my) ([\w ]+?)(?: again)?, (?:please |can you |could you )?"
-        r"(find) it(?: for me)?\?*$",
-        r"\2 the \1",
-    ),
-    (rf"\b((?:{_PICTURES})) of what(?:ever)? you(?:['’]re| are) (?:seeing|looking at)\b", r"\1"),
-    (r"^cent(?:er|re) and zoom (?:in )?on ", "zoom in on "),
     (r"^wide as (?=it|you|she|possible)", "as wide as "),
     (r"\bzoom (in|out), (?:maximum|max|full)\b", r"zoom all the way \1"),
     (
@@ -87,7 +67,6 @@ MOVES = (
         lambda match: f"{_DONE[match[2].lower()]} {match[3]}, then {match[1]}",
     ),
     (r"\bturn clear a?round\b", "turn around"),
-    (r"\b(take|get|grab) another wan\b", r"\1 another picture"),
     (r"\b(\d+) ([1-7])/([2-8])\b", lambda match: f"{int(match[1]) + int(match[2]) / int(match[3]):g}"),
     (r"\b(one|a|\d) minutes? and (\w+) seconds\b", r"\1 minute \2 seconds"),
     (r"\bone quarter turn\b", "a quarter turn"),
@@ -97,29 +76,9 @@ MOVES = (
     (r"\bback it out\b", "zoom out"),
     (r"^in to (?=\d)", "zoom in to "),
     (r"\b(?:mosey|amble|wander|trundle|scoot|jog) (?:on )?(?:over |down |up |along )?to ", "go to "),
-    (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
-    (r"\bget in (?:nice and )?(?:close|tight) (?:on|to) ", "zoom in on "),
-    (r"^tight (?:in )?on ", "zoom in on "),
-    (r"\bframe up ", "zoom in on "),
     (r"^(?:(?:have|take) a )?gander at ", "have a look at "),
-    (
-        r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
-        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
-        r"zoom in on \1",
-    ),
-    (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
-    (r"\b(photo|picture|still|snap|pic)\b(.*?) and do the same(?: thing)? there\b", r"\1\2 and take a picture"),
     (r"\b(?:leave|park|put) the camera (?:at|on) whichever(?: one)? has (?:more|the most)\b", "go there"),
     (r"\b(?:turn|spin|swing) (it |her |the camera )?right a?round(?! to)(?=,| please|\W*$)", "turn around"),
-    (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
-    (rf"\b((?:{_PICTURES}|photograph)\b.*)\btake (?:a |the )?(?:second|third) one\b", r"\1take a picture"),
-    (r"\bcloseup\b", "close-up"),
-    (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
-    (
-        r"\b(?:i )?(?:wish|want|would like|need) to (?:examine|inspect|study) ([^,.;]+?)(?: more closely| up close| "
-        r"closely| in detail)?\W*$",
-        r"zoom in on \1",
-    ),
     (
         r"\b(?:swing|turn|spin) (?:it |her |the camera )?(?:right |all the way )?a?round(?: so(?: that)?| until| till) "
         r"(?:you['’]re|you are|it['’]?s|it is|we['’]re) (?:facing|looking|pointing) the other way",
@@ -139,38 +98,20 @@ MOVES = (
     (r"(^|[,.;] |then |and )(?:then )?back to (\d+(?:\.\d+)?) ?(?:x|times)\b", r"\1zoom to \2x"),
     (r"\b(\d+) plus (?:another |a further |an extra )?(\d+)(?= degrees|\W*$)", lambda match: str(int(match[1]) + int(match[2]))),
     (rf"^((?:{_DIRECTIONS}) \d+)(?:,? \1)(?:,? \1)*\W*$", lambda match: _each_after_the_other(match)),
-    (r"(?<=\d)x for (?:a|one|the) (?:photo|picture|shot|snap|still)\W*$", "x and take a picture"),
     (r"\btilt to (\d+)(?: degrees)? below (?:the )?(?:horizontal|horizon)\b", r"tilt to minus \1 degrees"),
     (r"\b(?:point|aim|set)(?: the camera)? (?:at|to) (-?\d+)(?: degrees)? (pan|tilt)\b", r"set \2 to \1 degrees"),
     (r"\b(two|three|four|five|\d) time (?=bigger|closer|larger|wider|smaller)", r"\1 times "),
     (r"(?<!a )\blittle bit (?=more|closer|further)", "a bit "),
     (r",? a (?:little )?bit only\W*$", ""),
     (r"\bgo to whichever(?: one)?(?: it is| that is| has (?:it|more|the most)| wins?)?(?=\W*$|,)", "go there"),
-    (r"^(?:stick|stay|keep) (?:with|on) (?=(?:the|that|him|her|it|them|this)\b(?! (?:left|right|move|pan|tilt|zoom)))", "follow "),
     (r",? as (?:he|she|it|they) (?:goes?|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)", ""),
     (
         r", ((?:\d+|[a-z]+(?:-[a-z]+)?) (?:seconds|minutes)) (?:ought to|should|will|would) (?:do|be enough|be "
         r"plenty)(?: it| nicely| fine)?",
         r" for \1",
     ),
-    (r"\b(?:i )?(?:need|want|would like|['’]d like)(?: to)? (?:see|look at) (?:more close|closer|more closely) ", "zoom in on "),
-    (
-        r"\b(?:i )?(?:need|want|would like|['’]d like) to (?:see|look at) ([\w ]+?) (?:up close|close up|close-up|from close up)",
-        r"zoom in on \1",
-    ),
-    (
-        r"\b(?:show (?:me|us)|let me see) ((?:the|that|this|my|our) [\w ]+?) (?:up close|close up|close-up|from close up)",
-        r"zoom in on \1",
-    ),
     (r"\bi (want|need) (?=see\b)", r"i \1 to "),
-    (
-        r"^((?:zoom|find|follow|track|show|look at|get)\b.*?) (?:which|that|wich) (?:is|are) (?=(?:on|in|at|by|near"
-        r"|behind|under|beside|next to)\b)",
-        r"\1 ",
-    ),
-    (r"^(?:a )?close(?:r)?(?: |-)?(?:look|view|up), (?:the )?(?=[a-z][\w -]*\W*$)", "zoom in on the "),
     (r"\b(?:in|by) (ten|five|twentie|fifteen|thirtie)s (?=until|till|til)", lambda match: _steps(match[1])),
-    (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
     (rf"\blet['’]?s have a (?:good |quick |little )?(?:{_GLANCES})\b", "have a look"),
     (
         rf"\b(?:i (?:should|would) be (?:very )?(?:grateful|glad|obliged) if )?the camera (?:shall|should|must|needs "
@@ -192,7 +133,6 @@ MOVES = (
     (rf"\b(?:all )?a?round (?:the (?:{_MAST})|you)(?=[.?!,]|$)", "all around"),
     (r"\b(?:anywhere|everywhere) all around\b", "all around"),
     (rf"\beverywhere (?:that )?you can see(?: from (?:the (?:{_MAST})|up there|there|where you are))?{_END}", "everywhere"),
-    (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
     (r"\b(?:run|drive|slew) (?:the|that) (pan|tilt) (?=all|to|left|right|up|down)", r"\1 "),
     (
         r"((?:images|photos|pictures|stills|shots|snaps|pics)),? (?:in (?:direct|quick|immediate|rapid) succession|in a row"
@@ -201,91 +141,34 @@ MOVES = (
     ),
     (r"\bmake (?:one|a) (?:single |combined |simultaneous )*move(?:ment)? of ", "move "),
     (
-        r"\b(?:may|can|could|might) (?:i|we) (?:please )?have (?:the|this) (?:picture|view|image|shot) (?=[\w ]+? times (?:closer|bigger"
+        r"\b(?:may|can|could|might) (?:i|we) (?:please )?have (?:the|this) (?:picture|view|image|shot) (?=[\w ]+? "
+        r"times (?:closer|bigger"
         r"|larger)\b)",
         "zoom in ",
     ),
     (r"\bbring (?:the camera|it) (?:back |again |round )*to (?:its |the )?home\b", "go home"),
-    (r"^(?:i )?(?:need|want|get)(?: me)?(?: an?)? close[ -]?up of ", "zoom in on "),
-    (r"\bget ((?:the|that) [\w ]+?) (?:up close|nice and close|close up)(?=\W*$)", r"zoom in on \1"),
-    (
-        r"^i (?:want|need|would like) to see ((?:the|that) [\w ]+?)(?: from (?:near|close)| up close| better| properly)?[,.] zoom "
-        r"(?:in )?(?:on|onto|to) it\b",
-        r"zoom in on \1",
-    ),
-    (
-        rf"\b((?:{_PICTURES})) of what(?:ever)? (?:you(?:['’]ve)?(?: have)? got|we(?:['’]ve)?(?: have)? got|you have|you see|i see)"
-        r"(?: right now| now| there| here| on screen)*",
-        r"\1",
-    ),
-    (
-        r"^.*\b(?:views|spots|presets|positions|places) (?:are|have (?:we|you|i)(?: got)?|there are) (?:saved|stored|set up)[^,.?]*[,.?] "
-        r"(?:so )?(?:read|give) (?:me|us) the list\b.*$",
-        "list the presets",
-    ),
-    (
-        r"\bread (?:me |us )?(?:off |out )?(?:me )?the list(?: of (?:the |all )?(?:saved |stored )?(?:spots|positions|presets|views"
-        r"|places))(?: for (?:me|us))?",
-        "list the presets",
-    ),
-    (
-        r"^(?:what|which) (?:presets|saved views|saved positions|saved spots) (?:have (?:we|you|i) got|do (?:we|you|i) have|are there|are)"
-        r"(?: saved| stored| set up| programmed)?(?: (?:in|on|for|with) (?:this|the|here)(?: (?:one|camera|thing|system|site))?)?\W*$",
-        "list the presets",
-    ),
     (
         r"\bdon['’]t start (tak|zoom|go|mov|pan|turn|follow|count|track)(?:k|m|n)?(?:e)?(?:in|ing)\b",
         lambda match: f"don't {_GERUNDS[match[1].lower()]}",
     ),
     (r"\b(?:drive|run|send) (?:the |that )?(zoom|pan|tilt) (?=all|to|left|right|up|down|in|out)", r"\1 "),
     (
-        r"\b(?:can|could) (?:it|the camera|she) (?:please )?(go|come|move|turn|look|point|swing) (?=an?\b|to\b|further|left|right|up|down|slightly)",
+        r"\b(?:can|could) (?:it|the camera|she) (?:please )?(go|come|move|turn|look|point|swing) (?=an?\b|to\b"
+        r"|further|left|right|up|down|slightly)",
         r"\1 ",
     ),
     (r"\b(?:pull|go) (in|out) all the way(?: there)?\b", r"zoom all the way \1"),
     (r"\bzoom (?:max|full|fully) (in|out)\b", r"zoom all the way \1"),
     (r"\bput it back (?:to )?where it (?:normally |usually )?(?:sits|lives|belongs|goes|points|looks)\b", "go home"),
-    (
-        r"^what are (?:the|all the|your|our) (?:saved |stored )?(?:positions|presets|views|spots) (?:called|named)\b",
-        "list the presets",
-    ),
-    (
-        r"^what (?:spots|positions|views|presets|places) (?:have you|do you have|are) (?:saved|stored)(?: in [\w ]+)?\W*$",
-        "list the presets",
-    ),
-    (r"^(?:a )?close-?up of (the [\w ]+?) (?:required|needed|wanted|please)\W*$", r"zoom in on \1"),
-    (
-        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?),? (?:duration|for|time)?:? ?(\d+) ?(s|secs?|seconds?|mins?|minutes?)\b",
-        r"\1 the \2 for \3 \4",
-    ),
-    (r"(?<=, )(follow|track) (?:for )?(\d+|\w+) (s|secs?|seconds?|mins?|minutes?)\W*$", r"\1 it for \2 \3"),
-    (
-        r"\bi (?:should|would|['’]d) be (?:very |most )?(?:grateful|glad|obliged) for a (?:closer|better|good) look at ",
-        "zoom in on ",
-    ),
-    (r"^i (?:should|would|['’]d) like a (?:closer|better) look at ", "zoom in on "),
     (r"\band lift (\w+)\b(?! the)", r"and tilt up \1"),
-    (r"^camera on (?:the )?([\w ]+?), close\W*$", r"zoom in on the \1"),
-    (r"^(?:photo|picture|pic|snap|shot|still) here(?: first)?, (?:then|and then) ", "take a picture, then "),
     (r"\b(every (?:preset|view|position|spot)) there\b", r"\1"),
-    (
-        rf"\b((?:{_PICTURES})s?) of (?:the |that |this )?(?:(?:whole|entire|complete) [\w]+|sunset|sunrise|sky|landscape|scenery|skyline|panorama|view)\b",
-        r"\1",
-    ),
     (r"\beach preset: (?:1[.)] )?go to (?:the|that|each) preset[;,.] (?:2[.)] )?(?:then |and )?", "each preset, "),
     (r"\bswing (?:it )?over to the (left|right) by\b", r"pan \1 by"),
     (r"\bgo back to 0\b", "pan to 0 degrees"),
     (r"\bpoint at (-?\d+) degrees(?= ?, then pan to)", r"pan to \1 degrees"),
     (r"\bmake it double zoom\b", "double the zoom"),
     (r"\b(?:the )?present (view|frame|picture|image|shot)\b", r"the current \1"),
-    (rf"^(?:please )?document (?:the|this) (?:current )?(?:view|scene|picture) with an? ({_PICTURES}|photograph)\b", r"take a \1"),
-    (r"^for the next ([\w ]+? (?:seconds|minutes)), please ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
-    (r"\bi (?:should|would|['’]d) (?:like|love|want) to see (the [\w ]+?) more closely\b", r"zoom in on \1"),
-    (r"\bi (?:should|would) be (?:delighted|pleased|glad|happy|grateful) to have a closer look at ", "zoom in on "),
-    (r"\bi (?:should|would) be (?:most |very )?(?:obliged|grateful) if you (?:could|would) let me see ", "show me "),
     (r", ((?:\d+|[a-z]+|half a|a) (?:minutes?|seconds)) (?:is|are|will be) (?:enough|plenty|fine)\W*$", r" for \1"),
-    (r"^eyes on (?=the |that )", "zoom in on "),
-    (r"^keep on (?=the |that )(.+? for )", r"follow \1"),
     (r"(?<=\w) see where (?:he|she|it|they) (?:goes|go)\b[^,.;]*\W*$", ""),
     (
         r"\b(pan|tilt)( the camera)? to ([+-]?\d+)(?: degrees)?,? (?:and )?then to ([+-]?\d+)(?: degrees)?",
@@ -295,62 +178,25 @@ MOVES = (
         r"\b(?:visit|go to|check) (?:each|every) preset(?: in turn)? and (count [\w ]+?) (?:at|in) (?:every|each)(?: one)?\b",
         r"\1 at each preset",
     ),
-    (r"^(?:what|which) (?:places|presets|views|spots) has (?:this|the) camera got(?: saved| stored)?\b[^?.]*", "list the presets"),
-    (
-        rf"^(take (?:a|one) (?:{_PICTURES}|photograph)) before and after (pan|tilt|zoom|turn)(?:n)?ing (.+?)\W*$",
-        r"\1, \2 \3, then \1",
-    ),
     (r"^last of all,? ([^;.]+)[;.] (?:start|begin) with (.+?)\W*$", r"\2, then \1"),
     (r"^(?:see|check) (?:if|whether) (the [\w ]+?) is (\w+ing) and if (?:it is|so),? ", r"if \1 is \2, "),
     (r" should (?:just )?(?:about )?do (?:it|nicely)\W*$", ""),
-    (r"^(?:could|may|can) i have (?=an? (?:photo|picture|snap|shot|still)\b)", "take "),
-    (r"\b(get|bring) ((?:the|that) [\w ]+?) nice and close(?: for (?:me|us))?", r"zoom in on \2"),
-    (r"^let['’]?s see ((?:the|that) [\w ]+?) (?:up close|close up)\b", r"zoom in on \1"),
     (r"^right (in|out) with the zoom\b", r"zoom all the way \1"),
     (r"(\ball the way (?:in|out)), as far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
-    (
-        r"^(?:an? )?(image|picture|photo|still|snapshot)(?: of (?:the )?(?:present|current) (?:view|scene))? (?:required|needed|wanted)\W*$",
-        r"take a \1",
-    ),
-    (rf"\b({_PICTURES}|photograph|image) of (?:the )?(?:present|current) (?:view|scene|frame)(?: first)?", r"\1"),
-    (r"\bget (?:a )?close(?:r|-up)? (?:view|look|shot) (?:of|at) ", "zoom in on "),
-    (r"\bget ((?:the|that) [\w ]+?) (?:nicely |right |properly )?in (?:the )?(?:frame|shot)\b", r"zoom in on \1"),
     (r", ((?:half a|a|one|two) minutes?(?: and a half)?) (?:ought to|should|will|would) do(?: it| nicely)?\b", r" for \1"),
     (r"\bnip it (up|down|left|right)\b", r"move it \1"),
-    (r"\b(?:give|get|show) (?:me|us) ((?:the|that) [\w'’ ]+?) in close[- ]?up\b", r"zoom in on \1"),
-    (r"\b(follow|track) for ([\w ]+? (?:minutes?|seconds?)) (the [\w ]+)", r"\1 \3 for \2"),
     (
         r"\b(?:point|aim)(?: the camera)? at (-?\d+) degrees,? (?:and )?then at (-?\d+) degrees",
         r"pan to \1 degrees, then pan to \2 degrees",
     ),
-    (
-        r"^.*\b(?:asked|asking|asks) about (the [\w ]+?), so (?:please |can you |could you )?(?:locate|find|zoom in on) (?:it|them)"
-        r"(?: and zoom in on (?:it|them))?\W*$",
-        r"zoom in on \1",
-    ),
-    (
-        r"\bkeep (the [\w'’ -]+?) in (?:view|frame|shot|the picture) as (?:it|he|she|they) (?:moves?|goes?|walks?|drives?)\b",
-        r"follow \1",
-    ),
-    (
-        r"\bi (?:would|should) be (?:ever so |very |most |so )?(?:grateful|glad|obliged) for (?=an? (?:picture|photo|photograph|image)\b)",
-        "take ",
-    ),
-    (
-        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?)\. (\d+) ?(s|secs?|seconds?|mins?|minutes?)\W*$",
-        r"\1 the \2 for \3 \4",
-    ),
     (r"\btighten (?:it |her )?up(?: by)? (?=\w+ (?:percent|%|per cent))", "zoom in by "),
     (
-        r"^((?:pan|tilt|turn) (?:up|down|left|right))[.,] not (?:much|far|a lot)[,:] ([\w -]+? degrees)(?: will do| is enough| should do)?\W*$",
+        r"^((?:pan|tilt|turn) (?:up|down|left|right))[.,] not (?:much|far|a lot)[,:] ([\w -]+? degrees)(?: will do| "
+        r"is enough| should do)?\W*$",
         r"\1 \2",
     ),
     (r", (?:and )?i mean (a lot|all the way|a bit)\W*$", r" \1"),
-    (
-        r"^.*\bwhich (?:positions|presets|views|spots) (?:have been|are) (?:saved|stored)\b[^;.?]*[;.?] (?:so )?(?:could|can|would|will) you "
-        r"(?:please )?list them\b.*$",
-        "list the presets",
-    ),
+    (r", (\d+ ?(?:s|secs?|min|mins)|[\w-]+ (?:seconds|minutes)) should be (?:enough|plenty)\W*$", r" for \1"),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

@@ -61,7 +61,8 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             r"go to the \1, count \2, then ",
         ),
         (
-            rf"^.*[,.;] *(?:(?:oh|i['’]m sorry|sorry|no|actually)[, ]+)+forget that, (?:the )?({names}) (?:would|might|will) be (?:more helpful"
+            rf"^.*[,.;] *(?:(?:oh|i['’]m sorry|sorry|no|actually)[, ]+)+forget that, (?:the )?({names}) (?:would"
+            rf"|might|will) be (?:more helpful"
             rf"|better|more useful|preferable)\W*$",
             r"go to the \1",
         ),
@@ -133,7 +134,8 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             lambda match: _state_asked(match),
         ),
         (
-            rf"\b((?:take|get|grab|make|snap) (?:me )?)(?:a|one) ({_PICTURES}) (?:at|of|from) (?:the )?({names}),? (?:and|then|and then|and afterwards) "
+            rf"\b((?:take|get|grab|make|snap) (?:me )?)(?:a|one) ({_PICTURES}) (?:at|of|from) (?:the )?({names}),? "
+            rf"(?:and|then|and then|and afterwards) "
             rf"(?:another one|another|one|one more|a second(?: one)?) (?:at|of|from) (?:the )?({names})",
             r"\1a \2 at the \3 and at the \4",
         ),
@@ -145,25 +147,29 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             ),
         ),
         (
-            rf"\bwhich (?:one )?of (?:the|these) (?:two )?(?:presets|places|views|positions|two),? (?:the )?({names}) (?:or|and) (?:the )?"
+            rf"\bwhich (?:one )?of (?:the|these) (?:two )?(?:presets|places|views|positions|two),? (?:the )?({names}) "
+            rf"(?:or|and) (?:the )?"
             rf"({names}),? (?:contains|has|shows|holds|have|has got) (?:the )?(more|most|fewer) ([\w ]+)",
             r"which has \3 \4, \1 or \2",
         ),
         (rf"^(?:the )?({names})[,:] ((?:{_STATES}) or (?:{_STATES}))\W*$", r"is the \1 \2?"),
         (rf"\blet['’]?s have the camera (?:on|at|over|over at) (?:the )?({names})(?: for \w+)?\b", r"go to the \1"),
         (
-            rf"^(?:.*, )?(?:or )?(?:actually )?no, forget (?:about )?(?:the )?(?:{names}), it(?:['’]s| is| was) (?:the )?({names}) (?:that )?"
-            rf"(?:i|we) (?:wanted|want|meant|mean|need)\b.*$",
+            rf"^.*\b(?:no|never mind|forget|sorry)\b.*\bit(?:['’]s| is| was) (?:the )?({names}) (?:that )?(?:i|we)"
+            rf"(?:['’]m after| am after| wanted| want| meant| mean| need)\b.*$",
             r"go to the \1",
         ),
+        (rf"^head ?count (?:on|of|for) (?:the )?([\w ]+?), (?:the )?({names})\W*$", r"count the \1 at the \2"),
         (
-            rf"^(?:(?:go|proceed|move) to )?(?:the )?({names})(?:,| and)? then (?:the )?({names})[,.] *(?:(?:actually|no|wait|sorry)[, ]+)*"
+            rf"^(?:(?:go|proceed|move) to )?(?:the )?({names})(?:,| and)? then (?:the )?({names})[,.] *(?:(?:actually"
+            rf"|no|wait|sorry)[, ]+)*"
             rf"(?:skip|forget|leave out|drop|disregard|cancel|ignore|not) (?:the )?({names})\W*$",
             lambda match: _visits_without(match),
         ),
         (
             rf"^(?P<news>.*?)\b(?:at|in|on|by|near|over by|over at|out at|outside|about) (?:the )?(?P<place>{names}),? "
-            rf"(?:so |and )?(?:please |can you |could you |would you )*(?:(?:go|pop|head|nip|run|get) (?:over|down|up|across|out)? ?there"
+            rf"(?:so |and )?(?:please |can you |could you |would you )*(?:(?:go|pop|head|nip|run|get) (?:over|down|up"
+            rf"|across|out)? ?there"
             rf"|(?:show (?:me|us)|go to|bring up|take (?:me|us) to) (?:that one|it|there))\b",
             lambda match: match[0] if asks_for_something(match["news"], ()) else f"go to the {match['place']}",
         ),

@@ -119,12 +119,14 @@ QUESTIONS = (
     ),
     (r"^if ([^,]+?),? (?:i|we) can [^,]+, so (?:please )?check(?: it| that)? and if so,? ", r"if \1, "),
     (
-        r"^(raining|snowing|dark|foggy|windy|wet|busy|quiet|icy|flooded|sunny|cloudy|clear|muddy|dusty)(?: (?:out|down|up))?(?: there| here)?\?$",
+        r"^(raining|snowing|dark|foggy|windy|wet|busy|quiet|icy|flooded|sunny|cloudy|clear|muddy|dusty)(?: (?:out"
+        r"|down|up))?(?: there| here)?\?$",
         r"is it \1?",
     ),
     (r"^(?:please )?(?:determine|check|tell me|report) the state of (the [\w ]+?)[:,]? (\w+ or \w+)\?*$", r"is \1 \2?"),
     (
-        r"[.?!] (?:please )?(?:look|check) (?:at|over|around|across) the (?:whole|entire|full) \w+ (?:before (?:you )?answer(?:ing)?|first)\W*$",
+        r"[.?!] (?:please )?(?:look|check) (?:at|over|around|across) the (?:whole|entire|full) \w+ (?:before (?:you "
+        r")?answer(?:ing)?|first)\W*$",
         " in the whole scene?",
     ),
     (
@@ -134,7 +136,8 @@ QUESTIONS = (
     (r"^looking all (?:a)?round(?: us| you| the \w+)?, ([^?]*)\?*$", r"\1 in the whole scene?"),
     (r"^all (?:a)?round (?:the \w+|us|you)[:,] ([^?]*?)(?: anywhere)?\?*$", r"\1 in the whole scene?"),
     (
-        r"^(?:confirm|verify) (?:that )?(?:the )?([\w ]+?) (lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? (?:yes or no|y/n))?\W*$",
+        r"^(?:confirm|verify) (?:that )?(?:the )?([\w ]+?) (lit|open|shut|closed|locked|on|off|clear|empty|full)(?:,? "
+        r"(?:yes or no|y/n))?\W*$",
         lambda match: f"{'are' if is_plural(match[1].split(' ')[-1]) else 'is'} the {match[1]} {match[2]}?",
     ),
     (r"\bif it(?:['’]s| is) (fewer|less|more|greater) than (?=\w+)", r"if there are \1 than "),

@@ -78,7 +78,8 @@ REMARKS = (
     (r", do (?:i|we) need (?:my|me|a|an|our) \w+\s*\?", "?"),
     (rf"\b(if|when|should|in case)\b(.+?)[;,.]\s*(?:if not|otherwise),? (?:{_NOTHING_ELSE})\s*[.!]*$", r"\1\2"),
     (
-        r"\b(?:now |please |just )?do (?:me|us|an? [\w ]{2,20}?) (?:a|one) (?:quick |small |little |big )?favou?r(?:,? and|[,:.])? ",
+        r"\b(?:now |please |just )?do (?:me|us|an? [\w ]{2,20}?) (?:a|one) (?:quick |small |little |big )?favou?r"
+        r"(?:,? and|[,:.])? ",
         "",
     ),
     (r"^(?:please )?(?:settle|help me settle) an? (?:argument|bet|debate|dispute)\b[^.?!:]*[.?!:] ", ""),
@@ -95,20 +96,23 @@ REMARKS = (
         "",
     ),
     (
-        r"^i(?:['’]d| would) like to know how (?:busy|full|quiet|crowded|things)\b[^,;.]*[,;] so (?=(?:please )?(?:go|count|take|check"
+        r"^i(?:['’]d| would) like to know how (?:busy|full|quiet|crowded|things)\b[^,;.]*[,;] so (?=(?:please )?(?:go"
+        r"|count|take|check"
         r"|visit|tour|sweep)\b)",
         "",
     ),
     (r",? the one (?:that )?(?:i|we|you|they|he|she)(?:['’]ve| have)? been \w+ing (?:about|on about)\b[^,.;]*$", ""),
     (r"(?<=\w)[,.;]? (?:can|could|would|will) (?:you|u) count (?:both|them both|them all|all of them)(?: for (?:me|us))?\W*$", ""),
-    (r"^(afternoon|morning|evening|hi|hello|hiya), ", ""),
+    (r"^(afternoon|morning|evening), ", ""),
     (
-        r",? for (?:the|my|our|an?|this) (?:[\w-]+ ){0,2}(?:check|tests?|survey|inspection|handover|series|trial|demo|meeting|newsletter"
+        r",? for (?:the|my|our|an?|this) (?:[\w-]+ ){0,2}(?:check|tests?|survey|inspection|handover|series|trial|demo"
+        r"|meeting|newsletter"
         r"|website|briefing|presentation)\W*$",
         "",
     ),
     (
-        r",? before (?:i|we) (?:can )?(?:begin|start|sign|hand|lock|close|clock|knock|file|submit|send|report|finish|order|ring|call"
+        r",? before (?:i|we) (?:can )?(?:begin|start|sign|hand|lock|close|clock|knock|file|submit|send|report|finish"
+        r"|order|ring|call"
         r"|phone|set off|leave)\b(?!.*\b(?:pan|tilt|zoom|turn|mov|count|photo|picture))[^,.;]*\W*$",
         "",
     ),
@@ -129,12 +133,15 @@ REMARKS = (
     (r",? as (?:two|three|four|five|six|\d|separate)(?: separate| individual| distinct)? (?:moves|steps|movements)\b", ""),
     (r"\bin the present (frame|view|picture|image|shot)\b", r"in the current \1"),
     (
-        r"^(?:there(?:['’]s| is)|i (?:can )?see|we(?:['’]ve| have)(?: got)?) (an? [\w ]+?),? (?:who|that|which)\b[^,.;]*[,.;] (?:so )?"
-        r"(?:please |can you |could you |would you )*(follow|track|zoom in on|keep an eye on) (?:him|her|it|them)\b(?: with the camera)?",
+        r"^(?:there(?:['’]s| is)|i (?:can )?see|we(?:['’]ve| have)(?: got)?) (an? [\w ]+?),? (?:who|that"
+        r"|which)\b[^,.;]*[,.;] (?:so )?"
+        r"(?:please |can you |could you |would you )*(follow|track|zoom in on|keep an eye on) (?:him|her|it|them)\b"
+        r"(?: with the camera)?",
         r"\2 \1",
     ),
     (
-        r",? if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any) (?:bother|trouble|problem|hassle)\b",
+        r",? if (?:it|that)(?: is|['’]s| is not|['’]s not| isn['’]t)(?: not)? (?:an?|too much|any) (?:bother|trouble"
+        r"|problem|hassle)\b",
         "",
     ),
     (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
@@ -150,7 +157,8 @@ REMARKS = (
     (r"^i(?:['’]d| would) like to compare [^,.;]*[,.;] so ", ""),
     (r"^can we do a (?:little |quick |short )?(?:tour|round|lap)\? ", ""),
     (
-        r"[.?!,;] (?:i |we )?(?:just )?(?:want|need|like|would like) to know (?:should|which|where|what) (?:i|we|he|she|they|line|way)\b[^?.!]*\W*$",
+        r"[.?!,;] (?:i |we )?(?:just )?(?:want|need|like|would like) to know (?:should|which|where|what) (?:i|we|he"
+        r"|she|they|line|way)\b[^?.!]*\W*$",
         "",
     ),
     (
@@ -159,18 +167,21 @@ REMARKS = (
     ),
     (r"[.?!] my \w+ and i (?:have|are|were|had|want)\b[^?.]*\W*$", ""),
     (
-        r"(?<=\w)[,.;?!] (?:customer|client|visitor|driver|guest|neighbour|police|manager)s? (?:request|complaining|waiting|asking|shouting|ringing|complaint|orders?)\b[^?.]*\W*$",
+        r"(?<=\w)[,.;?!] (?:customer|client|visitor|driver|guest|neighbour|police|manager)s? (?:request|complaining"
+        r"|waiting|asking|shouting|ringing|complaint|orders?)\b[^?.]*\W*$",
         "",
     ),
     (r"[?.] i (?:ought to|should) (?:know|remember|have known)\b[^?]*$", "?"),
     (r",? (?:like|as) this i (?:can['’]?t|cannot|can not) [\w ]+\W*$", ""),
     (
-        r"\b(?:i|we) (?:need|want|have|would like) to see the (?:whole|complete|entire|full) [\w ]+?(?: for [\w ]+?)?, (?:so )?(?:please )?"
+        r"\b(?:i|we) (?:need|want|have|would like) to see the (?:whole|complete|entire|full) [\w ]+?(?: for "
+        r"[\w ]+?)?, (?:so )?(?:please )?"
         r"(?=zoom (?:all the way )?out)",
         "",
     ),
     (
-        r"(\ball the way[\w ]*?|\bas far as it goes),? (?:till|until|so(?: that)?) (?:we|i|you) (?:get|have|can see|see) the (?:whole|entire) \w+(?: in (?:it|view|shot|the picture))?",
+        r"(\ball the way[\w ]*?|\bas far as it goes),? (?:till|until|so(?: that)?) (?:we|i|you) (?:get|have|can see"
+        r"|see) the (?:whole|entire) \w+(?: in (?:it|view|shot|the picture))?",
         r"\1",
     ),
     (r"^(?:morning|night|late|early|day) shift here[,.:] ", ""),
@@ -181,19 +192,22 @@ REMARKS = (
     (r", not (?:after(?:wards)?|before|during)\W*$", ""),
     (r", which (?:i|we) (?:seem|appear|believe|think|have|had|was|am|were)\b[^?.;]*", ""),
     (
-        r"(?<=\w), where (?:the|my|our|i|we|they|he|she) [\w' ]+? (?:used to|is|was|are|were|has|had|lies|lay|stood|stands|lives)\b[^?.;,]*[.!]*$",
+        r"(?<=\w), where (?:the|my|our|i|we|they|he|she) [\w' ]+? (?:used to|is|was|are|were|has|had|lies|lay|stood"
+        r"|stands|lives)\b[^?.;,]*[.!]*$",
         "",
     ),
     (r",? (?:and )?hold(?: it| there| position| steady)?\W*$", ""),
     (r",? there should be (?:about |around |at least )?(?:\d+|\w+)\W*$", ""),
     (r",? there(?:['’]?s| is| are)? (?:meant|supposed) to be (?:\d+|\w+)\W*$", ""),
     (
-        r"^before (?:i|we) (?:turn off|set off|drive|leave|come|head|park)\b[^,.;]*, (?=(?:is|are|how|what|can|could|has|have|do|does)\b)",
+        r"^before (?:i|we) (?:turn off|set off|drive|leave|come|head|park)\b[^,.;]*, (?=(?:is|are|how|what|can|could"
+        r"|has|have|do|does)\b)",
         "",
     ),
     (r", then (?:i|we)(?:['’]ll| will| can| shall) (?:know|see|tell|decide)\b[^?.!;]*\W*$", ""),
     (
-        r"(\bcount (?:the )?[\w ]+), (?:i|we) (?:must|have to|need to|want to) (?:know|be sure|make sure) (?:that|if|whether)\b[^.;?]*\W*$",
+        r"(\bcount (?:the )?[\w ]+), (?:i|we) (?:must|have to|need to|want to) (?:know|be sure|make sure) (?:that|if"
+        r"|whether)\b[^.;?]*\W*$",
         r"\1",
     ),
     (r",? and (?:stay|remain|wait) (?:there|put|here)\b", ""),
@@ -201,5 +215,19 @@ REMARKS = (
     (r"^(?:a )?bit too (?:close|tight|far|wide|high|low)(?:,? this)?[.!,] ", ""),
     (r", who is, i (?:believe|think|fancy), [^?.;]*", ""),
     (r" than it is (?:at present|now|at the moment|currently)\b", ""),
+    (
+        r",? before (?:i|we|he|she|they) (?:lift|load|unload|drive|tow|launch|weld|paint|shunt|reverse)\b(?!.*\b"
+        r"(?:pan|tilt|zoom)\b)[^,.;]*\W*$",
+        "",
+    ),
+    (r"[.?!] (?:the )?[\w ]+ should be (?:over |out |down )?(?:there|here)\W*$", "."),
+    (r", that (?:should|ought to|will) (?:centre|center|frame|fix|do|put|bring|show)\b[^?!,;]*\W*$", ""),
+    (r"[.?!] (?:my|the|our) \w+ and i (?:have|are|were|had|want)\b[^?.]*\W*$", ""),
+    (
+        r"^.*\bwants? to know (?:if|whether) (?:he|she|they|we|i) should [^,.;]*[,.;] so (?=(?:please )?(?:pan|tilt"
+        r"|zoom|go|take|count|turn)\b)",
+        "",
+    ),
+    (r"^(?:g['’]day|hi|hello|hiya)?,? ?(?:just )?had (?:the|an?|my) [^?]*?, so ", ""),
 )
 """Patterns of remarks, with what is left of them."""

@@ -166,7 +166,8 @@ SHORTHAND = (
     (r"\b(a lot|a bit|in|out|left|right|up|down) man\b(?=,)", r"\1"),
     (r"\bi require (?=an? |the |one )", "i need "),
     (
-        r"[.;,] the (photograph|photo|picture|pan|tilt|zoom|count) (?:is|are) (?:not|no longer) (?:necessary|needed|required)(?: after all| any more)?\W*$",
+        r"[.;,] the (photograph|photo|picture|pan|tilt|zoom|count) (?:is|are) (?:not|no longer) (?:necessary|needed"
+        r"|required)(?: after all| any more)?\W*$",
         r". No, skip the \1.",
     ),
     (r"\bfor (?:me|us) were (?=meant|supposed|short|missing|expecting)", "for me, we're "),
@@ -186,14 +187,39 @@ SHORTHAND = (
     (r",? when you(?:['’]ve| have) (?:done|finished)(?: that| this| so)?,? ", " "),
     (r",? (?:and,? )?once (?:we|you) are there,? ", ", then "),
     (
-        r"(?<!and)(?<!then)(?<!please)(?<!you)(?<!to)(?<!can)(?<!could)(?<!or)(?<!just)(?<![,.;:]) (?=tell me (?:if|whether|how|what)\b)",
+        r"(?<!and)(?<!then)(?<!please)(?<!you)(?<!to)(?<!can)(?<!could)(?<!or)(?<!just)(?<![,.;:]) (?=tell me (?:if"
+        r"|whether|how|what)\b)",
         ", ",
     ),
     (r"\bi should very much like (?=an? |to )", "i should like "),
     (r",? and (?:i['’]m )?sorry (?:for|to|about)\b[^,.;]*(?=\W*$|,)", ""),
     (
-        r"\b(one|two|three|four|five|six|seven|eight|niner?) (zero|one|two|three|four|five|six|seven|eight|niner?) (?=seconds|degrees)",
+        r"\b(one|two|three|four|five|six|seven|eight|niner?) (zero|one|two|three|four|five|six|seven|eight|niner?) "
+        r"(?=seconds|degrees)",
         lambda match: f"{_DIGITS[match[1].lower()]}{_DIGITS[match[2].lower()]} ",
     ),
+    (r"\b(closer|better|good|quick|little) peek\b", r"\1 look"),
+    (r"^closer(?:,? please)?, a lot closer\b", "a lot closer"),
+    (r"^(?:the )?(?:field of view|framing) is too (?:tight|close|wide|far)[,.] ", ""),
+    (r", oh, (?=[\w-]+ degrees\b)", " "),
+    (r"\bdegrees or so,? ", "degrees "),
+    (r"^any idea (?=how many|what|where|who)", ""),
+    (r"\b(?:could|can|shall) we (?=zoom|pan|tilt|turn|count)", "please "),
+    (
+        r"^(?:commissioning|counting|absolute positioning|positioning|acceptance|range|function|regression|routine|optical) "
+        r"(?:step|test|check|case)(?: [\d.]+)? ?[:.] ",
+        "",
+    ),
+    (r"\b(?:fully|completely) zoomed (in|out)\b", r"zoom all the way \1"),
+    (r"^it needs to (?=go|come|move|point|look)", ""),
+    (r"^it should be zoomed (in|out) (\w+ percent)(?: more)?\b", r"zoom \1 \2"),
+    (r",? (?:go on, )?(?:have|take) a guess\W*$", ""),
+    (r"\bits (?=(?:dark|cold|wet|late|early|noisy|quiet|busy|windy|foggy|misty|fine|bad|half|my|his|her|our|gone|got)\b)", "it's "),
+    (r"\b(\d+),(5|25|75)(?= ?(?:degrees|deg|x|times|percent|%))", r"\1.\2"),
+    (r"\breturn (?:it|the camera|the tilt) to level\b", "level the camera"),
+    (r"\bkeep (?:tracking|following) (?=the |that )", "follow "),
+    (r",? duration:? (?=(?:\w+|\d+) (?:minutes?|seconds?))", " for "),
+    (r"\bi need a head ?count: (?=how many)", ""),
+    (r"\binspect (?=each|every|all the)", "go to "),
 )
 """Patterns with the words that replace them."""

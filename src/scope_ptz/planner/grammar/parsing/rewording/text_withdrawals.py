@@ -6,7 +6,10 @@ import re
 
 _PICTURE = r"(?:pic|photo|picture|still|shot|snap|image)"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
-_LEAVE_OUT = r"(?:(?:i|we) (?:no longer|don['’]?t) (?:need|want)|no|scratch|skip|strike|omit|forget|cancel|nvm|cut|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
+_LEAVE_OUT = (
+    r"(?:(?:i|we) (?:no longer|don['’]?t) (?:need|want)|no|scratch|skip|strike|omit|forget|cancel|nvm|cut"
+    r"|leave|leave out|drop|scrap|never mind|don['’]?t (?:bother with|take))"
+)
 
 WITHDRAWALS = (
     (r",? (?:and )?(?:don['’]?t|do not) move (?:after|afterwards|after that)\W*$", ""),
@@ -59,7 +62,8 @@ WITHDRAWALS = (
         "",
     ),
     (
-        r"^count (the [\w]+)(?: (?:on|in|at|by|near) [\w ]+)?[,.] *(?:(?:actually|no|nah|wait|sorry)[, ]+)*(?:forget|never ?mind) \1, "
+        r"^count (the [\w]+)(?: (?:on|in|at|by|near) [\w ]+)?[,.] *(?:(?:actually|no|nah|wait|sorry)[, ]+)*(?:forget"
+        r"|never ?mind) \1, "
         r"(?=count\b)",
         "",
     ),
@@ -69,17 +73,20 @@ WITHDRAWALS = (
         "",
     ),
     (
-        r"[,;]? (?:with|while|keeping|leaving) (?:the )?(?:pan|tilt|zoom)(?:,? and (?:the )?(?:pan|tilt|zoom))? (?:left |kept |staying )?"
+        r"[,;]? (?:with|while|keeping|leaving) (?:the )?(?:pan|tilt|zoom)(?:,? and (?:the )?(?:pan|tilt|zoom))? "
+        r"(?:left |kept |staying )?"
         r"(?:as (?:they are|it is)|unchanged|untouched|alone|where (?:they are|it is))\W*$",
         "",
     ),
     (
-        r"^((?:.*?)(?:1[.)] )?(?P<a>[^.;]+?)[.;] 2[.)] (?P<b>[^.;]+?)(?:[.;] 3[.)] (?P<c>[^.;]+?))?)[.;] *(?:correction[:,]? |actually,? )?"
+        r"^((?:.*?)(?:1[.)] )?(?P<a>[^.;]+?)[.;] 2[.)] (?P<b>[^.;]+?)(?:[.;] 3[.)] (?P<c>[^.;]+?))?)[.;] *"
+        r"(?:correction[:,]? |actually,? )?"
         r"(?:skip|omit|leave out|drop|ignore|forget) step (?P<n>[123])\W*$",
         lambda match: _without_step(match),
     ),
     (
-        r"^[^,.;]+[.,;] (?:actually|no|wait|on second thoughts?)[, ]+leave it (?:where|as|how) it (?:is|was)(?:,| and|;)? (?:just |only )?"
+        r"^[^,.;]+[.,;] (?:actually|no|wait|on second thoughts?)[, ]+leave it (?:where|as|how) it (?:is|was)(?:,| and"
+        r"|;)? (?:just |only )?"
         r"(?=\w+ )",
         "",
     ),
@@ -89,7 +96,8 @@ WITHDRAWALS = (
     (r", no (?:picture|photo)s?(?: this time| please| needed| yet)?(?=,)", ""),
     (r"^neither pan nor tilt[,;] (?:only|just) ", ""),
     (
-        r" and (?:then )?(?:follow|track|count|read|zoom in on) (?:it|him|her|them)\b[,.;]* *(?:(?:actually|no|wait|sorry|oh)[, ]+)+"
+        r" and (?:then )?(?:follow|track|count|read|zoom in on) (?:it|him|her|them)\b[,.;]* *(?:(?:actually|no|wait"
+        r"|sorry|oh)[, ]+)+"
         r"(?:don['’]?t|do not) (?:bother|worry about) \w+ing (?:it|him|her|them), (?:just )?(?=\w)",
         ", ",
     ),
@@ -99,10 +107,12 @@ WITHDRAWALS = (
         "",
     ),
     (
-        r"^i (?:had meant|was going|meant|wanted) to ask (?:you )?(?:for|to)\b[^,;]*, but (?:please )?(?:don['’]?t|do not) (?:trouble|bother)"
+        r"^i (?:had meant|was going|meant|wanted) to ask (?:you )?(?:for|to)\b[^,;]*, but (?:please )?(?:don['’]?t|do "
+        r"not) (?:trouble|bother)"
         r" (?:with|about) (?:that|it)(?: now)?[;,.] (?:simply |just )?",
         "",
     ),
+    (r",? but (?:do not|don['’]?t) (?:follow|track) (?:it|him|her|them)(?: when [^.;]*)?\W*$", ""),
 )
 """Patterns with the words that replace them."""
 
@@ -128,9 +138,11 @@ _PARTS = {
 """Patterns for the beginning of the parts of an instruction, by what may be left out of it."""
 
 _LEFT_OUT = re.compile(
-    rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|naw|nope|wait|sorry|oh|hang on|on second "
+    rf"(?P<said>.+?)(?:[,.;]+| -+| –) *(?:(?:well|please|correction|scratch that|actual+y|no|nah|naw|nope|wait|sorry"
+    rf"|oh|hang on|on second "
     rf"thoughts?)[,: ]+)*{_LEAVE_OUT} (?:the |that )?"
-    rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:(?:do )?the \w+"
+    rf"(?P<what>pan|tilt|zoom|count|follow|track|home|going home|{_PICTURE})(?:ning|ting|ing)?(?:,? (?:just|only) (?:"
+    rf"(?:do )?the \w+"
     rf"|go there|go home|do that|count|look))?\W*",
     re.IGNORECASE,
 )

@@ -1,0 +1,182 @@
+"""Patterns for close views, pictures, lists of presets and things to follow in the text of an instruction, with plainer words."""
+
+from __future__ import annotations
+
+_PICTURES = "photo|picture|pic|snap|shot|still"
+_GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
+
+VIEWS = (
+    (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
+    (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
+    (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
+    (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
+    (r"^(?:a )?closer look at (?=the |that |this )", "zoom in on "),
+    (r"^for the next ([\w ]+? (?:seconds|minutes)), ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
+    (rf"\b((?:{_PICTURES})\b.*)\btake one there(?: as well| too)?\b", r"\1take a picture"),
+    (rf"\bfinish with a ({_PICTURES})\b", r"then take a \1"),
+    (
+        r"^(?:somebody|someone)(?:['’]s| has)? (?:left|lost|dropped|parked|dumped) (?:a|an|their|his|her) ([\w ]+?)"
+        r"(?: (?:out|there|here|outside|last night|earlier|today|again|somewhere))*, (?:please |can you |could you )?"
+        r"(find|zoom in on|look for) (?:it\b|the [\w ]+?(?=\W*$|[,.]))",
+        r"\2 the \1",
+    ),
+    (
+        r"^i(?:['’]ve| have)? (?:lost|misplaced) (?:the|my) ([\w ]+?)(?: again)?, (?:please |can you |could you )?"
+        r"(find) it(?: for me)?\?*$",
+        r"\2 the \1",
+    ),
+    (rf"\b((?:{_PICTURES})) of what(?:ever)? you(?:['’]re| are) (?:seeing|looking at)\b", r"\1"),
+    (r"^cent(?:er|re) and zoom (?:in )?on ", "zoom in on "),
+    (r"\b(take|get|grab) another wan\b", r"\1 another picture"),
+    (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
+    (r"\bget in (?:nice and )?(?:close|tight) (?:on|to) ", "zoom in on "),
+    (r"^tight (?:in )?on ", "zoom in on "),
+    (r"\bframe up ", "zoom in on "),
+    (
+        r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
+        r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
+        r"zoom in on \1",
+    ),
+    (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
+    (r"\b(photo|picture|still|snap|pic)\b(.*?) and do the same(?: thing)? there\b", r"\1\2 and take a picture"),
+    (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
+    (rf"\b((?:{_PICTURES}|photograph)\b.*)\btake (?:a |the )?(?:second|third) one\b", r"\1take a picture"),
+    (r"\bcloseup\b", "close-up"),
+    (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
+    (
+        r"\b(?:i )?(?:wish|want|would like|need) to (?:examine|inspect|study) ([^,.;]+?)(?: more closely| up close| "
+        r"closely| in detail)?\W*$",
+        r"zoom in on \1",
+    ),
+    (r"(?<=\d)x for (?:a|one|the) (?:photo|picture|shot|snap|still)\W*$", "x and take a picture"),
+    (r"^(?:stick|stay|keep) (?:with|on) (?=(?:the|that|him|her|it|them|this)\b(?! (?:left|right|move|pan|tilt|zoom)))", "follow "),
+    (r"\b(?:i )?(?:need|want|would like|['’]d like)(?: to)? (?:see|look at) (?:more close|closer|more closely) ", "zoom in on "),
+    (
+        r"\b(?:i )?(?:need|want|would like|['’]d like) to (?:see|look at) ([\w ]+?) (?:up close|close up|close-up|from close up)",
+        r"zoom in on \1",
+    ),
+    (
+        r"\b(?:show (?:me|us)|let me see) ((?:the|that|this|my|our) [\w ]+?) (?:up close|close up|close-up|from close up)",
+        r"zoom in on \1",
+    ),
+    (
+        r"^((?:zoom|find|follow|track|show|look at|get)\b.*?) (?:which|that|wich) (?:is|are) (?=(?:on|in|at|by|near"
+        r"|behind|under|beside|next to)\b)",
+        r"\1 ",
+    ),
+    (r"^(?:a )?close(?:r)?(?: |-)?(?:look|view|up), (?:the )?(?=[a-z][\w -]*\W*$)", "zoom in on the "),
+    (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
+    (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
+    (r"^(?:i )?(?:need|want|get)(?: me)?(?: an?)? close[ -]?up of ", "zoom in on "),
+    (r"\bget ((?:the|that) [\w ]+?) (?:up close|nice and close|close up)(?=\W*$)", r"zoom in on \1"),
+    (
+        r"^i (?:want|need|would like) to see ((?:the|that) [\w ]+?)(?: from (?:near|close)| up close| better| properly)?[,.] zoom "
+        r"(?:in )?(?:on|onto|to) it\b",
+        r"zoom in on \1",
+    ),
+    (
+        rf"\b((?:{_PICTURES})) of what(?:ever)? (?:you(?:['’]ve)?(?: have)? got|we(?:['’]ve)?(?: have)? got|you have|you see|i see)"
+        r"(?: right now| now| there| here| on screen)*",
+        r"\1",
+    ),
+    (
+        r"^.*\b(?:views|spots|presets|positions|places) (?:are|have (?:we|you|i)(?: got)?|there are) (?:saved|stored"
+        r"|set up)[^,.?]*[,.?] "
+        r"(?:so )?(?:read|give) (?:me|us) the list\b.*$",
+        "list the presets",
+    ),
+    (
+        r"\bread (?:me |us )?(?:off |out )?(?:me )?the list(?: of (?:the |all )?(?:saved |stored )?(?:spots|positions|presets|views"
+        r"|places))(?: for (?:me|us))?",
+        "list the presets",
+    ),
+    (
+        r"^(?:what|which) (?:presets|saved views|saved positions|saved spots) (?:have (?:we|you|i) got|do (?:we|you"
+        r"|i) have|are there|are)"
+        r"(?: saved| stored| set up| programmed)?(?: (?:in|on|for|with) (?:this|the|here)(?: (?:one|camera|thing"
+        r"|system|site))?)?\W*$",
+        "list the presets",
+    ),
+    (
+        r"^what are (?:the|all the|your|our) (?:saved |stored )?(?:positions|presets|views|spots) (?:called|named)\b",
+        "list the presets",
+    ),
+    (
+        r"^what (?:spots|positions|views|presets|places) (?:have you|do you have|are) (?:saved|stored)(?: in [\w ]+)?\W*$",
+        "list the presets",
+    ),
+    (r"^(?:a )?close-?up of (the [\w ]+?) (?:required|needed|wanted|please)\W*$", r"zoom in on \1"),
+    (
+        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?),? (?:duration|for|time)?:? ?(\d+) ?(s"
+        r"|secs?|seconds?|mins?|minutes?)\b",
+        r"\1 the \2 for \3 \4",
+    ),
+    (r"(?<=, )(follow|track) (?:for )?(\d+|\w+) (s|secs?|seconds?|mins?|minutes?)\W*$", r"\1 it for \2 \3"),
+    (
+        r"\bi (?:should|would|['’]d) be (?:very |most )?(?:grateful|glad|obliged) for a (?:closer|better|good) look at ",
+        "zoom in on ",
+    ),
+    (r"^i (?:should|would|['’]d) like a (?:closer|better) look at ", "zoom in on "),
+    (r"^camera on (?:the )?([\w ]+?), close\W*$", r"zoom in on the \1"),
+    (r"^(?:photo|picture|pic|snap|shot|still) here(?: first)?, (?:then|and then) ", "take a picture, then "),
+    (
+        rf"\b((?:{_PICTURES})s?) of (?:the |that |this )?(?:(?:whole|entire|complete) [\w]+|sunset|sunrise|sky"
+        rf"|landscape|scenery|skyline|panorama|view)\b",
+        r"\1",
+    ),
+    (rf"^(?:please )?document (?:the|this) (?:current )?(?:view|scene|picture) with an? ({_PICTURES}|photograph)\b", r"take a \1"),
+    (r"^for the next ([\w ]+? (?:seconds|minutes)), please ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
+    (r"\bi (?:should|would|['’]d) (?:like|love|want) to see (the [\w ]+?) more closely\b", r"zoom in on \1"),
+    (r"\bi (?:should|would) be (?:delighted|pleased|glad|happy|grateful) to have a closer look at ", "zoom in on "),
+    (r"\bi (?:should|would) be (?:most |very )?(?:obliged|grateful) if you (?:could|would) let me see ", "show me "),
+    (r"^eyes on (?=the |that )", "zoom in on "),
+    (r"^keep on (?=the |that )(.+? for )", r"follow \1"),
+    (r"^(?:what|which) (?:places|presets|views|spots) has (?:this|the) camera got(?: saved| stored)?\b[^?.]*", "list the presets"),
+    (
+        rf"^(take (?:a|one) (?:{_PICTURES}|photograph)) before and after (pan|tilt|zoom|turn)(?:n)?ing (.+?)\W*$",
+        r"\1, \2 \3, then \1",
+    ),
+    (r"^(?:could|may|can) i have (?=an? (?:photo|picture|snap|shot|still)\b)", "take "),
+    (r"\b(get|bring) ((?:the|that) [\w ]+?) nice and close(?: for (?:me|us))?", r"zoom in on \2"),
+    (r"^let['’]?s see ((?:the|that) [\w ]+?) (?:up close|close up)\b", r"zoom in on \1"),
+    (
+        r"^(?:an? )?(image|picture|photo|still|snapshot)(?: of (?:the )?(?:present|current) (?:view|scene))? "
+        r"(?:required|needed|wanted)\W*$",
+        r"take a \1",
+    ),
+    (rf"\b({_PICTURES}|photograph|image) of (?:the )?(?:present|current) (?:view|scene|frame)(?: first)?", r"\1"),
+    (r"\bget (?:a )?close(?:r|-up)? (?:view|look|shot) (?:of|at) ", "zoom in on "),
+    (r"\bget ((?:the|that) [\w ]+?) (?:nicely |right |properly )?in (?:the )?(?:frame|shot)\b", r"zoom in on \1"),
+    (r"\b(?:give|get|show) (?:me|us) ((?:the|that) [\w'’ ]+?) in close[- ]?up\b", r"zoom in on \1"),
+    (r"\b(follow|track) for ([\w ]+? (?:minutes?|seconds?)) (the [\w ]+)", r"\1 \3 for \2"),
+    (
+        r"^.*\b(?:asked|asking|asks) about (the [\w ]+?), so (?:please |can you |could you )?(?:locate|find|zoom in on) (?:it|them)"
+        r"(?: and zoom in on (?:it|them))?\W*$",
+        r"zoom in on \1",
+    ),
+    (
+        r"\bkeep (the [\w'’ -]+?) in (?:view|frame|shot|the picture) as (?:it|he|she|they) (?:moves?|goes?|walks?|drives?)\b",
+        r"follow \1",
+    ),
+    (
+        r"\bi (?:would|should) be (?:ever so |very |most |so )?(?:grateful|glad|obliged) for (?=an? (?:picture|photo"
+        r"|photograph|image)\b)",
+        "take ",
+    ),
+    (
+        r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?)\. (\d+) ?(s|secs?|seconds?|mins?|minutes?)\W*$",
+        r"\1 the \2 for \3 \4",
+    ),
+    (
+        r"^.*\bwhich (?:positions|presets|views|spots) (?:have been|are) (?:saved|stored)\b[^;.?]*[;.?] (?:so )?"
+        r"(?:could|can|would|will) you "
+        r"(?:please )?list them\b.*$",
+        "list the presets",
+    ),
+    (rf",? (?:and )?take an? ({_PICTURES}) when (?:that|it)(?:['’]s| is) (?:finished|done|over)\b", r", then take a \1"),
+    (
+        r"\b(?:put|get) ((?:the|that) [\w ]+?) in (?:the )?(?:frame|shot)(?:, nice and (?:tight|close))?(?=\W*$|[,.;])",
+        r"zoom in on \1",
+    ),
+)
+"""Patterns with the words that replace them."""
