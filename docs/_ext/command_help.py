@@ -9,7 +9,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-# Typer reads these when it is imported: the text has one width and no colours, whatever terminal runs the build.
+# Typer reads these variables when it is imported. The text then has a fixed width and no colours in every terminal.
 os.environ |= {"TERMINAL_WIDTH": "96", "_TYPER_FORCE_DISABLE_TERMINAL": "1", "NO_COLOR": "1"}
 
 from typer.main import get_command
@@ -19,7 +19,7 @@ from scope_ptz.cli.app import app
 
 
 class CommandHelp(SphinxDirective):
-    """``{command-help} scope``: one section per command, sub-commands included. All commands are shown in one process."""
+    """``{command-help} scope``: one section per command, including subcommands. Help texts are rendered in the Sphinx process."""
 
     required_arguments = 1
     final_argument_whitespace = True
@@ -55,7 +55,7 @@ def help_text(words: list[str]) -> str:
     """Return what ``scope WORDS... --help`` prints."""
     result = CliRunner().invoke(app, [*words, "--help"], prog_name="scope", catch_exceptions=False)
     if result.exit_code != 0:
-        raise RuntimeError(f"`scope {' '.join(words)} --help` exits with {result.exit_code}: {result.output}")
+        raise RuntimeError(f"`scope {' '.join(words)} --help` exited with code {result.exit_code}: {result.output}")
     return "\n".join(line.rstrip() for line in result.output.strip("\n").splitlines())
 
 

@@ -1,4 +1,7 @@
-"""The ``scope`` app, with the commands outside lazily loaded groups. Imports are inside the commands, so that help starts fast."""
+"""The ``scope`` app: its command groups, and the commands of all groups that are not loaded lazily.
+
+Commands import what they need when they run, so that help starts fast.
+"""
 
 from __future__ import annotations
 

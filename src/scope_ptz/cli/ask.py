@@ -1,4 +1,4 @@
-"""``scope ask`` and ``scope replay``: carry out an instruction, and repeat a recorded run. ``scope chat`` shares the session."""
+"""``scope ask`` and ``scope replay``: carry out an instruction, and repeat a recorded run. ``scope chat`` also uses ``Session``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exit codes, error messages, and robust standard streams.
+"""Exit codes, error messages, cancellation by Ctrl-C and signals, and robust standard streams.
 
 A command that fails prints one line on stderr. Invalid input never causes a traceback. The exit codes are:
 

@@ -1,4 +1,4 @@
-"""``scope models``: list models, their memory requirements, and the commands for serving them."""
+"""``scope models``: list models with their memory requirements, pairs and plug-ins, and print the commands that serve a model."""
 
 from __future__ import annotations
 
@@ -200,7 +200,7 @@ def model_data(registry: Registry, model: Model) -> dict[str, Any]:
 
 
 def _console() -> Console:
-    """Return a console that is as wide as the terminal, or as the table if the output is a file or a pipe."""
+    """Return a console that is as wide as the terminal, or wide enough for the table if the output is a file or a pipe."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=_PIPE_WIDTH)
 

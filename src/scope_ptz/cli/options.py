@@ -66,7 +66,7 @@ class StartFlags:
 
         Args:
             realtime: Whether moves take as long as with a real camera.
-            dry_run: Function that is called with a sentence about each command instead of executing it; None for no dry run.
+            dry_run: Function that gets a sentence about each command, which is then not executed; None for no dry run.
         """
         from scope_ptz.builtin_names import DEFAULT_SCENE
         from scope_ptz.factory.cameras import open_camera

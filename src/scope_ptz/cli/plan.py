@@ -39,7 +39,7 @@ def plan(instruction: str | None, presets: str | None, source: Path | None, *, a
             raise InputError("--presets cannot be used with --from. Give the presets of each instruction in the file.")
         return _plan_file(source, as_json=as_json)
     names = [name.strip() for name in (presets or "").split(",") if name.strip()]
-    _show(_make_plan(instruction or "", names), as_json=as_json)
+    _show(_checked_plan(instruction or "", names), as_json=as_json)
     return 0
 
 
@@ -49,7 +49,7 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
         try:
             if isinstance(line, InputError):
                 raise line
-            _show(_make_plan(line.instruction, line.presets), as_json=as_json)
+            _show(_checked_plan(line.instruction, line.presets), as_json=as_json)
         except InputError as error:
             print_error(f"{source}, line {number}: {error}")
             code = BAD_INPUT
@@ -90,7 +90,8 @@ def _lines(source: Path) -> Iterator[str]:
         raise InputError(f"{source} cannot be read: {error}.") from error
 
 
-def _make_plan(instruction: str, presets: list[str]) -> Plan:
+def _checked_plan(instruction: str, presets: list[str]) -> Plan:
+    """Plan an instruction. Raises ``InputError`` if it is empty or too long."""
     if not instruction.strip():
         raise InputError("The instruction is empty. Describe what the camera should do.")
     if len(instruction) > MAX_INSTRUCTION_CHARS:

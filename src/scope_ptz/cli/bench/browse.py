@@ -1,4 +1,4 @@
-"""``scope bench browse`` and ``audit``: look at tasks with their evidence, and check them with annotators who see only pictures."""
+"""``scope bench browse`` and ``audit``: show tasks with their evidence, and check them with annotators who see only pictures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ audit_app = typer.Typer(help="Check tasks with annotators who see only the pictu
 _README = """# Questions about pictures
 
 `questions.jsonl` contains one question per line: its number `q`, what the operator of a camera was `asked`, and the `pictures` that
-the camera then showed, in that order, each with its `caption`. Answer from the pictures alone, as you would tell a colleague.
+the camera then showed, in that order, each with its `caption`. Answer from the pictures alone, as you would to a colleague.
 
 Write `answers.jsonl` with one line per question: {"q": "q001", "answer": "There are two.", "reader": "your name"}
 Answer every question; "I cannot tell" is an answer.

@@ -1,4 +1,4 @@
-"""Commands that add tasks: ``generate`` (by a language model), ``drafts`` (from operators' runs), ``import`` (from CSV files)."""
+"""Commands that add tasks: ``generate`` (with a language model), ``drafts`` (from operators' runs), ``import`` (from CSV files)."""
 
 from __future__ import annotations
 

@@ -140,7 +140,7 @@ async def _serve(bench_host: Host, access: Access, port: int, run_count: int, un
             put_json({"url": url, "participants": names, "runs": run_count})
         else:
             put(f"Evaluating {', '.join(names)} on {run_count} runs at {url}/api/v1/messages, and over MCP at {url}/mcp.")
-            put("Press Ctrl-C to stop. Running the same command again resumes.")
+            put("Press Ctrl-C to stop. Running the same command again resumes the evaluation.")
         sys.stdout.flush()
         completion = asyncio.ensure_future(bench_host.wait_until_finished(start=False))
         try:

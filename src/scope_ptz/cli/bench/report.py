@@ -1,4 +1,4 @@
-"""Commands that present results: ``report``, ``gate``, ``submission`` (files for a public leaderboard), and ``leaderboard``."""
+"""Commands that report, compare and publish results: ``report``, ``gate``, ``submission`` and ``leaderboard``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Read evaluation logs, and ``scope bench verify``: repeat the calls of their runs, and compare the results with the traces."""
+"""``scope bench verify``: repeat the calls of logged runs, and compare the results with the traces.
+
+The functions that read logs are shared with other benchmark commands.
+"""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     try:
         if parsed.steps is None:
             raise _question_about_unparsed(parsed)
-        bound = Resolver(preset_names, tuple(conversation)).bind(parsed.steps)
+        bound = _without_repeated_visits(Resolver(preset_names, tuple(conversation)).bind(parsed.steps))
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
     if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
@@ -82,12 +82,17 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
-    question = objection(parsed.text, bound, preset_names or ()) or (objection_to_loss(parsed.said, bound, preset_names or ()))
+    question = objection(parsed.text, bound, preset_names or ()) or objection_to_loss(parsed.said, bound, preset_names or ())
     if question is None and not conversation and _MULTIPLE.search(said) and not _NAMED_AMOUNT.search(said):
         question = "How much is that? Please say the amount."
     if question:
         return Understanding(clarification=question)
     return Understanding(bound)
+
+
+def _without_repeated_visits(steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
+    """Return steps in which a preset is not gone to twice in a row: "show me the paint hall. Sorry, the paint hall"."""
+    return tuple(step for i, step in enumerate(steps) if not (i and isinstance(step, ast.GoToPreset) and step == steps[i - 1]))
 
 
 def _question_about_unparsed(parsed: Parsed) -> UnresolvedError:

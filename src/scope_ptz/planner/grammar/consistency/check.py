@@ -43,7 +43,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     if swallowed := next(filter(None, found), None):
         return not_understood([swallowed])
     if evidence.forbids_moving and evidence.has(*_MOVES):
-        return "You ask me not to move, and to do something for which the camera must move. Which of the two shall I do?"
+        return "You asked me not to move, but also to do something for which the camera must move. Which of the two shall I do?"
     words = words_of(instruction)
     _mark_described(words, evidence)
     _mark_presets(words, evidence)
@@ -89,9 +89,9 @@ def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[st
         *contradicted_zoom(words, evidence),
         *unvisited_presets(words, evidence, presets),
     )
-    kept = sorted({word.start: word for word in lost if word.text not in _WHOLE_TURN}.values(), key=lambda word: word.start)
-    if kept and not any(word.text in REPAIRING for word in words):
-        return not_understood(_phrases(said, words, kept))
+    unexplained = sorted({word.start: word for word in lost if word.text not in _WHOLE_TURN}.values(), key=lambda word: word.start)
+    if unexplained and not any(word.text in REPAIRING for word in words):
+        return not_understood(_phrases(said, words, unexplained))
     if unnamed := unnamed_directions(words, evidence):
         return f"I am not sure that you mean {listing(unnamed, 'or')}. Which way shall I turn, and how far?"
     return None
@@ -100,7 +100,7 @@ def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[st
 def objection_to_withdrawal(instruction: str) -> str | None:
     """Return the question to ask if a statement seems to take back, forbid or change what is asked for; None if none does."""
     words = withdrawing_statement(instruction)
-    return None if words is None else f'You say "{words}", so I did nothing. Please say only what I shall do.'
+    return None if words is None else f'You said "{words}", so I did nothing. Please say only what I should do.'
 
 
 def not_understood(phrases: Sequence[str]) -> str:

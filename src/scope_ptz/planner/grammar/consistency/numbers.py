@@ -13,7 +13,9 @@ from scope_ptz.planner.grammar.consistency.words import Word
 
 _TOLERANCE = 0.02
 _VAGUE = frozenset({"one", "couple", "zero"})  # "the one on the left", "a couple of degrees", "zero in on"
-_UNITS_OF = (1.0, 60.0, 3600.0, 90.0, 360.0, 0.01)  # minutes and hours in seconds, right angles and full turns in degrees, per cent
+_UNIT_FACTORS = (1.0, 60.0, 3600.0, 90.0, 360.0, 0.01)
+"""Factors of units: minutes and hours in seconds, right angles and full turns in degrees, per cent."""
+
 _NAMED = frozenset({
     "preset", "position", "view", "bookmark", "camera", "cam", "unit", "station", "number", "step", "task", "bay", "door", "gate",
     "lane", "platform", "gallery", "room", "track", "pump", "dock", "berth", "tower", "row", "aisle", "floor",
@@ -119,7 +121,7 @@ def _take_match(stated: StatedNumber, remaining: list[float], evidence: Evidence
 def _plan_values(stated: StatedNumber, evidence: Evidence) -> list[float]:
     """Return the numbers with which a plan may express a stated number."""
     value = stated.value
-    values = [value * unit for unit in _UNITS_OF]
+    values = [value * unit for unit in _UNIT_FACTORS]
     if value:
         values.append(1 / value)
     if stated.is_fraction:

@@ -1,4 +1,4 @@
-"""Split an instruction into words for the check of its plan. It is deliberately simple, and independent of the lexer."""
+"""Split an instruction into words for the check of its plan. The rules are deliberately simple and independent of the lexer."""
 
 from __future__ import annotations
 

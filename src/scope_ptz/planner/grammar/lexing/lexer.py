@@ -103,6 +103,7 @@ def lexemes_of(text: str, presets: tuple[str, ...] = ()) -> tuple[Lexeme, ...]:
     """Return the lexemes of a text. At every position, the longest preset name, number or expression of the lexicon wins."""
     tokens = _without_inner_hyphens(_without_list_markers(tokenise(text)))
     known = {part for preset in presets for part in re.findall(r"[^\W\d_]+", preset.lower())}
+    known |= {joined for preset in presets if (joined := re.sub(r"[\W_]+", "", preset.lower())).isalpha()}
     words = [_preset_word(token.text, known) if _resembles(token.text, known) else corrected_word(token.text) for token in tokens]
     words = _with_preset_words(["and" if word == "&" else word for word in words], presets)
     out: list[Lexeme] = []

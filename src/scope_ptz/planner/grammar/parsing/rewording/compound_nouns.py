@@ -1,4 +1,4 @@
-"""Read words for commands as nouns where they are part of a compound: "the tilt truck", "the penalty spot", "call buttons"."""
+"""Read command words as nouns where they are part of a compound: "the tilt truck", "the penalty spot", "call buttons"."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _MODIFIERS = frozenset({
     "watch", "track", "tracking", "point", "turn", "head", "focus", "shot", "cover", "stop", "step", "home", "picture", "photo",
     "capture", "swing", "look", "tell", "face", "parking", "moving", "end", "spot", "scan", "frame",
 })  # fmt: skip
-"""Words for commands that can begin a compound noun."""
+"""Command words that can begin a compound noun."""
 
 _INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check", "call", "help", "home"})
-"""Those that can stand between two nouns: "the visitor centre sign". Others may be verbs there: "does the floor look wet"."""
+"""Command words that can stand between two nouns: "the visitor centre sign". Others may be verbs: "does the floor look wet"."""
 
 _CAMERA_NOUNS = frozenset({
     "angle", "angles", "level", "levels", "position", "positions", "speed", "setting", "settings", "value", "values", "axis",
@@ -30,9 +30,11 @@ _HEADS = frozenset({
     "spot", "spots", "camera", "cameras", "pan", "pans", "circle", "cover", "covers", "watch", "post", "posts", "stop", "stops",
     "point", "points", "frame", "frames", "head", "heads", "film", "step", "steps", "board", "stand", "guard", "check", "swing",
 })  # fmt: skip
-"""Words for commands, or for the camera, that can end a compound noun."""
+"""Command words, and words for the camera, that can end a compound noun."""
 
 _PLACES = frozenset({"pitch", "track", "swing", "stand", "roll"})
+"""Command words that are places after a preposition and an article: "the sprinklers on the pitch"."""
+
 _BREAKS = (
     "COMMA",
     "STOP",
@@ -50,11 +52,14 @@ _BREAKS = (
     "VISIBLE",
     "FILLER",
 )
-_LOOKED_FOR = frozenset({"on", "at", "onto", "find", "locate", "follow", "track", "count", "of", "see", "is", "are", "has"})
+"""Kinds of lexemes that end a noun phrase."""
+
+_BEFORE_OBJECT = frozenset({"on", "at", "onto", "find", "locate", "follow", "track", "count", "of", "see", "is", "are", "has"})
+"""Words before a noun phrase that names an object in the picture."""
 
 
 def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes in which each word of a compound noun is a noun."""
+    """Return the lexemes, in which command words that are part of a compound noun are nouns."""
     out = list(lexemes)
     for i, x in enumerate(lexemes):
         if x.has("FREE", "PRESET") or not i:
@@ -76,31 +81,33 @@ def _is_noun(lexeme: Lexeme) -> bool:
 
 
 def _is_modifier(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
-    """Return whether a word stands before the noun of a compound: "the tilt truck", unlike "the tilt angle"."""
-    first = _first_of(lexemes, i)
+    """Return whether a command word modifies the noun of a compound: "the tilt truck", unlike "the tilt angle"."""
+    first = _phrase_start(lexemes, i)
     words = _MODIFIERS if first == i - 1 else _INNER
     return lexemes[i].word in words and after is not None and _is_noun(after) and _begins_noun_phrase(lexemes[first])
 
 
 def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
-    """Return whether a word ends a compound: "zoom in on the penalty spot", "how many covers are open?"."""
+    """Return whether a command word ends a compound: "zoom in on the penalty spot", "how many covers are open?"."""
     if after is not None and (not after.has(*_BREAKS) or after.has(*DIRECTIONS)):
         return False
-    x, before, first = lexemes[i], lexemes[i - 1], _first_of(lexemes, i)
+    x, before, first = lexemes[i], lexemes[i - 1], _phrase_start(lexemes, i)
     if not _begins_noun_phrase(lexemes[first]):
         return False
     if first == i - 1:
         is_counted = before.has("HOWMANY") and x.has(*(f"{verb}-S" for verb in VERBS))
-        is_subject = x.word == "watch" and after is not None and after.has("BE", "HAVEV")
+        is_subject = x.word == "watch" and after is not None and after.has("BE", "HAVEV")  # "my watch has stopped"
         is_place = x.word in _PLACES and i > 1 and lexemes[i - 2].has("PREP")  # "the sprinklers on the pitch"
-        return is_counted or is_subject or is_place  # "my watch has stopped"
+        return is_counted or is_subject or is_place
     if x.word not in _HEADS or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing")):
         return False
-    asked_before = lexemes[first - 1] if first else None
-    return asked_before is None or asked_before.word in _LOOKED_FOR or asked_before.has("FIND", "TRACK", "COMMA", "FILLER", "STOP")
+    before_phrase = lexemes[first - 1] if first else None
+    if before_phrase is None or before_phrase.word in _BEFORE_OBJECT:
+        return True
+    return before_phrase.has("FIND", "TRACK", "COMMA", "FILLER", "STOP")
 
 
-def _first_of(lexemes: Sequence[Lexeme], i: int) -> int:
+def _phrase_start(lexemes: Sequence[Lexeme], i: int) -> int:
     """Return the index of the word before the free words that precede a position; 0 if there is none."""
     first = i - 1
     while first > 0 and lexemes[first].has("FREE"):

@@ -45,8 +45,11 @@ def _with_nouns_corrected(text: str) -> str:
 
 @lru_cache(maxsize=4096)
 def _corrected_noun(word: str) -> str:
-    """Return the only noun or adjective that results from swapping two letters or doubling one; any known word is unchanged."""
-    if parts_of_speech(word) or is_english(word) or verb_form(word) is not None:
+    """Return the noun or adjective that results from swapping two adjacent letters or doubling one.
+
+    Known words, and words that could be corrected in more than one way, are returned unchanged.
+    """
+    if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
         return word
     swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(1, len(word) - 1)}
     doubled = {word[:i] + word[i] + word[i:] for i in range(1, len(word))}
@@ -64,7 +67,7 @@ def _is_shortened(word: str) -> bool:
 
 
 def plainer(text: str, presets: tuple[str, ...] = ()) -> str:
-    """Return a text without "mate" at the end, with "all the way left" for "as far left as you can go", and so on.
+    """Return a text in plainer words, such as "all the way left" for "as far left as you can go".
 
     Args:
         text: A text without asides.

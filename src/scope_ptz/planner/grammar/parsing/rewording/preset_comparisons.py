@@ -1,4 +1,4 @@
-"""Rewrite comparisons of two presets: "more vans where, yard or gate?" is asked as "which has more vans, yard or gate?"."""
+"""Rewrite comparisons of two presets: "more vans where, yard or gate?" becomes "which has more vans, yard or gate?"."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ _STOP = re.compile(
     r"|go|take|zoom|can|could|count|than|between|which|across|of the two|around|currently|presently|please|left)\b|[,;:.?!–-]",
     re.IGNORECASE,
 )
+"""What ends the name of the things to compare: "vans" in "more vans where"."""
+
 _FUNCTION_WORDS = frozenset({
     "a", "about", "afternoon", "an", "and", "are", "around", "at", "be", "better", "between", "bigger", "both", "busier", "by",
     "can", "check", "compare", "contains", "could", "count", "currently", "d", "determine", "do", "does", "down", "evening",
@@ -37,7 +39,7 @@ _GOES_THERE = re.compile(
 
 
 def with_presets_compared(text: str, names: str) -> str:
-    """Return a comparison of two presets in the plain form; any other text unchanged.
+    """Return a comparison of two presets in the standard form, and any other text unchanged.
 
     Args:
         text: The text of an instruction.

@@ -10,11 +10,15 @@ SUBJECT = (
     r"|body|thing)['’]?s|nobody['’]?s"
     r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ "
     r"(?:has|have|is|are|was|were|says?|said|thinks?|reckons?|swears?|keeps?|loves?|likes?|just)"
-    r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)|the (?:boss|gaffer|manager"
-    r"|weather|lads?|sun|\w+ shift)"
-    r"|people|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)"
+    r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)"
 )
 """Words with which a statement begins, even if it is not separated by punctuation."""
+
+NOUN_SUBJECT = (
+    r"the (?:boss|gaffer|manager|weather|lads?|sun|\w+ shift)|people"
+    r"|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)"
+)
+"""Words with which a statement begins if it is separated by punctuation."""
 
 REFUSAL = re.compile(
     r"\b(?:no|nah|nope|wait|hang on|hold on|stop|actually|instead|undo|never ?mind|forget|not|before|leave|skip|don['’]?t)\b",
@@ -41,7 +45,7 @@ EXCLAMATION = re.compile(
     r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",
     re.IGNORECASE,
 )
-"""Remarks that are no statements: "how romantic", "lovely day for it", "many thanks from all of us"."""
+"""Remarks that are not statements: "how romantic", "lovely day for it", "many thanks from all of us"."""
 
 EXEMPT = re.compile(
     r"(?:oh |well |just )*look at (?:that|him|her|them|those)|(?:focus|end stop|backlash|range|function|bearing|speed"
@@ -55,7 +59,7 @@ EXEMPT = re.compile(
     r"|can you believe (?:it|that)|(?:oh |well )*(?:is|are)n['’]t (?:it|that|he|she|they) \w+",
     re.IGNORECASE,
 )
-"""Remarks with words that elsewhere ask for something."""
+"""Remarks with words that would ask for something in other texts."""
 
 _PAST = r"(?:panned|tilted|zoomed|swung|turned|moved|swivelled|rotated|pointed|aimed|went|used to (?:pan|tilt|zoom|turn|move))"
 _NO_REQUEST = r"(?!.*\b(?:please|should|must|shall|ought|want|need|can you|could you|would you|let['’]?s)\b)"
@@ -72,5 +76,5 @@ REPORT = re.compile(
     r" keeps?) (?:really |still |just |now |always )?\w+ing\b.*)",
     re.IGNORECASE,
 )
-"""Reports of earlier moves, and of what things do: "Dave panned left 20", "the crane is turning left again". Their directions and
-amounts are not asked for."""
+"""Reports of earlier moves, and of what things do: "Dave panned left 20", "the crane is turning left again". They do not
+ask for the directions and amounts that they mention."""

@@ -109,6 +109,8 @@ def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | No
     editing = match_start(_EDITING, lexemes[i:])
     if editing is None or match_start("i_said|SELF (said|TELL-ED)", lexemes):
         return None
+    if lexemes[i].word == "wrong":
+        return None  # "if the points are wrong go home" has no pause before "wrong"
     before, after = lexemes[:i], lexemes[i + editing.size :]
     old, new = before[_last_clause(before) :], after[: _first_end(after)]
     if not old or not new:

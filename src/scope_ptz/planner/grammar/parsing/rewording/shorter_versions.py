@@ -1,4 +1,4 @@
-"""Shorter versions of an instruction that was not understood: without the remarks before its request and after it."""
+"""Shorter versions of an instruction that was not understood: without the remarks before and after its request."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause, is_pol
 from scope_ptz.planner.grammar.parsing.parts.questions import is_question
 from scope_ptz.planner.grammar.parsing.parts.statements import is_comment, is_statement
 from scope_ptz.planner.grammar.parsing.rewording.compound_nouns import with_compound_nouns
-from scope_ptz.planner.grammar.parsing.rewording.remark_forms import EXCLAMATION, EXEMPT, REFUSAL, REPORT, SUBJECT
+from scope_ptz.planner.grammar.parsing.rewording.remark_forms import EXCLAMATION, EXEMPT, NOUN_SUBJECT, REFUSAL, REPORT, SUBJECT
 from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import (
     AMOUNT,
     DURATION,
@@ -49,14 +49,14 @@ _EXTENT = re.compile(
     r"|bit|touch|whatever|as)\b",
     re.IGNORECASE,
 )
-"""Words of a phrase with "for" or "as" that says how long or how far to go, which must not be left out."""
+"""Words which show that a phrase with "for" or "as" says how long or how far to go, so that it must be kept."""
 
 _UNFINISHED = re.compile(
     r"\b(?:until|till|til|if|when|once|unless|while|as|that|which|who|where|what|whether|how|and|or|but|to|the|an?|of|for|at|on|in|by|with"
-    r"|than|like|before|after|where|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
+    r"|(?:how|what|who|where)['’]s|than|like|before|after|whatever|because|so|is|are|was|were|not|only|just|every|each|time)\W*$",
     re.IGNORECASE,
 )
-"""The end of a text from which nothing can be left out: "pan right until" before "something moves"."""
+"""The end of a text that is incomplete without the words after it: "pan right until" before "something moves"."""
 
 _REFERENCE = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|those|these|ones?|both|same)\b", re.IGNORECASE)
 _INTERJECTION = re.compile(r"^(?:oo+h|oh|ah|argh|well|hey|right|ok|okay|now)\b,? (?!no\b|wait\b)", re.IGNORECASE)
@@ -77,7 +77,7 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
         if _is_harmless(_without_relaying(relay[0]), presets, may_be_empty=True) and not _refers_back(question):
             yield f"tell me {question}"
     cuts = [(0, 0), *((match.start(), match.end()) for match in _BOUNDARY.finditer(text))]
-    begins = [end for start, end in cuts if _is_lead(text[:start], text[end:], presets)]
+    begins = [end for start, end in cuts if _can_drop_lead(text[:start], text[end:], presets)]
     ends = sorted({len(text), *_ends(text, presets)})
     versions = sorted(((begin, end) for begin in begins for end in ends if begin < end), key=lambda cut: cut[0] - cut[1])
     for begin, end in versions[:_MAX_VERSIONS]:
@@ -86,8 +86,8 @@ def shorter_versions(text: str, presets: tuple[str, ...]) -> Iterator[str]:
             yield kept + ("?" if text[end : end + 1] == "?" else "")
 
 
-def _is_lead(lead: str, rest: str, presets: tuple[str, ...]) -> bool:
-    """Return whether the words before a request are remarks; true of no words."""
+def _can_drop_lead(lead: str, rest: str, presets: tuple[str, ...]) -> bool:
+    """Return whether the words before a request are only remarks, or there are none."""
     if not lead:
         return True
     if not _opens_request(rest, presets) or _refers_back(rest):
@@ -119,7 +119,7 @@ def _is_amount(said: str, tail: str) -> bool:
 def is_remark(tail: str, presets: tuple[str, ...]) -> bool:
     """Return whether all clauses of a text are remarks. Only the first must be recognised by its form."""
     first, *others = [part for part in _BOUNDARY.split(tail) if part.strip()] or [""]
-    return _is_harmless(first, presets) and all(_asks_nothing(part, presets) for part in others)
+    return _is_harmless(first, presets) and all(_asks_for_nothing(part, presets) for part in others)
 
 
 def _opens_request(text: str, presets: tuple[str, ...]) -> bool:
@@ -133,7 +133,7 @@ def _refers_back(text: str) -> bool:
     return _REFERENCE.search(_BOUNDARY.split(text)[0]) is not None
 
 
-def _asks_nothing(text: str, presets: tuple[str, ...]) -> bool:
+def _asks_for_nothing(text: str, presets: tuple[str, ...]) -> bool:
     plain = text.replace("’", "'").strip(" .,!?;")
     lexemes = lexemes_of(plain, presets)
     if is_polite(lexemes) and not names_command(plain):
@@ -151,7 +151,7 @@ def _is_harmless(text: str, presets: tuple[str, ...], *, may_be_empty: bool = Fa
         return True
     if asks_for_something(plain, presets) or REFUSAL.match(plain):
         return False
-    if EXCLAMATION.fullmatch(plain) or re.match(rf"(?:{SUBJECT}) ", plain, re.IGNORECASE):
+    if EXCLAMATION.fullmatch(plain) or re.match(rf"(?:{SUBJECT}|{NOUN_SUBJECT}) ", plain, re.IGNORECASE):
         return True
     if is_question(lexemes) or lexemes[0].has(*VERBS):
         return False

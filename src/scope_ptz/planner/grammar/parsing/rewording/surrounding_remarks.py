@@ -1,4 +1,4 @@
-"""Take remarks off the text of an instruction: reasons, news and complaints at its end or beginning, which ask for nothing."""
+"""Remove remarks that ask for nothing from the text of an instruction: reasons, news and complaints at its beginning or end."""
 
 from __future__ import annotations
 
@@ -78,6 +78,8 @@ _HARMLESS = re.compile(
     r"|\b(?:just |only )?(?:looking|pointing|staring) at (?:the )?(?:sky|ground|floor|ceiling|wall|clouds)\b",
     re.IGNORECASE,
 )
+"""Phrases with such words that nevertheless ask for nothing: "somebody in our shot", "the boss is asking"."""
+
 NUMBER = re.compile(rf"\d|\b(?:{'|'.join(sorted(word for word in NUMBER_WORDS if word.isalpha()))})\b", re.IGNORECASE)
 AMOUNT = re.compile(
     rf"(?:{NUMBER.pattern})(?=\W*$|\W* ?(?:degrees?|deg|x|times|percent|%|seconds?|secs?|minutes?|mins?|left|right|up"
@@ -138,16 +140,16 @@ _NEWS_BEFORE_REQUEST = re.compile(
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 DURATION = re.compile(r"\bfor (?:half )?(?:an?|\d+|[a-z]+) ?(?:seconds?|secs?|minutes?|mins?)\b|\bduration\b", re.IGNORECASE)
 FOLLOWING = re.compile(r"\b(?:follow|track|keep|stay|watch)", re.IGNORECASE)
-_MIN_WORDS = 3
-_MIN_NEWS = 6  # minimum number of words
+_MIN_WORDS = 3  # minimum number of words of a remark, and of a request after it
+_MIN_NEWS = 6  # minimum number of words of news before a question or request
 _MAX_REMARKS = 3
 
 
 def without_remarks(text: str, presets: tuple[str, ...]) -> str:
     """Return a text without the remarks at its end, and without the news or occasion at its beginning.
 
-    A remark with a word for a command, a restriction or a withdrawal, or with the name of a preset, is kept, and so is one with a
-    number after an instruction with a number: "pan left 20, Dave says thirty".
+    A remark is kept if it contains a word for a command, a restriction or a withdrawal, or the name of a preset. It is also kept if
+    both the remark and the instruction before it contain a number: "pan left 20, Dave says thirty".
     """
     text = _without_beginning(text, presets)
     for _ in range(_MAX_REMARKS):

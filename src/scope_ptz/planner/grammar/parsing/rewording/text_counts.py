@@ -11,7 +11,7 @@ NO_TOPIC = re.compile(
     r"|please|ok|okay|hey|hi|hiya|hello|right|so|now|and|left|up|down|home|move|swing|point|aim|focus|hold|wait|stop|yes|no)\b",
     re.IGNORECASE,
 )
-"""Words that show that a text is no noun phrase."""
+"""Words which show that a text is not a noun phrase."""
 
 COUNTS = (
     (r"\btally up\b", "count"),
@@ -167,15 +167,28 @@ COUNTS = (
         r"(?:the )?([\w ]+?)\W*$",
         r"count the \1 in the whole scene",
     ),
+    (r"\bin the whole (?:court|pit|yard|hall|building|shed|terminal)\b,? all the way (?:a)?round", "all around"),
+    (r"\b(how many [\w ]+?) are up (?=at|in|on)", r"\1 are "),
+    (r"\b(how many [\w ]+?) are there all around the (?:yard|pit|court|field|site|place)\b[^?.]*", r"\1 are there all around"),
+    (
+        r"^(?:do|doing) the rounds, every preset, head ?count of (?:the )?([\w ]+?)(?: at each one)?\W*$",
+        r"count the \1 at each preset",
+    ),
+    (r"\btell me how many people are there and whether\b", "count the people, then tell me whether"),
+    (
+        r"\b(?:wants to know|have asked for|asked for|has asked for) the number of ([\w ]+?) (?:you can see|in this view)\b[^.;]*",
+        r"so count the \1",
+    ),
+    (r"\bacross the entire property, i mean all the way round\b", "in the whole scene"),
 )
 """Patterns with the words that replace them."""
 
 
 def _counted(match: re.Match[str]) -> str:
-    """Return "count the bins" for "bins, how many?"; a text with other words is returned unchanged."""
+    """Return "count the bins" for "bins, how many?". If "bins" is not a noun phrase, the text is unchanged."""
     return match[0] if NO_TOPIC.search(match[1]) else f"count the {match[1]}"
 
 
 def _found(match: re.Match[str]) -> str:
-    """Return "find the dummy" for "dummy. Find it"; a text with other words is returned unchanged."""
+    """Return "find the dummy" for "dummy. Find it". If "dummy" is not a noun phrase, the text is unchanged."""
     return match[0] if NO_TOPIC.search(match[1]) else f"{match[2]} the {match[1]}"

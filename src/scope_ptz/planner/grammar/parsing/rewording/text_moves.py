@@ -197,6 +197,16 @@ MOVES = (
     ),
     (r", (?:and )?i mean (a lot|all the way|a bit)\W*$", r" \1"),
     (r", (\d+ ?(?:s|secs?|min|mins)|[\w-]+ (?:seconds|minutes)) should be (?:enough|plenty)\W*$", r" for \1"),
+    (r"\b(?:put it|go|come|bring it) (?:back|down|up) to (\d+(?:\.\d+)?) ?x\b", r"zoom to \1x"),
+    (r"^as (?:wide|far out) as (?:she|it|he) goes\W*$", "zoom all the way out"),
+    (r"\bgo as wide as (?:you can|it goes|possible)\b", "zoom all the way out"),
+    (
+        r"\b(?:bring|take|tilt) it (?:right )?(down|up) (?:till|until) it (?:won['’]?t|will not) go any (?:lower|higher|further)\b",
+        r"tilt all the way \1",
+    ),
+    (r"\bbring the (?:picture|image|view) in by ", "zoom in by "),
+    (r"\b(pan|tilt)( the camera)? to (\d+) degrees,? (?:and )?then to minus (\d+)\b", r"\1 to \3 degrees, then \1 to -\4 degrees"),
+    (r"\bcan we bring it (up|down|left|right)\b", r"move it \1"),
 )
 """Patterns with their replacements: words, or a function of the match."""
 

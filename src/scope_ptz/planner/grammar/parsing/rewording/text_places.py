@@ -79,6 +79,18 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"\b(photograph|take a picture of) (?:the )?({names})([^,]*), and (?:then )?(?:the )?({names}) likewise",
             r"\1 the \2 and the \4",
         ),
+        (rf"^(?:the )?({names}) (\w+ing|\w+ed) or (\w+ed|\w+ing)\?$", r"is the \1 \2 or \3?"),
+        (
+            rf"^(?:the )?([\w ]+?) (at|in|on) (?:the )?({names}), (\w+) or (\w+)\W*$",
+            lambda match: (
+                match[0] if NO_TOPIC.search(match[1]) else f"is the {match[1]} at the {match[3]} {match[4]} or {match[5]}?"
+            ),
+        ),
+        (rf"^queue (at|in|on) (?:the )?({names}), how many (\w+)\W*$", r"count the \3 at the \2"),
+        (
+            rf"^show me (?:the )?({names}),? then (?:the )?({names})\. no, leave the \w+ out, just (?:the )?({names})\W*$",
+            r"go to the \3",
+        ),
         (rf",? but (?:skip|not|leave out|ignore) (?:the )?(?:{names})\W*$", ""),
         (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
         (rf"^head ?count[,:]? (?:at )?(?:the )?({names})\W*$", r"how many people are at the \1?"),
@@ -173,6 +185,7 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"|(?:show (?:me|us)|go to|bring up|take (?:me|us) to) (?:that one|it|there))\b",
             lambda match: match[0] if asks_for_something(match["news"], ()) else f"go to the {match['place']}",
         ),
+        (rf"\b(?:snap|take|grab|get) (?:me )?one of (?:the )?({names})\b", r"take a picture of the \1"),
         (rf"\bsee (?:the )?({names}) (?:car ?park|parking|area|place|side|bit)\b", r"see the \1"),
     ):
         text = re.sub(pattern, plain, text, flags=re.IGNORECASE)

@@ -145,6 +145,9 @@ QUESTIONS = (
     (r"\bif there(?:['’]s| is) (an? \w+) in, ", r"if there is \1, "),
     (r"^(?!(?:is|are|any|anyone|what|which|how|it|there|nothing|who)\b)(\w+(?: \w+)?) visible\?$", r"is \1 visible?"),
     (r"\b(whole scene), all the way (?:a)?round,", r"\1"),
+    (r"^looking (?:a)?round the whole \w+, ([^?]*)\?*$", r"\1 in the whole scene?"),
+    (r"\bgo to each place in the list and\b", "at each preset,"),
+    (r"^see if there(?:['’]s| is) (an? [\w ]+?), and if there is, ", r"if there is \1, "),
 )
 """Patterns with the words that replace them."""
 

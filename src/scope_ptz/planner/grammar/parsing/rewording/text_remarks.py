@@ -229,5 +229,16 @@ REMARKS = (
         "",
     ),
     (r"^(?:g['’]day|hi|hello|hiya)?,? ?(?:just )?had (?:the|an?|my) [^?]*?, so ", ""),
+    (
+        r"[.?!,] (?:control|the office|the boss|they|he|she|head office) keeps? (?:on )?asking (?:me |us )?for (?:one|it|them)\W*$",
+        "",
+    ),
+    (r",? (?:or )?till i get (?:out )?there\b", ""),
+    (r",? so i know which way to \w+\W*$", ""),
+    (r", (?:otherwise|if not,?) leave it as it is\W*$", ""),
+    (r", can hear \w+(?: \w+)*\W*$", ""),
+    (r"[.?!] the \w+ (?:arrive|come|leave|start|are coming|are due)\b[^?!.]*\W*$", "?"),
+    (r"\bthe sky is taking up half of the picture\b", "it is too high"),
+    (r",? the lower edge of the [\w ]+ is (?:just )?cut off\W*$", ""),
 )
 """Patterns of remarks, with what is left of them."""

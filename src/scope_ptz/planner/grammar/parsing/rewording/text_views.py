@@ -1,9 +1,8 @@
-"""Patterns for close views, pictures, lists of presets and things to follow in the text of an instruction, with plainer words."""
+"""Patterns for wordings about close views, pictures, lists of presets and things to follow, with the plainer words for them."""
 
 from __future__ import annotations
 
 _PICTURES = "photo|picture|pic|snap|shot|still"
-_GLANCES = "look|nosy|nosey|gander|peek|butcher['’]s|squiz|shufti|squint|glance"
 
 VIEWS = (
     (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
@@ -177,6 +176,19 @@ VIEWS = (
     (
         r"\b(?:put|get) ((?:the|that) [\w ]+?) in (?:the )?(?:frame|shot)(?:, nice and (?:tight|close))?(?=\W*$|[,.;])",
         r"zoom in on \1",
+    ),
+    (r"\bi would appreciate a closer look at ", "zoom in on "),
+    (r"\bget (?:me )?((?:the|that) [\w ]+?) in close\b", r"zoom in on \1"),
+    (r"^i want to see ((?:the|that) [\w'’ ]+?), bring it up close\W*$", r"zoom in on \1"),
+    (r"\bmake ((?:the|that) [\w ]+?) fill the (?:picture|frame|view|screen)\b", r"zoom in on \1"),
+    (r"^locate ", "find "),
+    (r"^(?:i )?can['’]?t see (?:the )?([\w ]+?) anywhere, (find|locate) it(?: for me)?\W*$", r"find the \1"),
+    (r"^where(?:['’]s| is) ((?:that|the) [\w ]+?) got to, find it\b[^.;]*$", r"find \1"),
+    (r"\bkeep with ((?:the|that) [\w ]+?) (?=for )", r"follow \1 "),
+    (r"\bwhat the camera is (?:looking|pointing) at(?: right now| now)?, it goes in (?:the|my) [\w ]+\W*$", "this"),
+    (
+        r"\b(?:pics?|photos|pictures) of (?:the )?([\w ]+?) and (?:the )?([\w ]+?)(?: pls| please)?, one each\W*$",
+        r"take a picture of the \1 and of the \2",
     ),
 )
 """Patterns with the words that replace them."""

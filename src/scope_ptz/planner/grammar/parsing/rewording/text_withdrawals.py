@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-_PICTURE = r"(?:pic|photo|picture|still|shot|snap|image)"
+_PICTURE = r"(?:pic|photo|picture|photograph|still|shot|snap|image)"
 _NO = r"(?:(?:scratch that|actually|no|nah|nope|wait|sorry|oh)[, ]+)*"
 _LEAVE_OUT = (
     r"(?:(?:i|we) (?:no longer|don['’]?t) (?:need|want)|no|scratch|skip|strike|omit|forget|cancel|nvm|cut"
@@ -113,6 +113,17 @@ WITHDRAWALS = (
         "",
     ),
     (r",? but (?:do not|don['’]?t) (?:follow|track) (?:it|him|her|them)(?: when [^.;]*)?\W*$", ""),
+    (r",? no need to (?:zoom in on|follow|track|photograph|film) (?:anybody|anyone|anything|it|them|him|her)\W*$", ""),
+    (
+        r"^[^.;]+[.;] (?:(?:actually|no|wait|sorry)[, ]+)+forget it, [^.;,]+[.;,] (?:just |only )?(?=(?:go|take|count"
+        r"|zoom|pan|tilt|home)\b)",
+        "",
+    ),
+    (
+        r"^(?:follow|track) ((?:the|that) [\w ]+?),? (?:(?:no|oh|wait|actually)[, ]+)+never mind that,? (?:just "
+        r")?zoom in on (?:it|him|her|them)\b",
+        r"zoom in on \1",
+    ),
 )
 """Patterns with the words that replace them."""
 
