@@ -108,6 +108,8 @@ def unnamed_directions(words: Sequence[Word], evidence: Evidence) -> list[str]:
 
 def _corrected_direction(text: str) -> str:
     """Return the direction that a word with one typing error stands for ("leeft"); other words unchanged."""
+    if any(text in words for words in _OTHER_DIRECTION_WORDS.values()):
+        return text  # "lift"
     return next((word for word in ("left", "right", "down") if len(text) > 3 and within_one_edit(text, word)), text)
 
 

@@ -59,7 +59,10 @@ def unused_numbers(words: Sequence[Word], evidence: Evidence) -> list[Word]:
             60 * first.value + second.value,  # "1 minute 30 seconds"
         )
         is_time = _is_among(together[-1], evidence.numbers)
-        if second in unmatched and (is_time or (first in unmatched and any(_is_among(value, remaining) for value in together))):
+        is_part_of_turn = second.is_fraction and _is_among(together[1], evidence.numbers)
+        if second in unmatched and (
+            is_time or is_part_of_turn or (first in unmatched and any(_is_among(value, remaining) for value in together))
+        ):
             unmatched = [stated for stated in unmatched if stated not in (first, second)]
     return [word for stated in unmatched for word in stated.words]
 

@@ -41,6 +41,7 @@ _SWALLOWED = tuple(
         r"\b(?:otherwise|unless|if so|if not|if any)\b.*",
         r"\bif (?:you|we|i|the camera) (?:were to )?(?:pan|tilt|zoom|turn|mov|swung)\w*\b.*",
         r"\bcamera (?:panned|tilted|zoomed|turned)\b.*",
+        r"\b(?:forget|never mind) (?:it|that)\b.*",
         r"\bso (?:can|could) you\b.*",
         r"^(?:list|name) (?:the|all|your|my) (?:presets|positions|views)\b.+",
         r"^What (?:is|are) .*\bto (?:open|close|move|stop|come|get|go|leave|wait|clear|pick|put|bring|shut|step|hurry)\b.*",

@@ -15,7 +15,7 @@ _MODIFIERS = frozenset({
 })  # fmt: skip
 """Command words that can begin a compound noun."""
 
-_INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check", "call", "help", "home"})
+_INNER = frozenset({"centre", "center", "end", "spot", "camera", "cover", "check", "call", "help", "home", "tilt"})
 """Command words that can stand between two nouns: "the visitor centre sign". Others may be verbs: "does the floor look wet"."""
 
 _CAMERA_NOUNS = frozenset({
@@ -98,7 +98,8 @@ def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
         is_counted = before.has("HOWMANY") and x.has(*(f"{verb}-S" for verb in VERBS))
         is_subject = x.word == "watch" and after is not None and after.has("BE", "HAVEV")  # "my watch has stopped"
         is_place = x.word in _PLACES and i > 1 and lexemes[i - 2].has("PREP")  # "the sprinklers on the pitch"
-        return is_counted or is_subject or is_place
+        is_lift = x.word in {"lift", "lifts"} and before.word == "the"  # "start the lift"
+        return is_counted or is_subject or is_place or is_lift
     if x.word not in _HEADS or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing")):
         return False
     before_phrase = lexemes[first - 1] if first else None

@@ -52,7 +52,8 @@ def with_presets_compared(text: str, names: str) -> str:
     if len(found) != 2 or compared is None or found[0][0].lower() == found[1][0].lower():
         return text
     between = asked[found[0].end() : found[1].start()]
-    if not re.search(r"\b(?:or|and|vs|versus|than)\b", between, re.IGNORECASE) or re.search(r"[.;!]", between):
+    link = r"\b(?:or|and|vs|versus|than|with|against)\b"
+    if not re.search(link, between, re.IGNORECASE) or re.search(r"[.;!]", between):
         return text
     what = _STOP.split(compared["what"])[0].strip()
     if not what:

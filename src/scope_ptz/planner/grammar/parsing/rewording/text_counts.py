@@ -180,6 +180,9 @@ COUNTS = (
         r"so count the \1",
     ),
     (r"\bacross the entire property, i mean all the way round\b", "in the whole scene"),
+    (r"\bcan you make out (how many [\w ]+?) there are\b", r"\1 are there"),
+    (r"\b(how many [\w ]+?) have (?:we|you) got in (shot|view|frame)\b", r"\1 are there in \2"),
+    (r"^look at the whole \w+ and tell me (how many [\w ]+?) there are\b", r"\1 are there in the whole scene"),
 )
 """Patterns with the words that replace them."""
 

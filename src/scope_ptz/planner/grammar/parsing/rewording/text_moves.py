@@ -92,7 +92,7 @@ MOVES = (
     (r"(\ball the way), (?:as )?far as (?:she|it|he)(?:['’]ll| will)? go(?:es)?", r"\1"),
     (r"^.*\bin the same direction\b.*$", lambda match: _same_direction(match[0])),
     (r"\bgo to the one (?:that['’]s got|that has|with|which has) (?:the )?(?:more|most)(?=\W*$|,)", "go there"),
-    (r", (half a minute|a minute|(?:\d+|[a-z]+) (?:seconds|minutes)) ?(?:['’]ll|will|should) do\b", r" for \1"),
+    (r", (half a minute|a minute|(?:\d+|[a-z]+) (?:seconds|minutes)) ?(?:['’]ll|will|should) do(?: it)?\b", r" for \1"),
     (r"\b(?:al the|all) way (?=up|down|left|right|in|out|round)", "all the way "),
     (r"\bnose (up|down)\b", r"tilt \1"),
     (r"(^|[,.;] |then |and )(?:then )?back to (\d+(?:\.\d+)?) ?(?:x|times)\b", r"\1zoom to \2x"),

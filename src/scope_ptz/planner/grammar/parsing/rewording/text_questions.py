@@ -148,6 +148,8 @@ QUESTIONS = (
     (r"^looking (?:a)?round the whole \w+, ([^?]*)\?*$", r"\1 in the whole scene?"),
     (r"\bgo to each place in the list and\b", "at each preset,"),
     (r"^see if there(?:['’]s| is) (an? [\w ]+?), and if there is, ", r"if there is \1, "),
+    (r"^take in the whole \w+ and tell me,? ([^?]*?)(?: anywhere)?\?*$", r"\1 in the whole scene?"),
+    (r"\b(?:run|go) through (?:all )?the presets and check at each one (?=whether|if)", "at each preset, check "),
 )
 """Patterns with the words that replace them."""
 

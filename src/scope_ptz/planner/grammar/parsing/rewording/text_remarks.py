@@ -240,5 +240,6 @@ REMARKS = (
     (r"[.?!] the \w+ (?:arrive|come|leave|start|are coming|are due)\b[^?!.]*\W*$", "?"),
     (r"\bthe sky is taking up half of the picture\b", "it is too high"),
     (r",? the lower edge of the [\w ]+ is (?:just )?cut off\W*$", ""),
+    (r", i (?:need|want|have) to (?:see|check|know|test) (?:if|whether) it\b[^.;?]*\W*$", ""),
 )
 """Patterns of remarks, with what is left of them."""

@@ -237,5 +237,11 @@ SHORTHAND = (
     (r"\bright now (?=the|my|our|some)", "right now, "),
     (r"\boh wait no\b,?", ", no,"),
     (r"\bjust about\b (?=\w+ (?:degrees|times))", "about "),
+    (r"^(?-i:(?:[A-Z]\w*|[A-Z]\d+)(?: [A-Z]\w*){0,2}) to (?-i:CCTV|[Cc]ontrol|[Cc]amera(?: \w+)?), ", ""),
+    (r"^control from \w+, ", ""),
+    (r"\bzoom right (in|out), max(?:imum)?\b", r"zoom all the way \1"),
+    (r"\bthree[- ]quarters of a (?:full |whole |complete )(?=turn|circle)", "three quarters of a "),
+    (r"\bmnay\b", "many"),
+    (r"\bontoo\b", "onto"),
 )
 """Patterns with the words that replace them."""

@@ -190,5 +190,10 @@ VIEWS = (
         r"\b(?:pics?|photos|pictures) of (?:the )?([\w ]+?) and (?:the )?([\w ]+?)(?: pls| please)?, one each\W*$",
         r"take a picture of the \1 and of the \2",
     ),
+    (
+        r"^i (?:left|lost|dropped|forgot) (?:the|my) ([\w ]+?)(?: (?:somewhere|out|there|round|around)\b[^,.]*)?[,.] "
+        r"(?:could you |can you |please )*find it(?: please| for me)?\W*$",
+        r"find the \1",
+    ),
 )
 """Patterns with the words that replace them."""

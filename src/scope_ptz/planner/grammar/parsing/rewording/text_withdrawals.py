@@ -115,7 +115,7 @@ WITHDRAWALS = (
     (r",? but (?:do not|don['’]?t) (?:follow|track) (?:it|him|her|them)(?: when [^.;]*)?\W*$", ""),
     (r",? no need to (?:zoom in on|follow|track|photograph|film) (?:anybody|anyone|anything|it|them|him|her)\W*$", ""),
     (
-        r"^[^.;]+[.;] (?:(?:actually|no|wait|sorry)[, ]+)+forget it, [^.;,]+[.;,] (?:just |only )?(?=(?:go|take|count"
+        r"^[^.;]+[.;] (?:(?:actually|no|wait|sorry)[, ]+)+forget it,? [^.;,]+[.;,] (?:just |only )?(?=(?:go|take|count"
         r"|zoom|pan|tilt|home)\b)",
         "",
     ),
@@ -123,6 +123,11 @@ WITHDRAWALS = (
         r"^(?:follow|track) ((?:the|that) [\w ]+?),? (?:(?:no|oh|wait|actually)[, ]+)+never mind that,? (?:just "
         r")?zoom in on (?:it|him|her|them)\b",
         r"zoom in on \1",
+    ),
+    (
+        r"^(?:follow|track|zoom in on|find|look at) [^,.]+[,.]+ *(?:(?:no|actually|wait|oh)[, ]+)*(?:cancel that,? [^,.]+,"
+        r"|leave (?:him|her|it|them) be(?: and|,)) (?:just )?(?=(?:find|follow|track|zoom|go|take|count|look)\b)",
+        "",
     ),
 )
 """Patterns with the words that replace them."""
