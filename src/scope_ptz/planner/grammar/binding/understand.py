@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
@@ -12,7 +12,13 @@ from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
-from scope_ptz.planner.grammar.consistency.check import not_understood, objection, objection_to_loss, objection_to_withdrawal
+from scope_ptz.planner.grammar.consistency.check import (
+    not_understood,
+    objection,
+    objection_to_forbidden,
+    objection_to_loss,
+    objection_to_wording,
+)
 from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import MAX_CHARS, Parsed, parse
 from scope_ptz.planner.grammar.parsing.rewording.plain_text import written_out
@@ -27,6 +33,9 @@ _MULTIPLE = re.compile(r"\b(?:twice|double|half|triple|three times) (?:that|this
 _NUMBERS = "|".join(word for word in NUMBER_WORDS if word.isalpha() and word not in {"half", "twice", "double"})
 _NAMED_AMOUNT = re.compile(rf"\d|\b(?:{_NUMBERS}|bit|lot|touch|quarter turn)\b", re.IGNORECASE)
 """An amount of which another may be a multiple: "left 10, then twice that"."""
+
+_NO_CLOSE_UP = re.compile(r"\b(?:without (?:moving|zooming)|(?:don['’]?t|do not) (?:move|zoom)|no zoom)\b", re.IGNORECASE)
+"""Words with which a picture of a thing is a picture of the current view."""
 
 _NO = re.compile(r"(?:no|nope|nah|no,? thanks|no,? thank you|no,? it['’]s fine|nothing)[.!]*", re.IGNORECASE)
 
@@ -57,7 +66,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
         return Understanding(clarification=question)
-    if (question := objection_to_withdrawal(instruction)) is not None:
+    if (question := objection_to_wording(written_out(instruction))) is not None:
         return Understanding(clarification=question)
     said = continued_text(instruction, conversation, preset_names or ())
     understanding = _read(said, preset_names, conversation)
@@ -76,13 +85,19 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
         bound = _without_repeated_visits(Resolver(preset_names, tuple(conversation)).bind(parsed.steps))
     except UnresolvedError as unresolved:
         return Understanding(clarification=str(unresolved))
+    if _NO_CLOSE_UP.search(said):
+        bound = tuple(replace(step, of=None) if isinstance(step, ast.Snap) else step for step in bound)
     if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
-    question = objection(parsed.text, bound, preset_names or ()) or objection_to_loss(parsed.said, bound, preset_names or ())
+    question = (
+        objection(parsed.text, bound, preset_names or ())
+        or objection_to_loss(parsed.said, bound, preset_names or ())
+        or objection_to_forbidden(said, bound)
+    )
     if question is None and not conversation and _MULTIPLE.search(said) and not _NAMED_AMOUNT.search(said):
         question = "How much is that? Please say the amount."
     if question:

@@ -15,7 +15,13 @@ _PICTURES = frozenset(
 _TAKING = frozenset({"take", "taking", "snap", "grab", "save", "capture", "shoot", "record", "store"})
 _TAKE_REACH = 4  # number of words before "picture" in which to look for "take"
 _TURNS = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt"}
-_FORBIDDEN = {"follow": ast.Track, "track": ast.Track, "picture": ast.Snap, "photo": ast.Snap, "home": ast.Home}
+_FORBIDDEN = {
+    "follow": (ast.Track,), "track": (ast.Track,), "picture": (ast.Snap,), "photo": (ast.Snap,), "home": (ast.Home,),
+    "count": (ast.Count,), "counting": (ast.Count,), "zoom": (ast.ZoomTo,), "zooming": (ast.ZoomTo,), "pan": (), "panning": (),
+    "tilt": (), "tilting": (),
+}  # fmt: skip
+"""Steps that must not be in a plan if a word is forbidden. For a turn or zoom, the plan must not move that axis either."""
+_AXES = {"pan": "pan", "panning": "pan", "tilt": "tilt", "tilting": "tilt", "zoom": "zoom", "zooming": "zoom"}
 _FORBIDDING_REACH = 5  # number of words before a forbidden action in which to look for "not"
 _ZOOMING = frozenset({"zoom", "zooming", "magnify"})
 _TESTS = (
@@ -58,17 +64,28 @@ def forbidden_actions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
         for i, word in enumerate(words)
         if word.is_negated
         and not word.is_described
-        and (step := _FORBIDDEN.get(word.text)) is not None
-        and evidence.has(step)
+        and (steps := _FORBIDDEN.get(word.text)) is not None
+        and (evidence.has(*steps) or _AXES.get(word.text) in evidence.axes)
         and word.text not in {later.text for later in words[i + 1 :] if not later.is_negated}
+        and not _is_other_zoom(words, i, evidence)
         and _is_forbidden(words, i)
         and _ends_clause(words, i)
     ]
 
 
+def _is_other_zoom(words: Sequence[Word], i: int, evidence: Evidence) -> bool:
+    """Return whether a zoom is forbidden that the plan does not make: "zoom out, but don't zoom in"."""
+    way = words[i + 1].text if i + 1 < len(words) else ""
+    return (
+        words[i].text in {"zoom", "zooming"} and way in {"in", "out"} and way not in evidence.zooms and not evidence.has(ast.ZoomTo)
+    )
+
+
 def _is_forbidden(words: Sequence[Word], i: int) -> bool:
-    """Return whether "do not", "don't" or "never" precedes a word. "If not" does not count."""
+    """Return whether "do not", "don't", "never", "no" or "without" precedes a word. "If not" does not count."""
     before = [word.text for word in words[max(0, i - _FORBIDDING_REACH) : i]]
+    if before[-1:] in (["no"], ["without"]) or before[-2:] in (["without", "the"], ["not", "the"]):
+        return True  # "zoom in and pan left, no zoom"
     return any(b in {"not", "t", "dont", "never"} and a != "if" for a, b in pairwise(before))
 
 
@@ -77,6 +94,8 @@ def _ends_clause(words: Sequence[Word], i: int) -> bool:
     after = words[i + 1] if i + 1 < len(words) else None
     later = words[i + 2] if i + 2 < len(words) else None
     is_last = later is None or later.is_break
+    if after is not None and after.text in {"please", "though", "actually", "thanks", "after", "now", "yet", "in", "out"}:
+        return True  # "no picture please", "don't tilt after all"
     return after is None or after.is_break or (after.text in {"it", "him", "her", "them", "that"} and is_last)
 
 

@@ -18,11 +18,22 @@ from scope_ptz.planner.grammar.consistency.directions import contradicted_zoom, 
 from scope_ptz.planner.grammar.consistency.evidence import Evidence, evidence_of
 from scope_ptz.planner.grammar.consistency.numbers import is_amount, unused_numbers
 from scope_ptz.planner.grammar.consistency.slots import swallowed_command
+from scope_ptz.planner.grammar.consistency.unsafe_wordings import unsafe_wording
 from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statement
 from scope_ptz.planner.grammar.consistency.words import REPAIRING, Word, words_of
 from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
+_LEAVING_OUT = re.compile(
+    r"(?:\b(?:but|and) not|\bskip|\bleave out|\bmiss out|\bnot|\bbut don t (?:stop|go)|\bexcept)(?: at| to| do| in)?(?: the)?$"
+)
+_STAY = re.compile(
+    r"\bwithout moving\b|\b(?:do not|don['’]?t) move(?: the camera| it)?\s*(?:[.,;!]|$)|\bbut stay (?:here|put|where you are)\b",
+    re.IGNORECASE,
+)
+"""Words that forbid every movement."""
+
+_MOVE_OR_STAY = "You asked me not to move, but also to do something for which the camera must move. Which of the two shall I do?"
 _WHOLE_TURN = frozenset({"360"})  # "over the full 360 degrees" is also the whole scene
 _PURPOSE = re.compile(
     r"\b(?:so|so that|because|as|since) (?:i|we) (?:can|could|cannot|can t|want to|need to) (?:see|view|watch)(?: \w+)?$"
@@ -43,7 +54,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
     if swallowed := next(filter(None, found), None):
         return not_understood([swallowed])
     if evidence.forbids_moving and evidence.has(*_MOVES):
-        return "You asked me not to move, but also to do something for which the camera must move. Which of the two shall I do?"
+        return _MOVE_OR_STAY
     words = words_of(instruction)
     _mark_described(words, evidence)
     _mark_presets(words, evidence)
@@ -58,6 +69,7 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
                 *forbidden_actions(words, evidence),
                 *ignored_conditions(words, evidence),
                 *unvisited_presets(words, evidence, presets),
+                *presets_left_out(words, evidence),
             )
         }.values(),
         key=lambda word: word.start,
@@ -97,10 +109,31 @@ def objection_to_loss(said: str, steps: Sequence[ast.Step], presets: Sequence[st
     return None
 
 
-def objection_to_withdrawal(instruction: str) -> str | None:
-    """Return the question to ask if a statement seems to take back, forbid or change what is asked for; None if none does."""
-    words = withdrawing_statement(instruction)
-    return None if words is None else f'You said "{words}", so I did nothing. Please say only what I should do.'
+def objection_to_forbidden(instruction: str, steps: Sequence[ast.Step]) -> str | None:
+    """Return the question to ask if the steps do something that the instruction forbids; None if they do not.
+
+    Args:
+        instruction: The user's text, before any of it was left out.
+        steps: The steps with all names resolved.
+    """
+    evidence = evidence_of(steps)
+    if _STAY.search(instruction) and evidence.has(*_MOVES):
+        return _MOVE_OR_STAY
+    words = words_of(instruction)
+    _mark_described(words, evidence)
+    found = {word.start: word for word in (*forbidden_actions(words, evidence), *presets_left_out(words, evidence))}
+    return not_understood(_phrases(instruction, words, [found[start] for start in sorted(found)])) if found else None
+
+
+def objection_to_wording(instruction: str) -> str | None:
+    """Return the question to ask if a statement takes back, forbids or changes what is asked for, or may be misread; else None.
+
+    Args:
+        instruction: The user's text, with abbreviations written out.
+    """
+    if (words := withdrawing_statement(instruction)) is not None:
+        return f'You said "{words}", so I did nothing. Please say only what I should do.'
+    return None if (words := unsafe_wording(instruction)) is None else not_understood([words])
 
 
 def not_understood(phrases: Sequence[str]) -> str:
@@ -124,6 +157,17 @@ def unvisited_presets(words: Sequence[Word], evidence: Evidence, presets: Sequen
                 and not any(word.is_described or word.is_negated or _is_in_used_name(word, evidence) for word in span)
             ):
                 found += span
+    return found
+
+
+def presets_left_out(words: Sequence[Word], evidence: Evidence) -> list[Word]:
+    """Return the words of presets that the instruction leaves out but the plan visits: "check all presets, but not the roof"."""
+    found: list[Word] = []
+    for preset in evidence.presets:
+        name = re.findall(r"[^\W\d_]+|\d+", preset.lower())
+        mentions = [i for i in range(len(words) - len(name) + 1) if [word.text for word in words[i : i + len(name)]] == name]
+        if mentions and _LEAVING_OUT.search(" ".join(word.text for word in words[max(0, mentions[-1] - 6) : mentions[-1]])):
+            found += words[mentions[-1] : mentions[-1] + len(name)]
     return found
 
 

@@ -15,6 +15,8 @@ _STATES = (
     "open|shut|closed|locked|unlocked|clear|empty|full|free|busy|quiet|blocked|wet|dry|lit|occupied|flooded|icy|manned|staffed|"
     "on|off|up|down|raised|lowered"
 )
+_TOUR = re.compile(r"\b(?:each|every|all)\b", re.IGNORECASE)
+_TOUR = re.compile(r"\b(?:each|every|all)\b", re.IGNORECASE)
 _PICTURES = r"(?:photo|photograph|picture|pic|snap|shot|still|image)"
 _COUNTS = r"(?:how many|number of|count(?: the)?|total(?: of)?)"
 
@@ -55,7 +57,10 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"(?:against|with|to|and|versus) (?:the )?({names})\W*$",
             r"which has more \1, \2 or \3?",
         ),
-        (rf"[.,] (?:never mind|forget|ignore|not) (?:about )?the ({names})\W*$", ""),
+        (
+            rf"[.,] (?:never mind|forget|ignore|not) (?:about )?the ({names})\W*$",
+            lambda match: match[0] if match[1].lower() in match.string[: match.start()].lower() else "",
+        ),
         (
             rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}) and counted (the [\w ]+?), ",
             r"go to the \1, count \2, then ",
@@ -91,7 +96,17 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
             rf"^show me (?:the )?({names}),? then (?:the )?({names})\. no, leave the \w+ out, just (?:the )?({names})\W*$",
             r"go to the \3",
         ),
-        (rf",? but (?:skip|not|leave out|ignore) (?:the )?(?:{names})\W*$", ""),
+        (
+            rf",? (?:(?:but|and) )?(?:skip|leave out|miss out|ignore|(?:don['’]?t|do not) (?:stop at|go to|do|visit)|not"
+            rf"|no need to (?:do|visit|go to)) (?:the )?({names})\W*$",
+            lambda match: f" except the {match[1]}" if _TOUR.search(match.string) else match[0],
+        ),
+        (rf"^((?:(?!\b(?:each|every|all)\b).)*?),? but (?:skip|not|leave out|ignore) (?:the )?(?:{names})\W*$", r"\1"),
+        (
+            rf"\bif there (?:are|is) (more|fewer) ([\w ]+?) (?:at|in|on) (?:the )?({names}) than (?:at |in |on )?"
+            rf"(?:the )?({names})\b",
+            r"if the \3 has \1 \2 than the \4",
+        ),
         (rf"^(?:after|once) you(?:['’]ve| have) been to (?:the )?({names}), ", r"go to the \1, then "),
         (rf"^head ?count[,:]? (?:at )?(?:the )?({names})\W*$", r"how many people are at the \1?"),
         (

@@ -7,11 +7,28 @@ _CLOSINGS = (
     r"(?:(?:kind|best|warm|with kind) regards|regards|many thanks|with thanks|thanks|best wishes|cheers|yours(?: \w+)?|thank you)"
 )
 
+_IFS = "if|when|once|as soon as|in case|provided|unless|until|till|while"
+_UNSEEN = (
+    r"(?:you|we|i) (?:can['’]?t|cannot|can not|don['’]?t|do not|aren['’]?t|are not) "
+    r"(?:see|seeing|find|finding|spot|notice|make out)"
+)
+_NOUN_END = (
+    r"(?=,| (?:go|zoom|pan|tilt|take|turn|move|follow|track|count|return|come|then|otherwise|please|look|swing|tell"
+    r"|read|find|show)\b"
+    r"|[.;?!]|$)"
+)
+"""Where the noun phrase of a condition ends."""
+
 _DIGITS = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "niner": 9,
 }  # fmt: skip
 
 SHORTHAND = (
+    (rf"\b({_IFS}) {_UNSEEN} (?:anyone|anybody|any people){_NOUN_END}", r"\1 there is nobody"),
+    (rf"\b({_IFS}) {_UNSEEN} (?:any|an?) ([\w -]+?){_NOUN_END}", r"\1 there is no \2"),
+    (rf"\b({_IFS}) {_UNSEEN} (the [\w -]+?){_NOUN_END}", r"\1 \2 is not in view"),
+    (rf"\b({_IFS}) ((?:the |an? )[\w -]+?) has left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 is not in view"),
+    (rf"\b({_IFS}) ((?:the )[\w -]+?) have left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 are not in view"),
     (rf"(?:(?<=[.?!])|,)\s*{_CLOSINGS},? {_NAMES}\s*[.!]?$", ""),
     (r"^dear (?:all|team|colleagues|sirs?),? ", ""),
     (r"\s*[\U0001F300-\U0001FAFF\u2600-\u27BF]+", ""),
@@ -62,7 +79,7 @@ SHORTHAND = (
     (r"\bfor like (?=\w+ (?:sec|min))", "for "),
     (r",? (?:and )?once it(?:['’]s| is) there,? (?:please )?(?=\w)", ", then "),
     (r", (?:pardon(?: me)?|excuse me|my mistake|whoops|oops), ", ", no, "),
-    (r"(?<=\w) (?=can(?:['’]?t|not) (?:see|read|make out) )", ", "),
+    (r"(?<=\w)(?<!\bi)(?<!\bwe)(?<!\byou)(?<!\bthey) (?=can(?:['’]?t|not) (?:see|read|make out) )", ", "),
     (r"[.,] (?:priority|urgent|urgently|asap|top priority)\W*$", ""),
     (r"^(?:hiya|hi|hello|hey),? (?:it['’]?s )?(?:only )?me again[!.,] ", ""),
     (r",? hun\b", ""),
@@ -243,5 +260,14 @@ SHORTHAND = (
     (r"\bthree[- ]quarters of a (?:full |whole |complete )(?=turn|circle)", "three quarters of a "),
     (r"\bmnay\b", "many"),
     (r"\bontoo\b", "onto"),
+    (r"\bleft to degrees\b", "left 2 degrees"),
+    (r"\b(right|up|down) to degrees\b", r"\1 2 degrees"),
+    (r"\bno (?=(parking|entry|smoking|dogs|access|stopping|loading|swimming|fishing)\b(?: \w+)? (?:sign|notice|board))", "no-"),
+    (r",? even (?:if|when|though) (?![^,.;]*\b(?:pan|tilt|zoom|go to|take|count|follow)\b)[^,.;]+(?=,|\.|;|$)", ""),
+    (r"^(.+?) when you(?:['’]re| are) (?:done|finished) counting ([^,.;]+)\W*$", r"count \2, then \1"),
+    (
+        r"^((?:at|for) each (?:preset|view|position)),? ((?:take|zoom|count|tell|pan|tilt)\b[^,.;]*?) if ([^,.;]+)\W*$",
+        r"\1, if \3, \2",
+    ),
 )
 """Patterns with the words that replace them."""

@@ -1,0 +1,93 @@
+"""Conditions that are negated, prohibitions after a command, and wordings on which the planner asks instead of moving."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock
+from scope_ptz.planner.grammar.parsing.rewording.rewordings import rewordings
+from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
+from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
+from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS
+from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
+from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
+from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
+from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS
+from scope_ptz.planner.plan import plan
+
+PRESETS = ("main-gate", "yard", "loading-dock", "roof")
+
+CONDITIONS = [
+    ("if you don't see a truck, go home", "if no trucks are visible:"),
+    ("if you can't see the truck zoom out", "if no trucks are visible:"),
+    ("take a picture when you don't see anyone", "if no people are visible:"),
+    ("go home as soon as the van has left", "if no vans are visible:"),
+    ("pan left until you can't see the truck", "repeat until no trucks are visible, at most 24 times:"),
+    ("if there are more cars at the yard than at the roof go to the yard", "if more cars are visible at yard than at roof:"),
+]
+"""Conditions with the headings of their blocks."""
+
+ASKED = [
+    "zoom in and pan left 10. Please don't zoom",
+    "pan left 20, tilt up 5, zoom in. Don't tilt after all.",
+    "go to the yard, zoom in and take a picture. No zoom though",
+    "go to the yard and take a picture, actually don't take one",
+    "count the cars and go home. Don't count",
+    "go to the yard and the roof, not the roof",
+    "check all presets for people but not the roof",
+    "show me the truck but don't zoom in",
+    "count the people at the roof but stay here",
+    "if you can't read the plate zoom in",
+    "if the man is wearing a helmet then don't do anything else take a picture",
+    "take a picture at every other preset",
+    "my wife thinks you should zoom in but I disagree",
+    "Dave wants you to go to the roof, which is wrong",
+    "how far can you pan left",
+    "tell me before you zoom in",
+    "from now on zoom in before each picture",
+    "pan left 20 or until you see the truck",
+    "follow the man 30 more seconds",
+    "go to the yard in 5 minutes",
+    "if there's a truck at any preset zoom in on it",
+    "take a picture when everybody has left",
+    "Roll the camera clockwise 20 and pan left 10.",
+    "zoom in twice that",
+]
+"""Instructions that the planner does not carry out."""
+
+
+def headings(block: OutlineBlock) -> list[str]:
+    inner = [heading for line in block.lines if isinstance(line, OutlineBlock) for heading in headings(line)]
+    return [block.heading, *inner]
+
+
+@pytest.mark.parametrize(("text", "heading"), CONDITIONS)
+def test_conditions_are_not_reversed(text: str, heading: str) -> None:
+    outline = plan(text, PRESETS).outline
+    assert outline is not None
+    assert heading in headings(outline)
+
+
+@pytest.mark.parametrize("text", ASKED)
+def test_the_planner_asks(text: str) -> None:
+    made = plan(text, PRESETS)
+    assert not made.understood, made.calls
+    assert made.clarification
+
+
+@pytest.mark.parametrize("text", ["visit all presets but skip the roof", "go through all presets, no need to do the roof"])
+def test_a_preset_that_is_left_out_is_not_visited(text: str) -> None:
+    assert [call.arguments["name"] for call in plan(text, PRESETS).calls] == ["main-gate", "yard", "loading-dock"]
+
+
+@pytest.mark.parametrize("forbidden", ["without moving the camera", "without zooming", ", don't move"])
+def test_a_picture_without_moving_is_taken_of_the_current_view(forbidden: str) -> None:
+    assert [call.name for call in plan(f"take a picture of the sign {forbidden}", PRESETS).calls] == ["take_image"]
+
+
+@pytest.mark.parametrize("patterns", [COUNTS, MOVES, QUESTIONS, REMARKS, SHORTHAND, VIEWS, WITHDRAWALS])
+def test_every_pattern_compiles(patterns: tuple) -> None:  # type: ignore[type-arg]
+    for rewording in rewordings(patterns):
+        assert re.compile(rewording.pattern, re.IGNORECASE)
