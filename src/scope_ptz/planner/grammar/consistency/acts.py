@@ -73,6 +73,12 @@ def forbidden_actions(words: Sequence[Word], evidence: Evidence) -> list[Word]:
     ]
 
 
+_STATING = frozenset(
+    {"if", "is", "are", "was", "were", "has", "have", "can", "could", "does", "will", "isn", "aren", "hasn", "haven"}
+)
+"""Words before "not" that state something: "if the truck is not in view, zoom out"."""
+
+
 def _is_other_zoom(words: Sequence[Word], i: int, evidence: Evidence) -> bool:
     """Return whether a zoom is forbidden that the plan does not make: "zoom out, but don't zoom in"."""
     way = words[i + 1].text if i + 1 < len(words) else ""
@@ -86,7 +92,7 @@ def _is_forbidden(words: Sequence[Word], i: int) -> bool:
     before = [word.text for word in words[max(0, i - _FORBIDDING_REACH) : i]]
     if before[-1:] in (["no"], ["without"]) or before[-2:] in (["without", "the"], ["not", "the"]):
         return True  # "zoom in and pan left, no zoom"
-    return any(b in {"not", "t", "dont", "never"} and a != "if" for a, b in pairwise(before))
+    return any(b in {"not", "t", "dont", "never"} and a not in _STATING for a, b in pairwise(before))
 
 
 def _ends_clause(words: Sequence[Word], i: int) -> bool:
