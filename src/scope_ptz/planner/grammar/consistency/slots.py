@@ -11,7 +11,8 @@ _DIRECTION = r"(?:left|right|up|down|in|out|home|back|closer|wider|clockwise|ant
 _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
-    r"\bin \d+ (?:minutes?|hours?|seconds?)\b.*|\b(?:tomorrow|tonight|later)$|\bgo home\b.*|\bstay$|\bfor \d+\w*$|\b\d+ more$|"
+    r"\bin \d+ (?:minutes?|hours?|seconds?)\b.*|\b(?:tomorrow|tonight|later)$|\bgo home\b.*|\bstay$|\bpeople left\b.*"
+    r"|\bby (?:noon|midnight)$|\b(?:again|twice|former|latter)$|\bfor \d+\w*$|\b\d+ more$|"
     r"^(?:current|present|whole|full) (?:view|picture|scene|frame|image)\b.*|^(?:all )?directions$|"
     r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
     r"|\b(?:as )?compared (?:to|with)\b.*"

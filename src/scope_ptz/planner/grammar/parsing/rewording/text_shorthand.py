@@ -269,5 +269,11 @@ SHORTHAND = (
         r"^((?:at|for) each (?:preset|view|position)),? ((?:take|zoom|count|tell|pan|tilt)\b[^,.;]*?) if ([^,.;]+)\W*$",
         r"\1, if \3, \2",
     ),
+    (r"\bonce there(?:['’]s| is) ", "when there is "),
+    (r"\bonce there are ", "when there are "),
+    (r"^(?:is|are) there ([^?,]+)\? then ([^?]+)", r"if there is \1, \2"),
+    (r"^(is|are) there ([^?,]+), (follow|zoom in on) (it|them|him|her)\b", r"if there \1 \2, \3 \4"),
+    (r"^(?:good|nice|great|lovely|beautiful) (?:picture|photo|shot)[,.!]? ?", ""),
+    (r",? either way\W*$", ""),
 )
 """Patterns with the words that replace them."""
