@@ -273,7 +273,7 @@ SHORTHAND = (
     (r"\bonce there are ", "when there are "),
     (r"^(?:is|are) there ([^?,]+)\? then ([^?]+)", r"if there is \1, \2"),
     (r"^(is|are) there ([^?,]+), (follow|zoom in on) (it|them|him|her)\b", r"if there \1 \2, \3 \4"),
-    (r"^(?:good|nice|great|lovely|beautiful) (?:picture|photo|shot)[,.!]? ?", ""),
+    (r"^(?:good|nice|great|lovely|beautiful) (?:picture|photo|shot)[,.!] (?=\w)", ""),
     (r",? either way\W*$", ""),
 )
 """Patterns with the words that replace them."""
