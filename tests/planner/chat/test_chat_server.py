@@ -204,7 +204,7 @@ class Talkative(ScriptedPerception):
 async def test_a_full_context_is_an_outcome_or_old_observations_are_shortened(
     summarise: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tests.planner.test_chat_server.ScriptedPerception", Talkative)
+    monkeypatch.setattr("tests.planner.chat.test_chat_server.ScriptedPerception", Talkative)
     scripted_model = by_steps(*[LONG] * 6, Say("A car."))
     with Misbehaving(then=small_window(12_000, scripted_model)) as server:
         run = await ask(server.url, summarise=summarise)
@@ -217,7 +217,7 @@ async def test_a_full_context_is_an_outcome_or_old_observations_are_shortened(
 
 
 async def test_a_known_context_size_avoids_failing_requests(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.planner.test_chat_server.ScriptedPerception", Talkative)
+    monkeypatch.setattr("tests.planner.chat.test_chat_server.ScriptedPerception", Talkative)
     with Misbehaving(then=small_window(13_500, by_steps(*[LONG] * 6, Say("A car.")))) as server:
         run = await ask(server.url, summarise=True, context_tokens=4096)
     assert (run.ended.outcome, run.ended.server_events) == ("answered", {})

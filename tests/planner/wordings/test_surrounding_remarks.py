@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import required_text
 from scope_ptz.planner.plan import plan
-from tests.planner.test_wordings_of_speech import PRESETS, shown
+from tests.planner.wordings.test_wordings_of_speech import PRESETS, shown
 
 DROPPED = [
     ("up a bit, all I'm getting is mud", "adjust_ptz(tilt_deg=5)"),

@@ -7,7 +7,7 @@ import pytest
 from scope_ptz.planner.grammar.consistency.withdrawals import withdrawing_statement
 from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import is_remark, shorter_versions
 from scope_ptz.planner.plan import Plan, plan
-from tests.planner.test_wordings_of_speech import PRESETS, shown
+from tests.planner.wordings.test_wordings_of_speech import PRESETS, shown
 
 LEFT_OUT = [
     ("turn around somebody just honked behind us", "adjust_ptz(pan_deg=180)"),

@@ -17,7 +17,7 @@ from scope_ptz.planner.chat.families import family_of, reasoning_switch, tempera
 from scope_ptz.planner.chat.interpret import MAX_CALLS, decide
 from scope_ptz.planner.chat.schemas import simplify_schemas
 from scope_ptz.tools.registry import schemas
-from tests.planner.test_chat_messages import exchanges, state
+from tests.planner.chat.test_chat_messages import exchanges, state
 
 
 def reply(text: str = "", *calls: tuple[str, str, str], **fields: Any) -> ChatReply:
@@ -209,6 +209,6 @@ def test_a_chosen_notation_is_kept() -> None:
 
 
 def test_every_option_is_documented() -> None:
-    docs = (Path(__file__).parents[2] / "docs" / "planner.md").read_text(encoding="utf-8")
+    docs = (Path(__file__).parents[3] / "docs" / "planner.md").read_text(encoding="utf-8")
     assert [name for name in ChatOptions.model_fields if f"`{name}`" not in docs] == []
     assert [name for name in prompt_names() if f"`{name}`" not in docs] == []
