@@ -23,6 +23,8 @@ LEFT_OUT = [
     ("Sorry to trouble you, but the access committee would like to know how many people there are",
      "count_objects(description=people, view=current)"),
     ("Pan all the way left. End stop test.", "adjust_ptz(pan_deg=-360)"),
+    ("pan as far left as it will go", "adjust_ptz(pan_deg=-360)"),
+    ("pan left 22, then back again by the same amount", "adjust_ptz(pan_deg=-22); adjust_ptz(pan_deg=22)"),
     ("Oh isn't the light beautiful this evening! Please take a photograph.", "take_image()"),
 ]  # fmt: skip
 """Instructions with remarks that no rule of the grammar reads."""

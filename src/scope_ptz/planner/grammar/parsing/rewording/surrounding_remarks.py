@@ -140,6 +140,9 @@ _NEWS_BEFORE_REQUEST = re.compile(
 _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|those|these|this|ones?)\b", re.IGNORECASE)
 DURATION = re.compile(r"\bfor (?:half )?(?:an?|\d+|[a-z]+) ?(?:seconds?|secs?|minutes?|mins?)\b|\bduration\b", re.IGNORECASE)
 FOLLOWING = re.compile(r"\b(?:follow|track|keep|stay|watch)", re.IGNORECASE)
+_AS_FAR = re.compile(r"\bas (?:far|high|low|wide|close|tight|much)(?: \w+){0,3}$", re.IGNORECASE)
+"""Words before an "as" that says how far to go: "as far left as it will go"."""
+
 _MIN_WORDS = 3  # minimum number of words of a remark, and of a request after it
 _MIN_NEWS = 6  # minimum number of words of news before a question or request
 _MAX_REMARKS = 3
@@ -170,6 +173,8 @@ def _without_last(text: str, presets: tuple[str, ...]) -> str:
     for boundary in (*_BOUNDARY.finditer(text), *_REASON.finditer(text)):
         said = text[: boundary.start()]
         tail = re.sub(r"^which\b", "it", text[boundary.end() :].strip().rstrip(".!"), flags=re.IGNORECASE)
+        if _AS_FAR.search(said) is not None:
+            continue
         is_correction = NUMBER.search(tail) is not None and NUMBER.search(said) is not None
         is_duration = DURATION.search(tail) is not None and FOLLOWING.search(said) is not None
         parts = [part.strip() for part in tail.split(",")]

@@ -183,6 +183,13 @@ COUNTS = (
     (r"\bcan you make out (how many [\w ]+?) there are\b", r"\1 are there"),
     (r"\b(how many [\w ]+?) have (?:we|you) got in (shot|view|frame)\b", r"\1 are there in \2"),
     (r"^look at the whole \w+ and tell me (how many [\w ]+?) there are\b", r"\1 are there in the whole scene"),
+    (
+        r"\bhave a look all the way (?:a)?round and tell me (how many [\w ]+?) (?:we['’]ve got|we have|there are|have we "
+        r"got)(?: in here| here| there)?\b[^?.]*",
+        r"\1 are there all around",
+    ),
+    (r"\b(?:go|run) through every preset and tell me (how many [\w ]+?) there are at each one\b", r"\1 are there at each preset"),
+    (r"\b(how many [\w ]+?) (?:are there )?in total, looking all around\b", r"\1 are there all around"),
 )
 """Patterns with the words that replace them."""
 

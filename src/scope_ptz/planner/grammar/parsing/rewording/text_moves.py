@@ -26,6 +26,7 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
+    (r"\ball the way (?:a)?round to the (left|right)\b", r"all the way to the \1"),
     (
         r"\b(?:(?:pull|go|come|move|take|bring)(?: it| her| the camera)? )?right (in|out) as (?:wide|far|tight|close) "
         r"as (?:it|she|he|you)(?:['’]ll| will| can)?(?: goes?| go)?\b",
@@ -104,7 +105,11 @@ MOVES = (
     (r"(?<!a )\blittle bit (?=more|closer|further)", "a bit "),
     (r",? a (?:little )?bit only\W*$", ""),
     (r"\bgo to whichever(?: one)?(?: it is| that is| has (?:it|more|the most)| wins?)?(?=\W*$|,)", "go there"),
-    (r",? as (?:he|she|it|they) (?:goes?|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)", ""),
+    (
+        r"(?<!left)(?<!right)(?<!up)(?<!down)(?<!in)(?<!out)(?<!wide)(?<!far)(?<!close),? as (?:he|she|it|they) (?:goes?"
+        r"|moves?|walks?|drives?|comes?)(?: along| past| by| around| through)?(?=[,.]|$)",
+        "",
+    ),
     (
         r", ((?:\d+|[a-z]+(?:-[a-z]+)?) (?:seconds|minutes)) (?:ought to|should|will|would) (?:do|be enough|be "
         r"plenty)(?: it| nicely| fine)?",

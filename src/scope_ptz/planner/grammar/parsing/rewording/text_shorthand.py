@@ -275,5 +275,7 @@ SHORTHAND = (
     (r"^(is|are) there ([^?,]+), (follow|zoom in on) (it|them|him|her)\b", r"if there \1 \2, \3 \4"),
     (r"^(?:good|nice|great|lovely|beautiful) (?:picture|photo|shot)[,.!] (?=\w)", ""),
     (r",? either way\W*$", ""),
+    (r"\bback again by (?=the same|that)", "back by "),
+    (r"\bhow amny\b", "how many"),
 )
 """Patterns with the words that replace them."""

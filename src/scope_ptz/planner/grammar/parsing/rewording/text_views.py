@@ -195,5 +195,10 @@ VIEWS = (
         r"(?:could you |can you |please )*find it(?: please| for me)?\W*$",
         r"find the \1",
     ),
+    (
+        r"^(?:i['’]ve forgotten|i forget) what the (?:saved )?(?:spots|positions|presets|views) are called, (?:can"
+        r"|could) you read me the list\W*$",
+        "list the presets",
+    ),
 )
 """Patterns with the words that replace them."""

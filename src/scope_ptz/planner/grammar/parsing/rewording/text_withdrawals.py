@@ -129,6 +129,8 @@ WITHDRAWALS = (
         r"|leave (?:him|her|it|them) be(?: and|,)) (?:just )?(?=(?:find|follow|track|zoom|go|take|count|look)\b)",
         "",
     ),
+    (r"[,;]? (?:and|but) (?:do not|don['’]?t) (?:follow|track) (?:anybody|anyone|anything)\W*$", ""),
+    (r",? but (?:do not|don['’]?t) move the camera while (?:doing|you do) (?:it|so|that)\W*$", " without moving the camera"),
 )
 """Patterns with the words that replace them."""
 
