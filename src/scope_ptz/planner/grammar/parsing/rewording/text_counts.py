@@ -155,7 +155,7 @@ COUNTS = (
         r"\1 are there?",
     ),
     (r"\b(how many [\w ]+?)(?: are)? lying (?:around|about)\b(?: here| there)?", r"\1 are there"),
-    (r"\b(how many [\w ]+?) are on(?=[,.;?]|$)", r"\1 are there"),
+    (r"\b(how many [\w ]+?) are (?:on|in)(?=[,.;?]|$)", r"\1 are there"),
     (
         r"^([\w ]+?)[,.] (?:full|whole|entire) (?:scene|area|view|site)[,.] how many\?*$",
         r"how many \1 are there in the whole scene?",
@@ -167,7 +167,7 @@ COUNTS = (
         r"(?:the )?([\w ]+?)\W*$",
         r"count the \1 in the whole scene",
     ),
-    (r"\bin the whole (?:court|pit|yard|hall|building|shed|terminal)\b,? all the way (?:a)?round", "all around"),
+    (r"\bin the whole (?:court|pit|yard|hall|house|building|shed|terminal)\b,? all the way (?:a)?round", "all around"),
     (r"\b(how many [\w ]+?) are up (?=at|in|on)", r"\1 are "),
     (r"\b(how many [\w ]+?) are there all around the (?:yard|pit|court|field|site|place)\b[^?.]*", r"\1 are there all around"),
     (
@@ -190,6 +190,7 @@ COUNTS = (
     ),
     (r"\b(?:go|run) through every preset and tell me (how many [\w ]+?) there are at each one\b", r"\1 are there at each preset"),
     (r"\b(how many [\w ]+?) (?:are there )?in total, looking all around\b", r"\1 are there all around"),
+    (r"(?: in the whole \w+)?,? look in every direction\W*$", " in the whole scene"),
 )
 """Patterns with the words that replace them."""
 

@@ -91,6 +91,10 @@ def with_places_named(text: str, presets: tuple[str, ...]) -> str:
                 match[0] if NO_TOPIC.search(match[1]) else f"is the {match[1]} at the {match[3]} {match[4]} or {match[5]}?"
             ),
         ),
+        (
+            rf"^(?:the )?([\w ]+?) (at|in|on) (?:the )?({names}), what does it (read|say|show)\W*$",
+            r"what does the \1 at the \3 \4?",
+        ),
         (rf"^queue (at|in|on) (?:the )?({names}), how many (\w+)\W*$", r"count the \3 at the \2"),
         (
             rf"^show me (?:the )?({names}),? then (?:the )?({names})\. no, leave the \w+ out, just (?:the )?({names})\W*$",

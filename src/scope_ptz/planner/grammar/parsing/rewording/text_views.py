@@ -5,6 +5,11 @@ from __future__ import annotations
 _PICTURES = "photo|picture|pic|snap|shot|still"
 
 VIEWS = (
+    (
+        r"^(?:i['’]ve forgotten|i forget) what the (?:saved )?(?:spots|positions|presets|views) are called, (?:can"
+        r"|could) you read me the list\W*$",
+        "list the presets",
+    ),
     (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
     (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
     (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
@@ -194,11 +199,6 @@ VIEWS = (
         r"^i (?:left|lost|dropped|forgot) (?:the|my) ([\w ]+?)(?: (?:somewhere|out|there|round|around)\b[^,.]*)?[,.] "
         r"(?:could you |can you |please )*find it(?: please| for me)?\W*$",
         r"find the \1",
-    ),
-    (
-        r"^(?:i['’]ve forgotten|i forget) what the (?:saved )?(?:spots|positions|presets|views) are called, (?:can"
-        r"|could) you read me the list\W*$",
-        "list the presets",
     ),
 )
 """Patterns with the words that replace them."""
