@@ -105,6 +105,10 @@ def test_a_preset_that_is_left_out_is_not_visited(text: str) -> None:
     assert [call.arguments["name"] for call in plan(text, PRESETS).calls] == ["main-gate", "yard", "loading-dock"]
 
 
+def test_a_skip_is_a_thing() -> None:
+    assert [call.name for call in plan("look for a skip at the yard preset", PRESETS).calls][0] == "go_to_preset"
+
+
 @pytest.mark.parametrize("forbidden", ["without moving the camera", "without zooming", ", don't move"])
 def test_a_picture_without_moving_is_taken_of_the_current_view(forbidden: str) -> None:
     assert [call.name for call in plan(f"take a picture of the sign {forbidden}", PRESETS).calls] == ["take_image"]
