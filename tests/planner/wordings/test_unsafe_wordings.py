@@ -106,7 +106,7 @@ def test_a_preset_that_is_left_out_is_not_visited(text: str) -> None:
 
 
 def test_a_skip_is_a_thing() -> None:
-    assert [call.name for call in plan("look for a skip at the yard preset", PRESETS).calls][0] == "go_to_preset"
+    assert plan("look for a skip at the yard preset", PRESETS).calls[0].name == "go_to_preset"
 
 
 @pytest.mark.parametrize("forbidden", ["without moving the camera", "without zooming", ", don't move"])

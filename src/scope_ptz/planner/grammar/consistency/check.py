@@ -25,8 +25,8 @@ from scope_ptz.planner.grammar.lexing.preset_names import preset_key
 
 _MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.ZoomTo, ast.Track, ast.Back, ast.WhichPreset, ast.FirstWith)
 _LEAVING_OUT = re.compile(
-    r"(?:\b(?:but|and) not|(?<!\ba )(?<!\bthe )(?<!\bany )(?<!\bno )\bskip|\bleave out|\bmiss out|\bnot|\bbut don t (?:stop|go)|\bexcept)"
-    r"(?: at| to| do| in)?(?: the)?$"
+    r"(?:\b(?:but|and) not|(?<!\ba )(?<!\bthe )(?<!\bany )(?<!\bno )\bskip|\bleave out|\bmiss out|\bnot"
+    r"|\bbut don t (?:stop|go)|\bexcept)(?: at| to| do| in)?(?: the)?$"
 )
 """Words before a preset that leave it out; "a skip at the yard" is a container."""
 
