@@ -54,7 +54,9 @@ pytestmark = [
 def test_a_killed_sweep_resumes_and_keeps_finished_runs(sweep_run: SweepRun) -> None:
     assert RUNS_BEFORE_THE_KILL <= len(sweep_run.finished) < len(TASKS)
     assert sweep_run.resumed.code == 0, sweep_run.resumed.err
-    assert f"{len(sweep_run.finished)} of {len(TASKS)} runs are finished" in sweep_run.resumed.out
+    assert f"{len(sweep_run.finished)} of {len(TASKS)} runs are finished" in " ".join(
+        sweep_run.resumed.out.split()
+    )  # the line may be wrapped
     assert set(sweep_run.logs) == {NOVICE, ADEPT}
     for path in sweep_run.logs.values():
         evaluation = read_evaluation(path)

@@ -100,7 +100,11 @@ def _is_head(lexemes: Sequence[Lexeme], i: int, after: Lexeme | None) -> bool:
         is_place = x.word in _PLACES and i > 1 and lexemes[i - 2].has("PREP")  # "the sprinklers on the pitch"
         is_lift = x.word in {"lift", "lifts"} and before.word == "the"  # "start the lift"
         return is_counted or is_subject or is_place or is_lift
-    if x.word not in _HEADS or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing")):
+    if (
+        x.word not in _HEADS
+        or before.word in _NO_MODIFIERS
+        or not ("NOUN" in parts_of_speech(before.word) or before.word.endswith("ing"))
+    ):
         return False
     before_phrase = lexemes[first - 1] if first else None
     if before_phrase is None or before_phrase.word in _BEFORE_OBJECT:
