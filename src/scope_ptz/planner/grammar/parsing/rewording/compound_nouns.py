@@ -58,6 +58,10 @@ _BEFORE_OBJECT = frozenset({"on", "at", "onto", "find", "locate", "follow", "tra
 """Words before a noun phrase that names an object in the picture."""
 
 
+_NO_MODIFIERS = frozenset({"other", "same", "own", "next", "last", "only", "whole"})
+"""Words before a noun that form no compound with it: "the other camera"."""
+
+
 def with_compound_nouns(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     """Return the lexemes, in which command words that are part of a compound noun are nouns."""
     out = list(lexemes)
