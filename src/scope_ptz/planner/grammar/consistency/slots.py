@@ -12,7 +12,7 @@ _VERB = r"(?:pan|tilt|zoom|swivel|nudge|slew|yaw)"
 _ANY_VERB = rf"(?:{_VERB}|turn|rotate|swing|move|go|look|point|aim|angle|tip|pitch|return|switch)"
 _NO_NOUN_PHRASE = re.compile(
     r"\bin \d+ (?:minutes?|hours?|seconds?)\b.*|\b(?:tomorrow|tonight|later)$|\bgo home\b.*|\bstay$|\bpeople left\b.*"
-    r"|\bby (?:noon|midnight)$|\b(?:again|twice|former|latter)$|\bfor \d+\w*$|\b\d+ more$|"
+    r"|\bby (?:noon|midnight)$|\b(?:twice|former|latter)$|\bfor \d+\w*$|\b\d+ more$|"
     r"^(?:current|present|whole|full) (?:view|picture|scene|frame|image)\b.*|^(?:all )?directions$|"
     r"^(?:how many|how much|whether|if|then|until|while|what|which|who|where|from|at|into|looked|counted|checked|seen)\b.*"
     r"|\b(?:as )?compared (?:to|with)\b.*"
