@@ -69,10 +69,8 @@ def objection(instruction: str, steps: Sequence[ast.Step], presets: Sequence[str
                 *ignored_directions(words, evidence),
                 *contradicted_zoom(words, evidence),
                 *omitted_actions(words, evidence),
-                *forbidden_actions(words, evidence),
                 *ignored_conditions(words, evidence),
                 *unvisited_presets(words, evidence, presets),
-                *presets_left_out(words, evidence),
             )
         }.values(),
         key=lambda word: word.start,

@@ -31,13 +31,33 @@ def corrected_word(word: str) -> str:
         return str(lists["fixed"][word])
     if len(word) < _MIN_SHORT_CHARS or not word.isalpha() or is_english(word):
         return word
-    if word.endswith("in") and not parts_of_speech(word) and verb_form(f"{word}g") == "participle":
-        return f"{word}g"  # "goin", "lookin"
+    if (whole := with_whole_ending(word)) != word:
+        return whole
     if len(swapped := _with_letters_swapped(word)) == 1 and not parts_of_speech(word):
         return swapped[0]
     close = [known for known in lists["short"] if (_is_typing_error if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
     close = close or _likely_words(word)
     return close[0] if len(close) == 1 and not parts_of_speech(word) else word
+
+
+def with_whole_ending(word: str) -> str:
+    """Return "going" for "goin"; any other word unchanged."""
+    is_shortened = word.endswith("in") and not (is_english(word) or parts_of_speech(word)) and verb_form(f"{word}g") == "participle"
+    return f"{word}g" if is_shortened else word
+
+
+@lru_cache(maxsize=4096)
+def corrected_noun(word: str) -> str:
+    """Return the noun or adjective that results from swapping two adjacent letters or doubling one.
+
+    Known words, and words that could be corrected in more than one way, are returned unchanged.
+    """
+    if is_english(word) or parts_of_speech(word) or verb_form(word) is not None:
+        return word
+    swapped = {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(1, len(word) - 1)}
+    doubled = {word[:i] + word[i] + word[i:] for i in range(1, len(word))}
+    meant = {other for other in swapped | doubled if parts_of_speech(other) & {"NOUN", "ADJ"}}
+    return meant.pop() if len(meant) == 1 else word
 
 
 def _with_letters_swapped(word: str) -> list[str]:

@@ -28,7 +28,7 @@ REFUSAL = re.compile(
 
 EXCLAMATION = re.compile(
     r"(?:(?:oh|ah|well|my|gosh|goodness|now|and|just) )*(?:how \w+|what an? [\w ]+"
-    r"|(?:is|are)n['’]?t (?:it|that|he|she|they) [\w ]+|can you believe (?:it|that)"
+    r"|(?:is|are)n['’]?t (?:it|that|he|she|they) [\w ]+"
     r"|(?:lovely|beautiful|nice|gorgeous|terrible"
     r"|dreadful|horrible|awful|rotten|cold|busy|quiet|funny|miserable|glorious|proper|typical) [\w ]+"
     r"|hear(?:ing)? (?:reports?|complaints?) [\w ]+|(?:had|got|getting|having) (?:an? )?(?:reports?|complaints?|calls?|word|news)"

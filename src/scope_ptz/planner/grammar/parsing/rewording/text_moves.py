@@ -153,7 +153,7 @@ MOVES = (
     ),
     (r"\bbring (?:the camera|it) (?:back |again |round )*to (?:its |the )?home\b", "go home"),
     (
-        r"\bdon['’]t start (tak|zoom|go|mov|pan|turn|follow|count|track)(?:k|m|n)?(?:e)?(?:in|ing)\b",
+        r"\bdon['’]?t be (tak|zoom|go|mov|pan|turn|follow|count|track)(?:k|m|n)?(?:e)?(?:in|ing)\b",
         lambda match: f"don't {_GERUNDS[match[1].lower()]}",
     ),
     (r"\b(?:drive|run|send) (?:the |that )?(zoom|pan|tilt) (?=all|to|left|right|up|down|in|out)", r"\1 "),

@@ -130,7 +130,6 @@ SHORTHAND = (
     (r"\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all )", "it's "),
     (r"^(?:tc|test|case|step|job|req|task)[- ]?[\d.]+ ?[:.] ", ""),
     (r",? (?:oh,? )?i beg your pardon,? ", ", sorry, "),
-    (r"\bdon['’]?t be (?=\w+in)", "don't start "),
     (
         r"\bone (third|quarter|half|eighth|fifth|sixth) of a (?:full |whole |complete )?(?=turn|circle|rotation|revolution)",
         r"a \1 of a ",
@@ -196,7 +195,7 @@ SHORTHAND = (
     (r",? or what\?$", "?"),
     (r"\bhv\b", "have"),
     (r"\bnum of\b", "number of"),
-    (r"\b(s|h)he?ll (?=go\b)", r"\1he'll "),
+    (r"\bshell (?=go\b)", "she'll "),
     (r"(?<=\w) (?=(?:scratch that|no wait|actually no)\b)", ", "),
     (r"\b(scratch that|no wait|actually no) (?=\w)", r"\1, "),
     (r",? on reflection,? ", ", "),
@@ -245,7 +244,6 @@ SHORTHAND = (
     (r"^i(?:['’]d| would) like the (?:image|picture|view) (\d+ ?%|\w+ percent) closer\b[^.;]*", r"zoom in \1"),
     (r"\bhave it (?=look|turn|pan|tilt|point|zoom)", ""),
     (r"^cam(?:era)? ?\d to (?=\w)", "go to "),
-    (r"\bthe camera on (?=the \w+(?: \w+)? when you(?:['’]ve| have) got a (?:second|minute|moment))", "the camera on "),
     (r" when you(?:['’]ve| have) got (?:a|one) (?:second|sec|minute|moment)\b", ""),
     (r", (?:end of )?shift change\W*$", ""),
     (r",? (?:do )?(?:a )?full sweep all around\b", " all around"),
@@ -262,7 +260,6 @@ SHORTHAND = (
     (r"\bontoo\b", "onto"),
     (r"\bleft to degrees\b", "left 2 degrees"),
     (r"\b(right|up|down) to degrees\b", r"\1 2 degrees"),
-    (r"\bno (?=(parking|entry|smoking|dogs|access|stopping|loading|swimming|fishing)\b(?: \w+)? (?:sign|notice|board))", "no-"),
     (r",? even (?:if|when|though) (?![^,.;]*\b(?:pan|tilt|zoom|go to|take|count|follow)\b)[^,.;]+(?=,|\.|;|$)", ""),
     (r"^(.+?) when you(?:['’]re| are) (?:done|finished) counting ([^,.;]+)\W*$", r"count \2, then \1"),
     (
