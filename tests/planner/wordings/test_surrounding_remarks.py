@@ -42,8 +42,6 @@ TAKEN_BACK = [
 """Parts that are taken back."""
 
 PLAIN = [
-    ("left 5, left 5, left 5", "adjust_ptz(pan_deg=-5); adjust_ptz(pan_deg=-5); adjust_ptz(pan_deg=-5)"),
-    ("zoom in 4x for a photo", "adjust_ptz(zoom_factor=4); take_image()"),
     ("pan left 20 plus 15 degrees", "adjust_ptz(pan_deg=-35)"),
     ("pan right 7 1/2 degrees", "adjust_ptz(pan_deg=7.5)"),
     ("person count at the gate", "go_to_preset(name=gate); count_objects(description=people, view=current)"),

@@ -8,18 +8,20 @@ import pytest
 
 from scope_ptz.planner.grammar.execution.outline import OutlineBlock
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import rewordings
+from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
+from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES
 from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS
 from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
-from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
+from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING
 from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS
 from scope_ptz.planner.plan import plan
 
 PRESETS = ("main-gate", "yard", "loading-dock", "roof")
 
-CONDITIONS = [
+CONDITIONAL = [
     ("if you don't see a truck, go home", "if no trucks are visible:"),
     ("if you can't see the truck zoom out", "if no trucks are visible:"),
     ("take a picture when you don't see anyone", "if no people are visible:"),
@@ -86,7 +88,7 @@ def headings(block: OutlineBlock) -> list[str]:
     return [block.heading, *inner]
 
 
-@pytest.mark.parametrize(("text", "heading"), CONDITIONS)
+@pytest.mark.parametrize(("text", "heading"), CONDITIONAL)
 def test_conditions_are_not_reversed(text: str, heading: str) -> None:
     outline = plan(text, PRESETS).outline
     assert outline is not None
@@ -114,7 +116,7 @@ def test_a_picture_without_moving_is_taken_of_the_current_view(forbidden: str) -
     assert [call.name for call in plan(f"take a picture of the sign {forbidden}", PRESETS).calls] == ["take_image"]
 
 
-@pytest.mark.parametrize("patterns", [COUNTS, MOVES, QUESTIONS, REMARKS, SHORTHAND, VIEWS, WITHDRAWALS])
+@pytest.mark.parametrize("patterns", [COUNTS, MOVES, QUESTIONS, REMARKS, SPELLING, CONDITIONS, COURTESIES, VIEWS, WITHDRAWALS])
 def test_every_pattern_compiles(patterns: tuple) -> None:  # type: ignore[type-arg]
     for rewording in rewordings(patterns):
         assert re.compile(rewording.pattern, re.IGNORECASE)

@@ -160,7 +160,6 @@ SLIPS = [
     ("Listen up: pan left 20.", "adjust_ptz(pan_deg=-20)"),
     ("Go right out.", "adjust_ptz(zoom_limit=out)"),
     ("The camera shall be rotated 30 degrees to the right.", "adjust_ptz(pan_deg=30)"),
-    ("Please do the needful and take one photo of the gate.", "go_to_preset(name=gate); take_image()"),
     ("take us to the gate an tilt down 6", "go_to_preset(name=gate); adjust_ptz(tilt_deg=-6)"),
     (
         "if you see neither people nor cars, go home",
@@ -239,7 +238,6 @@ SLIPS = [
         "if there is a van, zoom in on it. If not, don't bother.",
         "count_objects(description=van, view=current); zoom_to_object(description=van)",
     ),
-    ("how many impala, I mean kudu, are there?", "count_objects(description=kudu, view=current)"),
     ("Queue at the gate?", "go_to_preset(name=gate); query_answer(question=Is there any queue?, view=current)"),
 ]
 """Slips, corrections, verbs in unusual forms, and descriptions."""

@@ -7,18 +7,21 @@ import re
 from scope_ptz.planner.grammar.lexing.spelling import corrected_noun, with_whole_ending
 from scope_ptz.planner.grammar.parsing.rewording.rewordings import reworded_text, rewordings
 from scope_ptz.planner.grammar.parsing.rewording.surrounding_remarks import without_remarks
+from scope_ptz.planner.grammar.parsing.rewording.text_conditions import CONDITIONS
 from scope_ptz.planner.grammar.parsing.rewording.text_counts import COUNTS
+from scope_ptz.planner.grammar.parsing.rewording.text_courtesy import COURTESIES
 from scope_ptz.planner.grammar.parsing.rewording.text_moves import MOVES
 from scope_ptz.planner.grammar.parsing.rewording.text_places import with_places_named
 from scope_ptz.planner.grammar.parsing.rewording.text_questions import QUESTIONS, with_separate_questions
 from scope_ptz.planner.grammar.parsing.rewording.text_remarks import REMARKS
-from scope_ptz.planner.grammar.parsing.rewording.text_shorthand import SHORTHAND
+from scope_ptz.planner.grammar.parsing.rewording.text_spelling import SPELLING, WORDS
 from scope_ptz.planner.grammar.parsing.rewording.text_views import VIEWS
 from scope_ptz.planner.grammar.parsing.rewording.text_withdrawals import WITHDRAWALS, without_part_left_out
 
-_SHORTHAND = rewordings(SHORTHAND)
+_STANDARD = rewordings((*SPELLING, *CONDITIONS, *COURTESIES))
 _ASIDES = rewordings((*WITHDRAWALS, *REMARKS))
 _WORDINGS = rewordings((*MOVES, *VIEWS, *QUESTIONS, *COUNTS))
+_NONSTANDARD = re.compile(rf"\b(?:{'|'.join(WORDS)})\b['’]?(?!\w)", re.IGNORECASE)
 _LONG_WORD = re.compile(r"\b[a-z]{5,}\b")
 _SHORT_ENDING = re.compile(r"\b([A-Za-z]{2,}in)\b['’]?")
 _MAX_CHARS = 600  # longer texts are left as they are: nobody types them in one go, and each pattern would have to search them
@@ -29,7 +32,8 @@ def written_out(text: str) -> str:
     if len(text) > _MAX_CHARS:
         return text
     text = _LONG_WORD.sub(lambda match: corrected_noun(match[0]), text)
-    return reworded_text(_SHORT_ENDING.sub(_whole, text), _SHORTHAND)
+    text = _NONSTANDARD.sub(lambda match: WORDS[match[0].lower().rstrip("'’")], text)
+    return reworded_text(_SHORT_ENDING.sub(_whole, text), _STANDARD)
 
 
 def _whole(match: re.Match[str]) -> str:

@@ -14,6 +14,14 @@ NO_TOPIC = re.compile(
 """Words which show that a text is not a noun phrase."""
 
 COUNTS = (
+    (r"\bdo the counting of ", "count the "),
+    (r"\bwhich is having\b", "which has"),
+    (r"\bneed a number: ", "count the "),
+    (
+        r"(?<!and)(?<!then)(?<!please)(?<!you)(?<!to)(?<!can)(?<!could)(?<!or)(?<!just)(?<![,.;:]) (?=tell me (?:if"
+        r"|whether|how|what)\b)",
+        ", ",
+    ),
     (r"\btally up\b", "count"),
     (r"\b(how m[ae]ny [\w ]+? have (?:we|i|you) got) left\b", r"\1"),
     (r"^head ?count at (the [\w -]+?) ?[-–—,:] ?how many (\w+)\W*$", r"how many \2 are at \1"),
@@ -22,7 +30,6 @@ COUNTS = (
     (r"^([\w ]+?), how many can (?:you|u) see\W*$", lambda match: _counted(match)),
     (r"^(?!.*\b(?:then|and)\b)([\w' ]+?)\. (find|follow|zoom in on|track) it\W*$", lambda match: _found(match)),
     (r"^([\w ]+?)(?: in view)?,? (?:how many|give (?:us|me) a (?:number|count|figure))\W*$", lambda match: _counted(match)),
-    (r"^([\w ]+?)\. how many\W*$", lambda match: _counted(match)),
     (r"\b(currently|presently) (?=visible|in view|in the picture|on screen)", ""),
     (r"\b((?:how many|number of) [\w ]+?)(?: are)? out (?=(?:at|on|in) the )", r"\1 "),
     (
@@ -31,7 +38,6 @@ COUNTS = (
     ),
     (r"^out of (.+?),? and (.+?), (?:where are|where is|which has) the most ([\w ]+)\?*$", r"which has the most \3, \1 or \2?"),
     (r"^all presets, (\w+?)s? count(?: at each(?: one)?)?\W*$", lambda match: f"count the {plural(match[1])} at each preset"),
-    (r"^([\w -]+?) (in|at|on) ((?:the )?[\w -]+), how many\W*$", r"how many \1 are \2 \3?"),
     (
         r"^count (?:the )?([\w ]+?),? then (?:the )?(?!(?:go|take|pan|zoom|tilt|count|turn|move|tell|check|follow"
         r"|track|snap|look|report)\b)"
@@ -42,8 +48,6 @@ COUNTS = (
     (r"^(.*\b(?:count|how many)\b.*)[,.;] i (?:just |only )?want(?:ed)? to know how many [\w ]+\W*$", r"\1"),
     (r"\b(how m[ae]ny [\w ]+?) (?:have|has) (?:arrived|got in|turned up|come in|gathered|shown up)\b", r"\1 are there"),
     (r"\b(how m[ae]ny [\w ]+?) are left\b", r"\1 are there"),
-    (r"\b(how m[ae]ny [\w ]+?) is (?=still|in|at|on\b)", r"\1 are "),
-    (r"\bhead ?count (?:on|for) (?=the )", "head count of "),
     (r"\b(count up) them (?=\w)", r"\1 the "),
     (r"^count they (?=\w+ \w+)", "count the "),
     (r"\bmore ([\w ]+?) round it(?: tonight| now)?,", r"more \1,"),
@@ -53,16 +57,12 @@ COUNTS = (
         r"left(?: out)?)|are you seeing|do you make it)(?= (?:at|in|on|down|up|over|out|by)\b|\W*$)",
         r"\1 are there",
     ),
-    (r" (?:at|in) this (?:hour|time of (?:day|night|year))(?=\W|$)", ""),
-    (r"^(?:need|i need|want)(?: a| the)? (?=number of\b)", ""),
     (r"\b(how many [^?.]*?\b(?:is|are)) (?:currently|presently|now|still) (?=\w)", r"\1 "),
     (
         r"^((?:so |now |and )?(?:how many|is|are|any|has|have|did|who|what)\b.*?) this (?:morning|afternoon|evening"
         r"|minute)(?=[?.!]*$)",
         r"\1",
     ),
-    (r"\bhi vis\b", "hi-vis"),
-    (r"^total (?=(?:people|\w+s)\b)", "number of "),
     (r",? (?:a )?(?:full )?360(?: degrees?)?(?: view| sweep| scan| scene)\W*$", " all around"),
     (
         r",? (?:and )?not (?:just|only) (?:in |at |on )?(?:this|that) (?:part|bit|area|side|corner|section|end)"
@@ -89,19 +89,7 @@ COUNTS = (
         r"(?=(?:tell|count|see)\b)",
         "sweep the scene and ",
     ),
-    (r"\bseparately (?=on|at|in\b)", ""),
     (r"\bcount (the [^,.;]+?) and (?:then|afterwards|after that) the ", r"count \1 and then count the "),
-    (r",? each (?:one )?(?:on its own|on their own|separately|individually|by itself)(?=[.!?]|$)", " separately"),
-    (r"^((?:\w+ ){1,3}and(?: \w+){1,3}): how many of each\b(?: are there)?([^?]*)\?*$", r"count the \1\2"),
-    (
-        r"^(\w+) (in|at|on) (the [\w -]+), (\w+) (in|at|on) (the [\w -]+): how many of each\?*$",
-        r"count the \1 \2 \3, then count the \4 \5 \6",
-    ),
-    (
-        r"^is it busier at (.+?) or (?:at )?(.+?)\? count the (\w+) at (?:both|each)(?: of them)?\.?$",
-        r"count the \3 at \1 and at \2",
-    ),
-    (r"^how many ([\w ]+?) and how many ([\w ]+?) (?=(?:are )?(?:at|on|in) the )", r"how many \1 and \2 "),
     (
         r"\b(?:let me have|give me|i need|i want|get me) (?:one|a) (?:figure|number|count|total) for (the [\w ]+?) "
         r"and (?:another|one"
@@ -109,10 +97,6 @@ COUNTS = (
         r"count \1, then count \2",
     ),
     (r"^(.*\bhow many [\w ]+?) (?:right |over |out |down |up )there\?*$", r"\1?"),
-    (
-        r"\bhow many ([\w ]+?) (?:do|can|could) (?:you|u|we|i) see ((?:on|in|at|by|near|under|behind) (?:the )?[\w ]+?)\?*$",
-        r"how many \1 are there \2?",
-    ),
     (
         r"\b(?:in|on|across|over|around|throughout) the (?:whole|entire) (?:grounds?|stadium|lot|park|car ?park"
         r"|garden|field|harbou?r|port|yard|property|premises|estate|site|farm|compound|campus)\b",
@@ -123,10 +107,6 @@ COUNTS = (
         r"((?:is|are|how many|can)\b[^?]*)\?*$",
         r"\1 in the whole scene?",
     ),
-    (
-        r"\b(count (?:the |all the )?[\w ]+?)(?: for (?:me|us))?, everywhere, all the way (?:a)?round\b",
-        r"\1 all around",
-    ),
     (r"\b(?:give|get) (?:us|me) (?:a|the) (?:number|count|figure|total|tally) (?:on|for|of) ", "count "),
     (r"^(count [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)(?=\W*$|[.;,])", r"\1 in the current view"),
     (r"^full[- ]scene count: (?:the )?([\w ]+)", r"count the \1 in the whole scene"),
@@ -135,24 +115,17 @@ COUNTS = (
     (r"\b(how m[ae]ny [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
     (r"^head ?count[,:] (?:of )?(people\b[\w -]*|[\w ]+ in [\w -]+)\W*$", r"count the \1"),
     (r"\bhow many ([\w ]+?) you (?:are able to|can) see\b", r"how many \1 can you see"),
-    (r"\bgive (?:us|me) a tally of (?:the )?", "count the "),
     (r"\bnumber fo\b", "number of"),
     (
         r"^((?:how many|count|number of)\b[^?.!]*?), (?:the )?whole (?:yard|site|scene|area|lot|place) i mean\W*$",
         r"\1 in the whole scene",
     ),
-    (r"\b(how many [\w ]+?) are standing (?=at|in|on|by)", r"\1 are "),
     (r"^((?:how many|number of) [\w -]+?),? (?:in )?(?:the )?current (?:view|frame|picture)\W*$", r"\1 in the current view"),
     (r"^((?:how many|number of|count) [\w -]+?),? (?:in )?all directions\W*$", r"\1 in the whole scene"),
     (
         r"^if (?:you|we|i) (?:had|have|took|take) a look (?:all the way |all |right )?(?:a)?round, ([^?]*?)(?: "
         r"altogether| in all| in total)?\?*$",
         r"\1 in the whole scene?",
-    ),
-    (
-        r"\b(how many [\w ]+?) (?:have |do )?(?:we|you|they)(?:['’]ve)? (?:have|got)(?: right)?(?: out| in| over| up| "
-        r"down)? (?:here|there)\?*$",
-        r"\1 are there?",
     ),
     (r"\b(how many [\w ]+?)(?: are)? lying (?:around|about)\b(?: here| there)?", r"\1 are there"),
     (r"\b(how many [\w ]+?) are (?:on|in)(?=[,.;?]|$)", r"\1 are there"),
@@ -167,7 +140,6 @@ COUNTS = (
         r"(?:the )?([\w ]+?)\W*$",
         r"count the \1 in the whole scene",
     ),
-    (r"\bin the whole (?:court|pit|yard|hall|house|building|shed|terminal)\b,? all the way (?:a)?round", "all around"),
     (r"\b(how many [\w ]+?) are up (?=at|in|on)", r"\1 are "),
     (r"\b(how many [\w ]+?) are there all around the (?:yard|pit|court|field|site|place)\b[^?.]*", r"\1 are there all around"),
     (
@@ -179,15 +151,8 @@ COUNTS = (
         r"\b(?:wants to know|have asked for|asked for|has asked for) the number of ([\w ]+?) (?:you can see|in this view)\b[^.;]*",
         r"so count the \1",
     ),
-    (r"\bacross the entire property, i mean all the way round\b", "in the whole scene"),
     (r"\bcan you make out (how many [\w ]+?) there are\b", r"\1 are there"),
-    (r"\b(how many [\w ]+?) have (?:we|you) got in (shot|view|frame)\b", r"\1 are there in \2"),
     (r"^look at the whole \w+ and tell me (how many [\w ]+?) there are\b", r"\1 are there in the whole scene"),
-    (
-        r"\bhave a look all the way (?:a)?round and tell me (how many [\w ]+?) (?:we['’]ve got|we have|there are|have we "
-        r"got)(?: in here| here| there)?\b[^?.]*",
-        r"\1 are there all around",
-    ),
     (r"\b(?:go|run) through every preset and tell me (how many [\w ]+?) there are at each one\b", r"\1 are there at each preset"),
     (r"\b(how many [\w ]+?) (?:are there )?in total, looking all around\b", r"\1 are there all around"),
     (r"(?: in the whole \w+)?,? look in every direction\W*$", " in the whole scene"),

@@ -17,17 +17,7 @@ _SHARES = r"(?:a |one |two |three )?(?:half|thirds?|quarters?|full|empty)(?: ful
 
 REMARKS = (
     (rf"^([^,]*),\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", r"\1"),
-    (rf"^({_GREETINGS})\s+(?:{_VOCATIVES})(?=\s*[,.!])", r"\1"),
-    (r"^(?:well |right |so )?wait,? (?=what|which|where|who|how)", ""),
-    (r"\b(?:let['’]?s )?do (?:the|my|our|a|a quick|one) rounds?:", ""),
-    (r"\b(?:please |kindly )?do the needful(?: and|,)?", ""),
-    (r"^(?:one|just one) (?:small|little|more|last|quick) (?:request|thing|favou?r)[,:]\s*", ""),
-    (r"^(?:ah |oh |ach |sure )?go on,\s*", ""),
-    (r"^heads up[,!:.]\s*", ""),
-    (r"^oi[,!]?\s+", ""),
-    (r"^(?:jaysus|jesus|christ|lord|good god|good lord|good grief),\s*", ""),
     (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
-    (r",? (?:will|would|could) (?:ye|ya|yous)\b", ""),
     (r"^righto[,.!]? ", ""),
     (r",? if (?:it|you|that|the camera) (?:can|could) (?:do|manage) (?:that|it|this)(?=[,.]|$)", ""),
     (r",? for (?:the|my|our) (?:sheet|report|log|file|files|records?|logbook|book|office|inventory|audit|insurance)\W*$", ""),
@@ -43,39 +33,13 @@ REMARKS = (
         r"\1",
     ),
     (r"\b(?:make|do) (?:the|my|your) rounds and (?=.*\b(?:each|every) )", ""),
-    (
-        r"^(?:an?|the|my|one of the|some) [\w' ]+? (?:would like|wants|wishes|is asking|needs) to know (?=whether|if"
-        r"|how|what|which|where)",
-        "tell me ",
-    ),
     (r"\bshow (?:our|the|my|these) (?:guests?|visitors?|customers?|boss|manager|board) (?=the|that)", "show me "),
     (r",? wherever (?:he|she|it|they) goes?\b", ""),
-    (r"^(back home) with you(?: then)?\b.*$", r"\1"),
     (r"^back to home\b", "back home"),
-    (r"^(back home), (?:shift change|end of shift|shift over)\W*$", r"\1"),
     (r"^(?:right|okay|ok|well),? that(?:['’]s| is) (?:me|us) (?:finished|done|off)(?: for the (?:day|night|shift))?[,.] ", ""),
-    (r"\bsend it home\b", "go home"),
     (r"\b(frame|centre|center) (the [\w ]+?) (?:nicely|neatly|well|properly)\b", r"zoom in on \2"),
-    (r",? (?:see|watch) where (?:he|she|it|they) (?:do |does )?(?:goes?|heads?|ends? up)\W*$", ""),
     (r"^(find me [\w ]+?) again\b", r"\1"),
     (r" while the (?:light|sun|weather)(?:['’]s| is) [\w ]+\W*$", ""),
-    (r",? (?:please,? )?for the [\w ]+ that i (?:have|need) to [\w ]+\W*$", ""),
-    (r",? shall we\s*[?.!]*$", ""),
-    (r"\bhere['’]?s the thing\s*[:,]\s*", ""),
-    (rf"(^|[.!] )(?:(?:first|last|next) (?:job|task|stop|thing|order of business)|job one)(?: {_TIMES_OF_DAY})?[,:]\s*", r"\1"),
-    (r",? (?:and|but) make it (?:quick|snappy|fast|sharpish)\b", ""),
-    (
-        rf"\b(my|our|the|his|her|their) (?:little|wee|young|small) ({_CHILDREN})(?= (?:wants?|asks?|asked|needs?|would)\b)",
-        r"\1 \2",
-    ),
-    (rf"(?<=\w), (?!{_NOBODY})(?:the |my |our )?\w+ (?:wants?|needs?|asked for|would like) (?:one|a copy)\s*[.!]*$", ""),
-    (
-        r"^((?:any|is|are|how many|who|do you see|can you see)\b[^?.!;]*\?)\s+"
-        rf"(?:they|he|she)(?: knows? (?:that )?(?:they|he|she))? ?{_MUST_NOT}\s*[.!]*$",
-        r"\1",
-    ),
-    (rf"^(how (?:full|empty)\b[^?]*\?)(?:\s*{_SHARES}\?)+$", r"\1"),
-    (r", do (?:i|we) need (?:my|me|a|an|our) \w+\s*\?", "?"),
     (rf"\b(if|when|should|in case)\b(.+?)[;,.]\s*(?:if not|otherwise),? (?:{_NOTHING_ELSE})\s*[.!]*$", r"\1\2"),
     (
         r"\b(?:now |please |just )?do (?:me|us|an? [\w ]{2,20}?) (?:a|one) (?:quick |small |little |big )?favou?r"
@@ -83,8 +47,6 @@ REMARKS = (
         "",
     ),
     (r"^(?:please )?(?:settle|help me settle) an? (?:argument|bet|debate|dispute)\b[^.?!:]*[.?!:] ", ""),
-    (r"\b(photo|picture|pic|shot|snap|still) for (?:us|me) to \w+[^,.;]*$", r"\1"),
-    (r",? so that (?:i|we) can (?:listen|hear|check|test|log|record|compare|measure)\b[^,.;]*\W*$", ""),
     (
         r"^(?:now |right |ok |so )*(?:let['’]?s|let us|let me|i want to|i['’]d like to) see what(?:['’]s| is) behind "
         r"(?:us|me|you|the camera)[,.;]? (?:so )?(?=(?:please )?(?:turn|spin|swing|rotate)\b)",
@@ -101,7 +63,6 @@ REMARKS = (
         r"|visit|tour|sweep)\b)",
         "",
     ),
-    (r",? the one (?:that )?(?:i|we|you|they|he|she)(?:['’]ve| have)? been \w+ing (?:about|on about)\b[^,.;]*$", ""),
     (r"(?<=\w)[,.;]? (?:can|could|would|will) (?:you|u) count (?:both|them both|them all|all of them)(?: for (?:me|us))?\W*$", ""),
     (r"^(afternoon|morning|evening), ", ""),
     (
@@ -129,9 +90,7 @@ REMARKS = (
         r"\1",
     ),
     (r"\b(photo|picture|pic|shot|snap|still) of it all\b", r"\1"),
-    (r",? if (?:nobody|no one) (?:else )?(?:needs|wants|is using) (?:the|this) camera\b", ""),
     (r",? as (?:two|three|four|five|six|\d|separate)(?: separate| individual| distinct)? (?:moves|steps|movements)\b", ""),
-    (r"\bin the present (frame|view|picture|image|shot)\b", r"in the current \1"),
     (
         r"^(?:there(?:['’]s| is)|i (?:can )?see|we(?:['’]ve| have)(?: got)?) (an? [\w ]+?),? (?:who|that"
         r"|which)\b[^,.;]*[,.;] (?:so )?"
@@ -146,7 +105,6 @@ REMARKS = (
     ),
     (r",? should be (?:about |around )?(?:\d+|two|three|four|five|six|seven|eight|nine|ten|a dozen)\W*$", ""),
     (r"[.?!] that (?:should|ought to|will) (?:put|bring|get|give|show|do)\b[^?!]*$", ""),
-    (r"[.?!] then (?:i|we)(?: know| can| will| have|['’]ll)\b[^?!]*$", "."),
     (r"[;,.] (?:both|they|these|all) (?:are|is) for (?:the|my|our)\b[^;.]*\W*$", ""),
     (
         r"\b(?:my|the|our) [\w'’ ]{2,30}? (?:says?|said|wants (?:me|you)|told me|tells me|asks (?:me|you)|asked me) to "
@@ -165,14 +123,12 @@ REMARKS = (
         r"[.?!] (?:the )?\w+ (?:wants|needs|would like) (?:the|a|some) (?:figures?|numbers?|report|list|result|answer|total)s?\W*$",
         ".",
     ),
-    (r"[.?!] my \w+ and i (?:have|are|were|had|want)\b[^?.]*\W*$", ""),
     (
         r"(?<=\w)[,.;?!] (?:customer|client|visitor|driver|guest|neighbour|police|manager)s? (?:request|complaining"
         r"|waiting|asking|shouting|ringing|complaint|orders?)\b[^?.]*\W*$",
         "",
     ),
     (r"[?.] i (?:ought to|should) (?:know|remember|have known)\b[^?]*$", "?"),
-    (r",? (?:like|as) this i (?:can['’]?t|cannot|can not) [\w ]+\W*$", ""),
     (
         r"\b(?:i|we) (?:need|want|have|would like) to see the (?:whole|complete|entire|full) [\w ]+?(?: for "
         r"[\w ]+?)?, (?:so )?(?:please )?"
@@ -184,7 +140,6 @@ REMARKS = (
         r"|see) the (?:whole|entire) \w+(?: in (?:it|view|shot|the picture))?",
         r"\1",
     ),
-    (r"^(?:morning|night|late|early|day) shift here[,.:] ", ""),
     (r"^before i (?:leave|go|start)\b[^,.;]*? i (?:must|need to|have to|want to) know ", "tell me "),
     (r"^(?:nobody|no one) (?:is|are) (?:allowed )?to [^.;]*[.;] ", ""),
     (r",? for (?:job|case|incident|ticket|order|report|ref|reference|task|file) (?:no\.? |number |#)?[\w-]*\d[\w-]*\b", ""),
@@ -198,7 +153,6 @@ REMARKS = (
     ),
     (r",? (?:and )?hold(?: it| there| position| steady)?\W*$", ""),
     (r",? there should be (?:about |around |at least )?(?:\d+|\w+)\W*$", ""),
-    (r",? there(?:['’]?s| is| are)? (?:meant|supposed) to be (?:\d+|\w+)\W*$", ""),
     (
         r"^before (?:i|we) (?:turn off|set off|drive|leave|come|head|park)\b[^,.;]*, (?=(?:is|are|how|what|can|could"
         r"|has|have|do|does)\b)",
@@ -234,10 +188,8 @@ REMARKS = (
         "",
     ),
     (r",? (?:or )?till i get (?:out )?there\b", ""),
-    (r",? so i know which way to \w+\W*$", ""),
     (r", (?:otherwise|if not,?) leave it as it is\W*$", ""),
     (r", can hear \w+(?: \w+)*\W*$", ""),
-    (r"[.?!] the \w+ (?:arrive|come|leave|start|are coming|are due)\b[^?!.]*\W*$", "?"),
     (r"\bthe sky is taking up half of the picture\b", "it is too high"),
     (r",? the lower edge of the [\w ]+ is (?:just )?cut off\W*$", ""),
     (r", i (?:need|want|have) to (?:see|check|know|test) (?:if|whether) it\b[^.;?]*\W*$", ""),

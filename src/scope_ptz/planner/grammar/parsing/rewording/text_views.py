@@ -5,16 +5,9 @@ from __future__ import annotations
 _PICTURES = "photo|picture|pic|snap|shot|still"
 
 VIEWS = (
-    (
-        r"^(?:i['’]ve forgotten|i forget) what the (?:saved )?(?:spots|positions|presets|views) are called, (?:can"
-        r"|could) you read me the list\W*$",
-        "list the presets",
-    ),
     (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
-    (r"\bget (?:me |us )?(?:closer|nearer) to (?=\w)", "zoom in on "),
     (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
     (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),
-    (r"^(?:a )?closer look at (?=the |that |this )", "zoom in on "),
     (r"^for the next ([\w ]+? (?:seconds|minutes)), ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
     (rf"\b((?:{_PICTURES})\b.*)\btake one there(?: as well| too)?\b", r"\1take a picture"),
     (rf"\bfinish with a ({_PICTURES})\b", r"then take a \1"),
@@ -35,7 +28,6 @@ VIEWS = (
     (r"^(?:please )?(?:photo|pic) (?=every|each|all the)", "photograph "),
     (r"\bget in (?:nice and )?(?:close|tight) (?:on|to) ", "zoom in on "),
     (r"^tight (?:in )?on ", "zoom in on "),
-    (r"\bframe up ", "zoom in on "),
     (
         r"^where(?:['’]?s| is) ((?:the|that|my|our) [^?.!,;]+?)(?: got to| gone)?[?,]\s*(?:zoom (?:in )?(?:on|to)"
         r"|find|show me) (?:it|him|her|them)(?: for (?:me|us)| and show (?:me|us))?\s*[.!]*$",
@@ -44,7 +36,6 @@ VIEWS = (
     (r"^keep an eye on (.+?),? and follow (?:it|him|her|them)(?: for (?=.+$)|$)", r"follow \1 for "),
     (r"\b(photo|picture|still|snap|pic)\b(.*?) and do the same(?: thing)? there\b", r"\1\2 and take a picture"),
     (r"\btake another(?: one)?(?: there)?(?=[.,;!?]|$| and\b| then\b)", "take another picture"),
-    (rf"\b((?:{_PICTURES}|photograph)\b.*)\btake (?:a |the )?(?:second|third) one\b", r"\1take a picture"),
     (r"\bcloseup\b", "close-up"),
     (r"^(?:i )?need to see ([^,.]+?)[,.] zoom (?:in )?(?:to|on|onto) it\b", r"zoom in on the \1"),
     (
@@ -52,15 +43,10 @@ VIEWS = (
         r"closely| in detail)?\W*$",
         r"zoom in on \1",
     ),
-    (r"(?<=\d)x for (?:a|one|the) (?:photo|picture|shot|snap|still)\W*$", "x and take a picture"),
     (r"^(?:stick|stay|keep) (?:with|on) (?=(?:the|that|him|her|it|them|this)\b(?! (?:left|right|move|pan|tilt|zoom)))", "follow "),
     (r"\b(?:i )?(?:need|want|would like|['’]d like)(?: to)? (?:see|look at) (?:more close|closer|more closely) ", "zoom in on "),
     (
         r"\b(?:i )?(?:need|want|would like|['’]d like) to (?:see|look at) ([\w ]+?) (?:up close|close up|close-up|from close up)",
-        r"zoom in on \1",
-    ),
-    (
-        r"\b(?:show (?:me|us)|let me see) ((?:the|that|this|my|our) [\w ]+?) (?:up close|close up|close-up|from close up)",
         r"zoom in on \1",
     ),
     (
@@ -71,7 +57,6 @@ VIEWS = (
     (r"^(?:a )?close(?:r)?(?: |-)?(?:look|view|up), (?:the )?(?=[a-z][\w -]*\W*$)", "zoom in on the "),
     (rf"\b(?:do|get|give) (?:us|me) (?=(?:a|an|another|one|some) (?:(?!close)\w+ ){{0,2}}(?:{_PICTURES})\b)", "take "),
     (rf"\b((?:{_PICTURES})) of what(?:ever)?(?:['’]s| is) (?:up |down |over |out )?there\b", r"\1"),
-    (r"^(?:i )?(?:need|want|get)(?: me)?(?: an?)? close[ -]?up of ", "zoom in on "),
     (r"\bget ((?:the|that) [\w ]+?) (?:up close|nice and close|close up)(?=\W*$)", r"zoom in on \1"),
     (
         r"^i (?:want|need|would like) to see ((?:the|that) [\w ]+?)(?: from (?:near|close)| up close| better| properly)?[,.] zoom "
@@ -105,10 +90,6 @@ VIEWS = (
         r"^what are (?:the|all the|your|our) (?:saved |stored )?(?:positions|presets|views|spots) (?:called|named)\b",
         "list the presets",
     ),
-    (
-        r"^what (?:spots|positions|views|presets|places) (?:have you|do you have|are) (?:saved|stored)(?: in [\w ]+)?\W*$",
-        "list the presets",
-    ),
     (r"^(?:a )?close-?up of (the [\w ]+?) (?:required|needed|wanted|please)\W*$", r"zoom in on \1"),
     (
         r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?),? (?:duration|for|time)?:? ?(\d+) ?(s"
@@ -120,7 +101,6 @@ VIEWS = (
         r"\bi (?:should|would|['’]d) be (?:very |most )?(?:grateful|glad|obliged) for a (?:closer|better|good) look at ",
         "zoom in on ",
     ),
-    (r"^i (?:should|would|['’]d) like a (?:closer|better) look at ", "zoom in on "),
     (r"^camera on (?:the )?([\w ]+?), close\W*$", r"zoom in on the \1"),
     (r"^(?:photo|picture|pic|snap|shot|still) here(?: first)?, (?:then|and then) ", "take a picture, then "),
     (
@@ -132,9 +112,7 @@ VIEWS = (
     (r"^for the next ([\w ]+? (?:seconds|minutes)), please ((?:follow|track)\b.*?)\W*$", r"\2 for \1"),
     (r"\bi (?:should|would|['’]d) (?:like|love|want) to see (the [\w ]+?) more closely\b", r"zoom in on \1"),
     (r"\bi (?:should|would) be (?:delighted|pleased|glad|happy|grateful) to have a closer look at ", "zoom in on "),
-    (r"\bi (?:should|would) be (?:most |very )?(?:obliged|grateful) if you (?:could|would) let me see ", "show me "),
     (r"^eyes on (?=the |that )", "zoom in on "),
-    (r"^keep on (?=the |that )(.+? for )", r"follow \1"),
     (r"^(?:what|which) (?:places|presets|views|spots) has (?:this|the) camera got(?: saved| stored)?\b[^?.]*", "list the presets"),
     (
         rf"^(take (?:a|one) (?:{_PICTURES}|photograph)) before and after (pan|tilt|zoom|turn)(?:n)?ing (.+?)\W*$",
@@ -142,7 +120,6 @@ VIEWS = (
     ),
     (r"^(?:could|may|can) i have (?=an? (?:photo|picture|snap|shot|still)\b)", "take "),
     (r"\b(get|bring) ((?:the|that) [\w ]+?) nice and close(?: for (?:me|us))?", r"zoom in on \2"),
-    (r"^let['’]?s see ((?:the|that) [\w ]+?) (?:up close|close up)\b", r"zoom in on \1"),
     (
         r"^(?:an? )?(image|picture|photo|still|snapshot)(?: of (?:the )?(?:present|current) (?:view|scene))? "
         r"(?:required|needed|wanted)\W*$",
@@ -152,20 +129,9 @@ VIEWS = (
     (r"\bget (?:a )?close(?:r|-up)? (?:view|look|shot) (?:of|at) ", "zoom in on "),
     (r"\bget ((?:the|that) [\w ]+?) (?:nicely |right |properly )?in (?:the )?(?:frame|shot)\b", r"zoom in on \1"),
     (r"\b(?:give|get|show) (?:me|us) ((?:the|that) [\w'’ ]+?) in close[- ]?up\b", r"zoom in on \1"),
-    (r"\b(follow|track) for ([\w ]+? (?:minutes?|seconds?)) (the [\w ]+)", r"\1 \3 for \2"),
-    (
-        r"^.*\b(?:asked|asking|asks) about (the [\w ]+?), so (?:please |can you |could you )?(?:locate|find|zoom in on) (?:it|them)"
-        r"(?: and zoom in on (?:it|them))?\W*$",
-        r"zoom in on \1",
-    ),
     (
         r"\bkeep (the [\w'’ -]+?) in (?:view|frame|shot|the picture) as (?:it|he|she|they) (?:moves?|goes?|walks?|drives?)\b",
         r"follow \1",
-    ),
-    (
-        r"\bi (?:would|should) be (?:ever so |very |most |so )?(?:grateful|glad|obliged) for (?=an? (?:picture|photo"
-        r"|photograph|image)\b)",
-        "take ",
     ),
     (
         r"\b(track|follow) (?:the )?(?!it\b|him\b|her\b|them\b)([a-z][\w ]*?)\. (\d+) ?(s|secs?|seconds?|mins?|minutes?)\W*$",
@@ -186,10 +152,8 @@ VIEWS = (
     (r"\bget (?:me )?((?:the|that) [\w ]+?) in close\b", r"zoom in on \1"),
     (r"^i want to see ((?:the|that) [\w'’ ]+?), bring it up close\W*$", r"zoom in on \1"),
     (r"\bmake ((?:the|that) [\w ]+?) fill the (?:picture|frame|view|screen)\b", r"zoom in on \1"),
-    (r"^locate ", "find "),
     (r"^(?:i )?can['’]?t see (?:the )?([\w ]+?) anywhere, (find|locate) it(?: for me)?\W*$", r"find the \1"),
     (r"^where(?:['’]s| is) ((?:that|the) [\w ]+?) got to, find it\b[^.;]*$", r"find \1"),
-    (r"\bkeep with ((?:the|that) [\w ]+?) (?=for )", r"follow \1 "),
     (r"\bwhat the camera is (?:looking|pointing) at(?: right now| now)?, it goes in (?:the|my) [\w ]+\W*$", "this"),
     (
         r"\b(?:pics?|photos|pictures) of (?:the )?([\w ]+?) and (?:the )?([\w ]+?)(?: pls| please)?, one each\W*$",

@@ -12,16 +12,28 @@ _LEAVE_OUT = (
 )
 
 WITHDRAWALS = (
-    (r",? (?:and )?(?:don['’]?t|do not) move (?:after|afterwards|after that)\W*$", ""),
-    (r",? but (?:please )?(?:do not|don['’]?t) (?:photograph|film|record) (?:anybody|anyone|people|them)\W*$", ""),
-    (r"^count (the [\w ]+?), (?:(?:actually|no|nah|wait)[, ]+)*forget \1, (?=count\b)", ""),
     (
-        r"^(follow|track|count) [^,.]+, (?:(?:actually|nah|no|wait)[, ]+)+(?:don['’]?t|do not) \1 (?:it|him|her"
-        r"|them), (?:just )?(?=\w)",
+        r"^(?:i['’]ll|i will) (?:do|pan|tilt|zoom|handle|move|swing|turn)\b[^,.;]*[,.;] (?:you )?(?=(?:just |please )?(?:count"
+        r"|pan|tilt|zoom|take|go|tell)\b)",
         "",
     ),
+    (r"^leave the (?:pan|tilt|zoom)(?:ning|ting|ing)? to me(?: and|,) ", ""),
+    (r"^forget (?:about )?(?:the )?(?:panning|tilting|zooming|zoom|pan|tilt), ", ""),
+    (r"\bwhat am i saying\b", "i mean"),
+    (r"\bon no account (?=\w)", "do not "),
+    (r"\b(do not|don['’]?t) (?:on any account|under any circumstances|for any reason) ", r"\1 "),
+    (r"\b(?:do not|don['’]?t) move anything\b", "don't move"),
+    (
+        r"[.;,] the (photograph|photo|picture|pan|tilt|zoom|count) (?:is|are) (?:not|no longer) (?:necessary|needed"
+        r"|required)(?: after all| any more)?\W*$",
+        r". No, skip the \1.",
+    ),
+    (r"(?<=\w) (?=(?:scratch that|no wait|actually no)\b)", ", "),
+    (r"\b(scratch that|no wait|actually no) (?=\w)", r"\1, "),
+    (r"\b(?:no )?i tell a lie,? ", "sorry, "),
+    (r",? (?:and )?(?:don['’]?t|do not) move (?:after|afterwards|after that)\W*$", ""),
+    (r",? but (?:please )?(?:do not|don['’]?t) (?:photograph|film|record) (?:anybody|anyone|people|them)\W*$", ""),
     (r",? don['’]?t (?:follow|track|zoom in on) (?:nobody|no one|anybody|anyone)\W*$", ""),
-    (r"^i was (?:going|about) to ask (?:you )?(?:for|to) [^,]+, but that(?:['’]s| is) no longer (?:needed|necessary), so ", ""),
     (
         r"[;,]? (?:and |but )?(?:please )?(?:you must not|do not|don['’]?t) zoom in on (?:anyone|anybody|anything"
         r"|people)\b[^.;]*\W*$",
@@ -118,11 +130,6 @@ WITHDRAWALS = (
         r"^[^.;]+[.;] (?:(?:actually|no|wait|sorry)[, ]+)+forget it,? [^.;,]+[.;,] (?:just |only )?(?=(?:go|take|count"
         r"|zoom|pan|tilt|home)\b)",
         "",
-    ),
-    (
-        r"^(?:follow|track) ((?:the|that) [\w ]+?),? (?:(?:no|oh|wait|actually)[, ]+)+never mind that,? (?:just "
-        r")?zoom in on (?:it|him|her|them)\b",
-        r"zoom in on \1",
     ),
     (
         r"^(?:follow|track|zoom in on|find|look at) [^,.]+[,.]+ *(?:(?:no|actually|wait|oh)[, ]+)*(?:cancel that,? [^,.]+,"

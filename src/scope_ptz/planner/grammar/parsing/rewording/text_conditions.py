@@ -1,0 +1,36 @@
+"""Patterns for conditions and for the order of commands, with plainer wordings in their place."""
+
+from __future__ import annotations
+
+_IFS = "if|when|once|as soon as|in case|provided|unless|until|till|while"
+_UNSEEN = (
+    r"(?:you|we|i) (?:can['’]?t|cannot|can not|don['’]?t|do not|aren['’]?t|are not) "
+    r"(?:see|seeing|find|finding|spot|notice|make out)"
+)
+_NOUN_END = (
+    r"(?=,| (?:go|zoom|pan|tilt|take|turn|move|follow|track|count|return|come|then|otherwise|please|look|swing|tell"
+    r"|read|find|show)\b"
+    r"|[.;?!]|$)"
+)
+"""Where the noun phrase of a condition ends."""
+
+CONDITIONS = (
+    (rf"\b({_IFS}) {_UNSEEN} (?:anyone|anybody|any people){_NOUN_END}", r"\1 there is nobody"),
+    (rf"\b({_IFS}) {_UNSEEN} (?:any|an?) ([\w -]+?){_NOUN_END}", r"\1 there is no \2"),
+    (rf"\b({_IFS}) {_UNSEEN} (the [\w -]+?){_NOUN_END}", r"\1 \2 is not in view"),
+    (rf"\b({_IFS}) ((?:the |an? )[\w -]+?) has left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 is not in view"),
+    (rf"\b({_IFS}) ((?:the )[\w -]+?) have left(?! (?:the|an?|his|her|its|it|my|some)\b)", r"\1 \2 are not in view"),
+    (r",? (?:and )?once it(?:['’]s| is) there,? (?:please )?(?=\w)", ", then "),
+    (
+        r",? (?:and,? |then,? )?(?:once|when|after) (?:that|the|this) (?:move|movement|turn|pan|tilt|zoom) (?:has|is) "
+        r"(?:finished|done|complete|completed|ended|over),? ",
+        ", then ",
+    ),
+    (r",? when you(?:['’]ve| have) (?:done|finished)(?: that| this| so)?,? ", " "),
+    (r",? (?:and,? )?once (?:we|you) are there,? ", ", then "),
+    (r"\bonce there(?:['’]s| is) ", "when there is "),
+    (r"\bonce there are ", "when there are "),
+    (r"^(?:is|are) there ([^?,]+)\? then ([^?]+)", r"if there is \1, \2"),
+    (r"^(is|are) there ([^?,]+), (follow|zoom in on) (it|them|him|her)\b", r"if there \1 \2, \3 \4"),
+)
+"""Patterns with the words that replace them."""
