@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech, verb_form
 from scope_ptz.planner.grammar.lexing.lexicon import known_words, spelling_lists
 
@@ -37,6 +38,7 @@ def corrected_word(word: str) -> str:
         return swapped[0]
     close = [known for known in lists["short"] if (_is_typing_error if len(word) < _MIN_CHARS else within_one_edit)(word, known)]
     close = close or _likely_words(word)
+    close = [known for known in close if known in NUMBER_WORDS] or close  # "tweny" is "twenty", not "teeny"
     return close[0] if len(close) == 1 and not parts_of_speech(word) else word
 
 

@@ -41,7 +41,7 @@ _SEEING = (
     r"(BE (there)? VISIBLE?|BE there|(can|do|did|could) SELF (ADVERB|FILLER)* (SEE|COUNT|READ)|there BE|SELF "
     r"(can|could|do|have)? (SEE|have|got (up|out|over)?)|HAVEV SELF (got (up|out|over)?)?|do we have|"
     r"can be SEE-ED|can be seen|BE VISIBLE|"
-    r"are we SEE-ING|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
+    r"are we (SEE-ING|AIM-ING at)|you are SEE-ING|exist|VISIBLE|BE|in total|in all|(what|that)? SELF (can)? (SEE|FIND)|"
     r"altogether)"
 )
 

@@ -81,6 +81,8 @@ def _pictured(source: Source, rest: Sequence[Lexeme], times: int, words: Sequenc
         rest,
     ):
         return Snap(times)
+    if match_start("of (whatever|what) (BE|'s|SELF|CAMERA)", rest):
+        return Snap(times)  # "take a picture of whatever is there now"
     if not rest or rest[0].word in {"for", "as"} or match_start("of (this|these) FREE", rest):
         return Snap(times)
     if match := full_match(

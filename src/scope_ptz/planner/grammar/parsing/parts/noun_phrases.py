@@ -80,8 +80,8 @@ def thing_of(source: Source, lexemes: Sequence[Lexeme]) -> Thing | None:
     is_list = search("(AND|OR) (the|a|an)|COMMA", lexemes) and not search("between", lexemes)
     if is_list or not is_noun_phrase(lexemes):
         return None  # several things
-    while len(lexemes) > 1 and lexemes[-1].word in {"there", "here"}:
-        lexemes = lexemes[:-1]  # "at least 3 awnings there"
+    while len(lexemes) > 1 and (lexemes[-1].word in {"there", "here"} or (lexemes[-1].word == "in" and lexemes[-2].has("FREE"))):
+        lexemes = lexemes[:-1]  # "at least 3 awnings there", "if there is a tanker in"
     if lexemes[0].word == "there" and len(lexemes) > 1:
         lexemes = lexemes[1:]  # "there a van" of "is there a van"
     first = 0

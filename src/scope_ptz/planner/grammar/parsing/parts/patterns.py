@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.required_words import Requirement, is_met, requirement_of
 
-_NAME = re.compile(r"\\Z|\?P<\w+>|\?P=\w+|\?[:=!]|\?<[=!]|[A-Z][A-Z-]*|[a-z][a-z_']*|_|\s+")
+_NAME = re.compile(r"\\Z|\?P<\w+>|\?P=\w+|\?[:=!]|\?<[=!]|[A-Z][A-Z-]*|'?[a-z][a-z_']*|_|\s+")
 
 
 class Match:

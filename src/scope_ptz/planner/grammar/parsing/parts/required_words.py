@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Set
 
-_TOKEN = re.compile(r"\(\?(?:P<\w+>|:)|(?P<look>\(\?<?[=!])|\\.|[A-Za-z][A-Za-z_'-]*|\s+|[()|]|[?*+]\??|\{\d*,?\d*\}\??|.")
-_NAME = re.compile(r"[A-Za-z]")
+_TOKEN = re.compile(r"\(\?(?:P<\w+>|:)|(?P<look>\(\?<?[=!])|\\.|'?[A-Za-z][A-Za-z_'-]*|\s+|[()|]|[?*+]\??|\{\d*,?\d*\}\??|.")
+_NAME = re.compile(r"'?[A-Za-z]")
 _OPTIONAL = ("?", "*", "{0", "{,")
 
 Requirement = bool | str | tuple[str, tuple["Requirement", ...]]

@@ -37,7 +37,7 @@ _TIMES = (
 )
 MAX_TIMES = 50
 SECONDS = (
-    r"((?P<a>DET|about|AMOUNTISH|next|full|whole|good|solid|LIMIT)* "
+    r"((?P<a>DET|about|AMOUNTISH|interval of|period of|next|full|whole|good|solid|LIMIT)* "
     r"(?P<seconds>NUM)? (?P<part>FRACTION)? (DET|of|of a)* (?P<unit>SECONDS|"
     r"MINUTES|HOURS) (and (DET)? (?P<more>FRACTION|half)|and? (?P<rest>NUM) SECONDS?)?)"
 )
@@ -51,6 +51,8 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
         "(?P<body>_+?) COMMA? (AIM-ING|SCAN-ING|looking|checking) (over|across|through)* (?P<scope>FULL)", lexemes
     ):
         lexemes = (*seen["body"], *seen["scope"])  # "the number of flags, looking over the whole area"
+    if all_around := full_match("(?P<body>_+) COMMA SCAN-ING", lexemes):
+        lexemes, view = all_around["body"], "full"  # "how many trailers, looking all around?"
     changed = True
     while changed and len(lexemes) > 1:
         changed = False

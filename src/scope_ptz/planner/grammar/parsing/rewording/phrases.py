@@ -48,10 +48,16 @@ _FOLLOWED_AT_PLACE = (
 )
 """A thing to follow at a preset, then a duration: "follow the van at the gate for 20 seconds"."""
 
+_CHECKED_AT_PLACE = (
+    "(FILLER|COMMA)* (TELL|SEE) (me|us)? (?P<place>(at|in) (EVERY (of)? (DET)? PRESETNOUN|(DET)? PRESET PRESETNOUN?))"
+    " (whether|if) _"
+)
+"""A place, then what to find out there: "check at each preset whether a lamp is broken"."""
+
 
 def reworded(lexemes: Sequence[Lexeme]) -> tuple[Lexeme, ...]:
     """Replace some wordings: "I want to see the yard" becomes "let me see the yard", and "return left" becomes "go back left"."""
-    lexemes = _with_place_of_following_first(_without_in_steps_of(with_compound_nouns(lexemes)))
+    lexemes = _with_place_first(_without_in_steps_of(with_compound_nouns(lexemes)))
     lexemes = _without_yes_or_no(with_presets_reworded(lexemes))
     lexemes = _count_at_list(_picture_wanted_first(_at_places_first(lexemes)))
     out: list[Lexeme] = []
@@ -77,9 +83,9 @@ def _at_places_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     return [x.reworded(*changed[id(x)]) if id(x) in changed else x for x in kept]
 
 
-def _with_place_of_following_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
-    """Return lexemes with the preset of a thing to follow moved to the front: "at the gate, follow the van for 20 seconds"."""
-    match = match_start(_FOLLOWED_AT_PLACE, lexemes)
+def _with_place_first(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes with the preset of a thing to follow or check first: "at the gate, follow the van for 20 seconds"."""
+    match = match_start(_FOLLOWED_AT_PLACE, lexemes) or match_start(_CHECKED_AT_PLACE, lexemes)
     if match is None:
         return lexemes
     place = match["place"]

@@ -11,12 +11,14 @@ SUBJECT = (
     r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ "
     r"(?:has|have|is|are|was|were|says?|said|thinks?|reckons?|swears?|keeps?|loves?|likes?|just)"
     r"|(?:yesterday|earlier|last (?:night|week)|today|tonight) (?:it|he|she|they|we|i)"
+    r"|(?:an?|one of (?:the|our|my)|(?:the|our|my) \w+) \w+ "
+    r"(?:says|said|thinks|thought|reckons|swears|told|is asking|are asking|is waiting)"
 )
 """Words with which a statement begins, even if it is not separated by punctuation."""
 
 NOUN_SUBJECT = (
     r"the (?:boss|gaffer|manager|weather|lads?|sun|\w+ shift)|people"
-    r"|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)"
+    r"|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)|(?:the )?\w+ (?:is|are) asking|only the [\w' ]+ (?:is|are)"
 )
 """Words with which a statement begins if it is separated by punctuation."""
 

@@ -29,7 +29,7 @@ _RETRACTION = (
 
 _SLIP = (
     "hang on|hold on|hang_on|hold_on|"
-    "no|nah|naw|nope|sorry|wait|oops|gah|argh|aargh|ugh|damn|dammit|drat|er|erm|actually|OR? rather|(make|made) (that|it)"
+    "no|nah|naw|nope|sorry|wait|oops|gah|argh|aargh|ugh|damn|dammit|drat|er|erm|actually|OR? rather|OR no|(make|made) (that|it)"
 )
 """Words that retract what was said before only if what follows replaces a part of it: "wait, zoom in" may be an extra command,
 and "no zoom" forbids zooming."""

@@ -27,6 +27,9 @@ def reworded_in_context(before: Sequence[Lexeme], lexeme: Lexeme, after: Lexeme 
     ends = after is None or after.has("STOP", "QUESTION")
     if lexeme.word == "an" and after is not None and after.word in _COMMANDS:
         return [lexeme.reworded("and", "AND", "GLUE")]  # "go to the gate an tilt down 6"
+    begins_duration = after is not None and (after.has("NUM", "SECONDS", "MINUTES") or after.word == "few")
+    if lexeme.word in {"next", "following"} and last is not None and last.has("DET") and begins_duration:
+        return []  # "for the next two minutes"
     if lexeme.word == "neither" and search("IF|WHEN|UNLESS|UNTIL", before):
         return [lexeme.reworded("no", "NONE", "DET")]  # "if you see neither people nor cars"
     if lexeme.word == "nor" and any(x.has("NONE") for x in before):

@@ -8,6 +8,8 @@ _CLOSINGS = (
 )
 
 COURTESIES = (
+    (r",? no (?:rush|hurry|panic|pressure) at all\b", ""),
+    (r", (?:would|will|could|can) you(?=[,.!?]|$)", ""),
     (rf"(?:(?<=[.?!])|,)\s*{_CLOSINGS},? {_NAMES}\s*[.!]?$", ""),
     (r"\s*[\U0001F300-\U0001FAFF\u2600-\u27BF]+", ""),
     (r",? by (?:here|there)(?=\W*$)", ""),

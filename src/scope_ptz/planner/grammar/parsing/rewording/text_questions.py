@@ -76,7 +76,8 @@ QUESTIONS = (
     (r"\b(?:over|across|through) the (?:full|whole|entire) 360(?: degrees)?", "all around"),
     (r"^more (\w+) or more (\w+)(?: in view| here)?\?(?: count both)?\W*$", r"are there more \1 than \2?"),
     (
-        r"^(if (?:the|a|an|any)\b[^,]*? (?:is|are)\b[^,]*?) (?=(?:follow|zoom|take|pan|tilt|count|track|snap|tell)\b)",
+        r"^(if (?:the|a|an|any)\b[^,]*? (?:is|are)\b[^,]*?) "
+        r"(?=(?:(?:could|can|would|will) you )?(?:follow|zoom|take|pan|tilt|count|track|snap|tell)\b)",
         r"\1, ",
     ),
     (r"\b(presets have you got) in there\b", r"\1"),

@@ -16,6 +16,7 @@ _MUST_NOT = rf"(?:{_NOT_ALLOWED}(?: in| on| there| here| it)*|mustn['’]t|shoul
 _SHARES = r"(?:a |one |two |three )?(?:half|thirds?|quarters?|full|empty)(?: full| empty)?"
 
 REMARKS = (
+    (r",? (?:and )?i(?: just)?(?: want| need|['’]d like| would like) to show (?:him|her|them|(?:my|our) \w+)\W*$", ""),
     (rf"^([^,]*),\s*(?:{_VOCATIVES})(?=\s*[,.!?;]|\s*$)", r"\1"),
     (r",\s*(?:grand|lovely|perfect|ta|cheers)\s*[.!]?$", ""),
     (r"^righto[,.!]? ", ""),

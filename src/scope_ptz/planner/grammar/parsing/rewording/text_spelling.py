@@ -7,6 +7,8 @@ _DIGITS = {
 }  # fmt: skip
 
 WORDS = {
+    "execute": "do",
+    "perform": "do",
     "abit": "a bit",
     "alot": "a lot",
     "cld": "could",
@@ -45,6 +47,7 @@ WORDS = {
 """Misspelt, shortened and dialect words with their standard forms."""
 
 SPELLING = (
+    (r"\bcarry out (?=an? |the )", "do "),
     (r"(?<!['’\w])th?['’](?=[a-z])", "the "),
     (r"\bo['’](?= \w)", "of"),
     (r"\bw/ ?(?=\w)", "with "),

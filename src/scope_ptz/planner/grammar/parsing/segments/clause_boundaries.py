@@ -125,6 +125,10 @@ class ClauseBoundaryDetector(SubordinateClauseDetector):
             return self._is_remark(i)  # "how many vans are there, we start in ten minutes"
         return self._is_tour() and bool(match_start(r"(to|on|over|back|at|DET|PRESETNOUN)* (PRESET|HOME)", rest))
 
+    def _is_tour_or_motion(self) -> bool:
+        """Return whether the clause so far is a command that moves the camera."""
+        return not self.marker and not self._is_question() and (self._is_tour() or self._is_motion())
+
     def _until_separator(self, i: int) -> tuple[Lexeme, ...]:
         """Return the lexemes from a position to the next separator or the end of the sentence."""
         later = range(i + 1, len(self.lexemes))
@@ -174,11 +178,20 @@ class ClauseBoundaryDetector(SubordinateClauseDetector):
             return True
         if self.marker == "IF" and full_match(_NO_TROUBLE, self.words) and match_start("(MODAL|DOV) SELF", self.lexemes[i:]):
             return True  # "if it is not too much bother could you ..."
+        states = self.marker in {"IF", "UNLESS", "WHEN"} and search("BE|HAVEV|SEE", self.words[:-1])
+        if states and match_start(f"MODAL you (FILLER|ADVERB)* ({'|'.join(VERBS)})", self.lexemes[i:]):
+            return True  # "if the gate is open could you take a picture"
         if self.marker in {"IF", "UNLESS"} and search("BE|HAVEV|SEE", self.words[:-1]):
             takes = "get (me|us) DET? (PICTURE|CLOSER|FREE)"
             allows = "SELF (can|may|should|must) (PAN|TILT|ZOOM|TURN|CARRY|SWITCH|TAKE|TRACK|COUNT)"
             if match_start(f"{takes}|{allows}", self.lexemes[i:]):
                 return True  # "if there is no queue you can go home"
+        if (
+            before.has("PRESET", "HOME", "NUM", "DEG")
+            and self._is_tour_or_motion()
+            and match_start("(do|MODAL) not _", self.lexemes[i:])
+        ):
+            return True  # "go to the gate don't take a picture"
         if lexeme.word == "without" and match_start(WITHOUT_MOVING, self.lexemes[i:]) and not self._is_question():
             return True  # "pan left 20 without zooming"
         if match_start(

@@ -54,7 +54,7 @@ class SubordinateClauseDetector(SegmentationState):
             lexeme.word in {"so_that", "so"}
             and self.words
             and match_start("(DET|SELF|PRON|FREE) _", rest)
-            and self._only_explains(rest)
+            and (self._only_explains(rest) or (match_start("(it|they|PRON)", rest) and self._zooms_in_on_thing()))
         ):
             return "REASON"
         if (
@@ -159,6 +159,10 @@ class SubordinateClauseDetector(SegmentationState):
         )
         pictures = any(x.has("PICTURE") for x in self.words) and any(x.has("TAKE", "SNAP") for x in self.words)
         return not any(x.has("FREE") for x in self.words) and (moves or sized_zoom or pictures)
+
+    def _zooms_in_on_thing(self) -> bool:
+        """Return whether the clause so far names a thing to zoom in on: "frame the tanker so that it fills the picture"."""
+        return any(x.has("FREE") for x in self.words) and self.words[0].has("SHOW", "ZOOM", "ENLARGE", "FIND", "AIM", "SNAP")
 
     def _only_explains(self, rest: Sequence[Lexeme]) -> bool:
         """Return whether the words after "so that" only state a purpose, without an angle or a thing to zoom in on."""
