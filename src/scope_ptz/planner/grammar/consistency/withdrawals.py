@@ -19,8 +19,7 @@ _STATEMENTS = (
         re.IGNORECASE,
     ),
     re.compile(
-        rf"[,.;] (?:my \w+ |he |she |i |we |they )?(?:says? |said |think |thinks |reckons? )?{_NUMBER}(?: degrees| "
-        rf"seconds)? (?:is|will be) "
+        rf"[,.;] (?:my \w+ |he |she |i |we |they )?(?:says? |said |think |thinks |reckons? )?{_NUMBER}(?: degrees)? (?:is|will be) "
         rf"(?:enough|plenty|too much|fine|right|better)\b",
         re.IGNORECASE,
     ),

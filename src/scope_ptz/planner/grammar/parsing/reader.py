@@ -127,7 +127,7 @@ class Reader:
         if has_question_mark and match_start("you (SEE|spot|notice) (ANY|SOMEONE|DET|NUM)", lexemes):
             lexemes = (Lexeme("do", lexemes[0].start, lexemes[0].start, frozenset({"DOV"})), *lexemes)  # "you see a van?"
         if enough := full_match(
-            "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT)) ((MODAL|should|ought to|WRAPPER) "
+            "(?P<body>_+ (LEFT|RIGHT|UP|DOWN|IN|OUT|DEG|NUM|LITTLE|LOT|SECONDS|MINUTES)) ((MODAL|should|ought to|WRAPPER) "
             "(do|DOACT|do_it|suffice|be (enough|ideal|great|perfect|good|fine|nice|lovely|better|grand|plenty|FILLER))|"
             "BE (enough|plenty)) (nicely|fine|FILLER)*",
             lexemes,

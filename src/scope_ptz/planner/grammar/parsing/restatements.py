@@ -44,6 +44,7 @@ def repeats_previous_size(move: Move, clause: Clause) -> bool:
     if half_turn is not None and half_turn["number"][0].value == _HALF_TURN_DEG:
         return move.parts == (Turn("pan", 1, Amount("degrees", _HALF_TURN_DEG)),)  # "turn around, a full 180"
     at_limit = any(isinstance(part, Zoom) and part.kind in {"in", "out"} for part in move.parts)
+    at_limit = at_limit or any(isinstance(part, Turn) and part.amount == Amount("limit") for part in move.parts)
     if at_limit and full_match(f"(FILLER)* ({AS_FAR_AS}|LIMIT) (FILLER)*", clause.lexemes):
         return True  # "zoom right in, as far as it goes"
     match = full_match("(FILLER|AMOUNTISH)* ((?P<little>LITTLE)|(?P<lot>LOT)) (in fact|FILLER)*", clause.lexemes)

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, VERBS
 _MODIFIERS = frozenset({
     "tilt", "zoom", "pan", "degree", "film", "show", "record", "call", "help", "check", "centre", "center", "camera", "search",
     "watch", "track", "tracking", "point", "turn", "head", "focus", "shot", "cover", "stop", "step", "home", "picture", "photo",
-    "capture", "swing", "look", "tell", "face", "parking", "moving", "end", "spot", "scan", "frame",
+    "capture", "swing", "look", "tell", "face", "parking", "moving", "end", "spot", "scan", "frame", "tail",
 })  # fmt: skip
 """Command words that can begin a compound noun."""
 

@@ -6,6 +6,7 @@ import re
 
 SUBJECT = (
     r"i|i['’]?m|i['’]?ve|i['’]?ll|i['’]?d|we['’]re|we['’]?ve|he|he['’]?s|he['’]?d|she|she['’]s|they|they['’]?re|they['’]?ve|it['’]s|that['’]?s"
+    r"|one (?:seems|appears)"
     r"|there['’]?s|there (?:is|are|was|should|seems)|someone|somebody|something|nobody|everyone|everybody|some(?:one"
     r"|body|thing)['’]?s|nobody['’]?s"
     r"|(?:my|our) (?:boss|mum|dad|wife|husband|mate|lad|lads|old|eyes|sister|brother|kids|manager)|(?:my|our) \w+ "
@@ -18,7 +19,8 @@ SUBJECT = (
 
 NOUN_SUBJECT = (
     r"the (?:boss|gaffer|manager|weather|lads?|sun|\w+ shift)|people"
-    r"|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)|(?:the )?\w+ (?:is|are) asking|only the [\w' ]+ (?:is|are)"
+    r"|the \w+ (?:say|says|think|thinks|reckon|reckons|swear|swears)"
+    r"|(?:the )?\w+ (?:is|are) asking|\w+ (?:says|reckons)|only the [\w' ]+ (?:is|are)"
 )
 """Words with which a statement begins if it is separated by punctuation."""
 
@@ -42,6 +44,8 @@ EXCLAMATION = re.compile(
     r"|(?:i |we )?(?:need|want|have) to (?:know|be sure|make sure) (?:that )?(?:i|we|it|they|he|she)\b[\w' ]*"
     r"|(?:just )?(?:wondering|curious|checking|hoping) (?:if|whether|that)? ?(?:i|we|they|he|she|it)\b[\w' ]*"
     r"|(?:first|second|third) (?:time|day|night|week|shift)\b[\w' ]*"
+    r"|(?:just )?(?:trying|hoping|doing|writing|filling|working|waiting|getting|making|thinking|planning|preparing"
+    r"|sorting)\b[\w' ]*"
     r"|looks? (?:an? (?:bit|little)|like|as|to be)\b[\w' ]*"
     r"|(?:the )?(?:sun|wind|light|glare|rain|dust|fog|mist|snow)s? \w+ing\b[\w' ]*"
     r"|(?:i['’]?m|i am) (?:ever |so |very |terribly )*sorry\b[\w' ]*|sorry\b[\w' ]*|forgive [\w' ]+|pardon me\b[\w' ]*)",

@@ -22,6 +22,7 @@ _PAUSE = "(COMMA|STOP|DASH|COLON)"
 _RETRACTION = (
     "(i_mean|i_meant|i_do_mean|SELF meant) (to (say|TELL))?|SELF (wanted|meant|intended) to (say|write|type|put)|"
     "(scratch|scrap|strike|belay|cancel|forget|ignore|disregard) (that|it)|"
+    "(do|DOV) not (do (that|it|this)|REPEAT)|"
     "(disregard|cancel|belay|scratch|scrap) (?=COMMA|STOP|DASH|COLON)|"
     "correction|on (second|ORDINAL) (thought|thoughts)|my mistake|wrong_way|(negative|wrong (sign|one|direction)?)(?! NUM)"
 )
@@ -90,6 +91,8 @@ def unresolved_editing(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
     found = search(
         rf"{_PAUSE} (FILLER)* (?P<editing>(no|wait|oops|hang on|hold on|(scratch|scrap|strike) that)+) (FILLER)* {_PAUSE}", lexemes
     )
+    if found is None:
+        found = search(f"_ {_PAUSE} (FILLER|no|COMMA)* (?P<editing>(do|DOV) not (REPEAT|do (that|it|this))) {_PAUSE}", lexemes)
     if found is None:
         found = search("(COMMA|DASH) (FILLER)* (?P<editing>(i_mean|i_meant) DET (FREE|LEFT|RIGHT)* (one|ones))", lexemes)
     return found["editing"] if found else ()

@@ -65,7 +65,7 @@ _ASKED = re.compile(
 
 _COMMANDING = re.compile(rf"\b(?:{_COMMAND}|{_DIRECTION})\b", re.IGNORECASE)
 _HARMLESS = re.compile(
-    r"\bin (?:my|the|our) (?:shot|view|picture|frame|way)\b|\bset up\b|\bup to (?:something|no good)\b"
+    r"\b(?:in|on) (?:my|the|our|this) (?:shot|view|picture|frame|way|screen)\b|\bset up\b|\bup to (?:something|no good)\b"
     r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"

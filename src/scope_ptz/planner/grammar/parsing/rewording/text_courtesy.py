@@ -8,6 +8,17 @@ _CLOSINGS = (
 )
 
 COURTESIES = (
+    (
+        r"^(an?|the) ([^,.;?]*\b(?:degrees?|percent|turn|times)\b[^,.;?]*) (?:would|should|will) be "
+        r"(?:sufficient|adequate|enough|ideal|fine|perfect|plenty)\W*$",
+        r"\1 \2",
+    ),
+    (
+        r"\bi (?:should|would|['’]d) be (?:most |very |ever so )?(?:grateful|obliged|glad|pleased) if the camera "
+        r"(?:could|would|might) be (?=turned|panned|tilted|pointed|moved|swung|rotated)",
+        "the camera should be ",
+    ),
+    (r",? one (?:straight |right |directly )?after (?:the other|another)\W*$", ""),
     (r",? no (?:rush|hurry|panic|pressure) at all\b", ""),
     (r", (?:would|will|could|can) you(?=[,.!?]|$)", ""),
     (rf"(?:(?<=[.?!])|,)\s*{_CLOSINGS},? {_NAMES}\s*[.!]?$", ""),
@@ -56,7 +67,7 @@ COURTESIES = (
     (r",? (?:i think )?(?:that['’]?s|thats|that is) about (?:where|right|it)\b[^,.;?]*\W*$", ""),
     (r",? if you(?:['’]d| would| could) be so (?:good|kind)(?: as to)?\b", ""),
     (r"(?<=\w) (?=it['’]s too \w+)", ", "),
-    (r"\b(a lot|a bit|in|out|left|right|up|down) man\b(?=,)", r"\1"),
+    (r"\b(a lot|a bit|in|out|left|right|up|down) (?:man|partner|boss|buddy|pal|mate)\b(?=,|\W*$)", r"\1"),
     (r"^(?:oh,? )?do (?=look at|zoom|take|go|count|follow|show|find|tell)", ""),
     (r",? or what\?$", "?"),
     (r",? on reflection,? ", ", "),
@@ -69,7 +80,7 @@ COURTESIES = (
         r"(?:step|test|check|case)(?: [\d.]+)? ?[:.] ",
         "",
     ),
-    (r"^it needs to (?=go|come|move|point|look)", ""),
+    (r"^(?:it|the camera) needs to (?=go|come|move|point|look)", ""),
     (r",? (?:go on, )?(?:have|take) a guess\W*$", ""),
     (r"^interrogative,? ", ""),
     (r"^cam(?:era)? ?\d to (?=\w)", "go to "),

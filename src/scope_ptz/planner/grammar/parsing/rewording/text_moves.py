@@ -26,6 +26,13 @@ _AS_FAR = (
 _MAST = "tower|mast|roof|pole|camera|cam"
 
 MOVES = (
+    (r"\btighten (?:it |her )?up\b", "zoom in"),
+    (r"\bgo to (?:whichever|whatever)(?: one)? (?:it|that) is\b", "go there"),
+    (r"\b(left|right|up|down)\. \1(?= (?:by )?\d)", r"\1"),
+    (r"\b(?:drive|run|steer) (?:the |this )?camera (?:over |back |across )?to\b", "go to"),
+    (r"^(?:run|drive|come) (?:on |along |back )+home\b", "go home"),
+    (r"\bbring (the|that|this) ([\w ]+?) into (?:a )?(?:close|closer|tight|full|better) view\b", r"zoom in on \1 \2"),
+    (r"\bget ((?:the|that|this) [\w ]+?) nice and (?:big|large|close)\b", r"zoom in on \1"),
     (r"^home in on ", "zoom in on "),
     (r"\b(left|right|up|down), \1\b", r"\1"),
     (r"\bzoom (?:in )?(?:on to|onto) ", "zoom in on "),

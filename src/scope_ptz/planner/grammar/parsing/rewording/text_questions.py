@@ -19,6 +19,16 @@ _PRONOUNS = re.compile(r"\b(?:it|its|they|their|them|him|his|her|he|she|that|tho
 
 _MAX_TOPIC = 7  # maximum number of words before "is he ...?"
 QUESTIONS = (
+    (
+        r"\b(tell me (?:how many|what|which|where|who|whether)\b[^.;?]*?) and if "
+        r"(?=(?:the|there|any|it|they|he|she|my|our)\b[^,.;]*\W*$)",
+        r"\1 and whether ",
+    ),
+    (
+        r"^(?:please )?(?:do a )?look (?:(?:at|over|across) the whole (?:scene|area|place)|all around)(?: please)?"
+        r"(?:,? and tell me)?[:,] ((?:is|are) [^?]*?)\?*$",
+        r"\1 in the whole scene?",
+    ),
     (r"\bppl\b", "people"),
     (r"\bhows\b", "how's"),
     (r"\bwhoever(?:['’]s| is)\b", "the person"),

@@ -23,6 +23,12 @@ _OCCASION = "DET? (?P<noun>FREE{1,3}) (shift|watch|run|patrol|break|check|round)
 PAST_VERBS = "|".join(f"{verb}-ED" for verb in VERBS)
 
 
+def _is_occasion(words: Sequence[Lexeme]) -> bool:
+    """Return whether the words after "before" name an occasion: "lunch", "the next test case", "I go to lunch"."""
+    named = full_match("(DET|ORDINAL|PRON|THEN)* FREE{1,3} (FILLER)*", words) or full_match("SELF (go|leave|head|SWITCH) _+", words)
+    return named is not None and not any(x.has("PRESET", "NUM", *DIRECTIONS) for x in words)
+
+
 class SubordinateClauseDetector(SegmentationState):
     """Recognises the beginnings of subordinate clauses."""
 
@@ -112,7 +118,7 @@ class SubordinateClauseDetector(SegmentationState):
                 return marker  # "until you see a van. When you have it, ..."
             shot = match_start(r"(DET|NUM)? (PICTURE|CLOSER|look)", rest)
             end = next((j for j, x in enumerate(rest) if x.has("COMMA", "STOP", "QUESTION", "THEN")), len(rest))
-            if marker == "BEFORE" and is_event(rest[:end]):
+            if marker == "BEFORE" and (is_event(rest[:end]) or (full_match(_GOES, self.words) and _is_occasion(rest[:end]))):
                 return marker
             return marker if shot or (verbal and not match_start("DET|EVERY", rest)) else ""
         if marker == "IFNOT" and lexeme.word == "else" and self.words and self.words[-1].has("SOMEONE", "WHQ", "NOONE"):
