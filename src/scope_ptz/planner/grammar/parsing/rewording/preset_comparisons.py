@@ -1,15 +1,19 @@
-"""Rewrite comparisons of two presets: "more vans where, yard or gate?" becomes "which has more vans, yard or gate?"."""
+"""Rewrite comparisons of presets: "more vans where, yard or gate?" becomes "which has more vans, yard or gate?"."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
+from scope_ptz.english.text_forms import listing
+from scope_ptz.planner.grammar.parsing.rewording.shorter_versions import is_remark
+
 _COMPARED = re.compile(
     r"\b(?P<how>more|most|fewer|fewest|less|least|greater number of|larger number of|higher number of|highest number of)\b"
     r"(?: of the)? (?P<what>.+)",
     re.IGNORECASE,
 )
+_SUPERLATIVES = frozenset({"most", "fewest", "least", "highest number of"})
 _FEWER = frozenset({"fewer", "fewest", "less", "least"})
 _STOP = re.compile(
     r"\b(?:where|at|in|on|over|by|there|than|or|and|standing|about|today|now|tonight|this|right|out|it"
@@ -32,14 +36,16 @@ _FUNCTION_WORDS = frozenset({
 })  # fmt: skip
 """Words that may surround a comparison without changing its meaning."""
 
+_LAST_CLAUSE = re.compile(r"[,.;?!]+ +(?P<last>[^,.;?!]+)[.!]*$")
+
 _GOES_THERE = re.compile(
-    r"[,.;?!] *(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?(?:there|to (?:it|that one))\W*$",
+    r"(?:[,.;?!] *|(?<=\w) )(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?(?:there|to (?:it|that one))\W*$",
     re.IGNORECASE,
 )
 
 
 def with_presets_compared(text: str, names: str) -> str:
-    """Return a comparison of two presets in the standard form, and any other text unchanged.
+    """Return a comparison of presets in the standard form, and any other text unchanged.
 
     Args:
         text: The text of an instruction.
@@ -47,12 +53,15 @@ def with_presets_compared(text: str, names: str) -> str:
     """
     goes = _GOES_THERE.search(text)
     asked = text[: goes.start()] if goes else text
+    if (ending := _LAST_CLAUSE.search(asked)) is not None and not re.search(rf"\b(?:{names})\b", ending["last"], re.IGNORECASE):
+        asked = asked[: ending.start()] if is_remark(ending["last"], ()) else asked  # "..., one of the drivers is asking"
     found = list(re.finditer(rf"\b(?:{names})\b", asked, re.IGNORECASE))
     compared = _COMPARED.search(re.sub(rf"\b(?:{names})\b", lambda match: "," * len(match[0]), asked, flags=re.IGNORECASE))
-    if len(found) != 2 or compared is None or found[0][0].lower() == found[1][0].lower():
+    compares_all = len(found) > 2 and compared is not None and compared["how"].lower() in _SUPERLATIVES
+    if compared is None or len({match[0].lower() for match in found}) != len(found) or not (len(found) == 2 or compares_all):
         return text
-    between = asked[found[0].end() : found[1].start()]
-    link = r"\b(?:or|and|vs|versus|than|with|against)\b"
+    between = asked[found[0].end() : found[-1].start()]
+    link = r"," if compares_all else r"\b(?:or|and|vs|versus|than|with|against)\b"
     if not re.search(link, between, re.IGNORECASE) or re.search(r"[.;!]", between):
         return text
     what = _STOP.split(compared["what"])[0].strip()
@@ -64,7 +73,9 @@ def with_presets_compared(text: str, names: str) -> str:
     if re.search(r"\d", rest) or set(re.findall(r"[^\W\d_]+", rest.lower())) - _FUNCTION_WORDS - set(how.split()):
         return text
     comparison = "fewer" if how in _FEWER else "more"
-    return f"which has {comparison} {what}, {found[0][0]} or {found[1][0]}?{' go there' if goes else ''}"
+    if compares_all:
+        comparison = "the fewest" if how in _FEWER else "the most"
+    return f"which has {comparison} {what}, {listing([match[0] for match in found], 'or')}?{' go there' if goes else ''}"
 
 
 def _without_spans(text: str, spans: Sequence[tuple[int, int]]) -> str:

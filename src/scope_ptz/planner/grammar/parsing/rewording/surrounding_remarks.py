@@ -68,6 +68,7 @@ _HARMLESS = re.compile(
     r"\b(?:in|on) (?:my|the|our|this) (?:shot|view|picture|frame|way|screen)\b|\bset up\b|\bup to (?:something|no good)\b"
     r"|\b(?:under(?:neath)?|below|beneath|behind|above|near|beside) you\b"
     r"|\b(?:boss|manager|he|she|they|gaffer|foreman|everyone|somebody|someone)(?:['’]s| is| are|['’]re| was)? asking\W*$"
+    r"|\b\w+ (?:is|are|was|were|keeps?) asking(?: me| us)?(?: about (?:it|them|this|that))?\W*$"
     r"|\b(?:i|we) (?:can['’]?t|cannot|could not|couldn['’]?t) tell(?: from here)? (?:if|whether|what|which|who)\b"
     r"|\bi (?:just )?want(?:ed)? the (?:whole )?(?:lot|thing|works)\b|\bunder the camera\b"
     r"|\bshould (?:arrive|turn up|come|land|be there)\b|\bshould be (?:bringing|coming|arriving|landing|starting"

@@ -8,6 +8,8 @@ _CLOSINGS = (
 )
 
 COURTESIES = (
+    (r"[,.] [a-z]{3,15} behind (?:u|you|us|me)\W*$", ""),
+    (r"\b(then|and) again (?=take |pan |tilt |zoom |turn )", r"\1 "),
     (
         r"^(an?|the) ([^,.;?]*\b(?:degrees?|percent|turn|times)\b[^,.;?]*) (?:would|should|will) be "
         r"(?:sufficient|adequate|enough|ideal|fine|perfect|plenty)\W*$",
@@ -40,7 +42,7 @@ COURTESIES = (
     (r",? hun\b", ""),
     (r"^right (?=(?:get it|get me|take me|can you|could you|let['’]s|nip|pop|show me)\b)", ""),
     (r"^(?:zoom|picture|view|shot) is too (?:tight|close|wide|far), ", ""),
-    (r", (?:the )?\w+(?:['’]?s)? due (?:any \w+|soon)\W*$", ""),
+    (r", (?:the )?\w+(?:['’]?s)? due (?:any \w+|soon|(?:in|at) [\w ]+)\W*$", ""),
     (r", over(?: and out)?\s*\?\s*$", "?"),
     (r",? i do apologi[sz]e,? ", ", sorry, "),
     (r"(?:^|(?<=[.;,] )|(?<=\n))step (?:\d|one|two|three|four|five|six) ?[:.,–-] *", ""),

@@ -5,6 +5,7 @@ from __future__ import annotations
 _PICTURES = "photo|picture|pic|snap|shot|still"
 
 VIEWS = (
+    (r"^((?:list|show|tell me|give me)\b.*\b(?:positions|presets|places|spots|views)) (?:which|that) are \w+ed\b[\w ]*\W*$", r"\1"),
     (r"^check out ((?:the|that) [\w ]+?), zoom (?:in )?(?:on|onto|to) it\b", r"zoom in on \1"),
     (r"^(?:i )?can(?:['’]?t|not) (?:make out|see|read) (the [\w ]+?)(?: from here)?, zoom in on it\b", r"zoom in on \1"),
     (r"\bi(?:['’]d| would) like (the [\w ]+?) framed\b.*$", r"zoom in on \1"),

@@ -168,7 +168,7 @@ class SubordinateClauseDetector(SegmentationState):
 
     def _zooms_in_on_thing(self) -> bool:
         """Return whether the clause so far names a thing to zoom in on: "frame the tanker so that it fills the picture"."""
-        return any(x.has("FREE") for x in self.words) and self.words[0].has("SHOW", "ZOOM", "ENLARGE", "FIND", "AIM", "SNAP")
+        return any(x.has("FREE") for x in self.words) and any(x.has("SHOW", "ZOOM", "ENLARGE", "FIND", "AIM") for x in self.words)
 
     def _only_explains(self, rest: Sequence[Lexeme]) -> bool:
         """Return whether the words after "so that" only state a purpose, without an angle or a thing to zoom in on."""
