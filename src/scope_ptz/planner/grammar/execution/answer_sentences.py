@@ -11,6 +11,7 @@ from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.nouns import plural_noun
+from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
     Joined,
@@ -187,6 +188,8 @@ def not_understood_text(error: str) -> str:
     match = _NOT_UNDERSTOOD.match(error)
     if match is None:
         return ""
+    if match["text"] and error.startswith("The question"):
+        return f"I did not understand that question. {answerable_questions(match['text'])}"
     words = re.sub(r"'( and |, )'", r'"\1"', match["words"] or "")
     return f'I did not understand "{match["text"] or words}"'
 

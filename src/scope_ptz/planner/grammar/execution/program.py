@@ -218,11 +218,17 @@ class Program(ComparisonSteps):
 
     def _camerastate(self, step: ast.CameraState) -> CallGenerator:
         yield from ()
-        self._note(f"The camera is at {phrases.pose_text(self.pose.as_dict())}")
+        place = self._visited[-1]
+        preset = f"preset {place.preset}: " if place.preset and place.pose == self.pose else ""
+        self._note(f"The camera is at {preset}{phrases.pose_text(self.pose.as_dict())}")
 
     def _help(self, step: ast.Help) -> CallGenerator:
         yield from ()
         self._note(_CAPABILITIES)
+
+    def _reply(self, step: ast.Reply) -> CallGenerator:
+        yield from ()
+        self._note(step.text)
 
     def _do_nothing(self, step: ast.Step) -> CallGenerator:
         yield from ()
