@@ -199,6 +199,12 @@ def with_lower_initial(text: str) -> str:
     return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
 
 
+def chosen_text(description: str, matches: int, chosen: str) -> str:
+    """Return which of several things was chosen: "one of the 20 signs in view, the Plough sign"."""
+    name = chosen.removeprefix("The ").removeprefix("the ")
+    return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
+
+
 def reason_and_reaction(reason: str, reaction: str) -> str:
     """Append what the camera did to the reason for it: "I can see no trucks, so I left it at that"."""
     if not reason:

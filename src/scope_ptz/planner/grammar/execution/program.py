@@ -163,9 +163,10 @@ class Program(ComparisonSteps):
                 self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
             return
         self._moved_to_object = True
-        many = f" ({result['matches']} matched; {result['chosen'] or 'one was chosen'})" if result.get("matches", 1) > 1 else ""
+        matches = result.get("matches", 1)
+        target = phrases.chosen_text(text, matches, result.get("chosen", "")) if matches > 1 else _the(step.thing)
         limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
-        self._note(f"I zoomed in on {_the(step.thing)}{many}{limits}")
+        self._note(f"I zoomed in on {target}{limits}")
 
     def _track(self, step: ast.Track) -> CallGenerator:
         text = step.thing.text
