@@ -73,12 +73,12 @@ def view_with(*texts: TextSighting) -> View:
         (
             "what does the road works sign say?",
             (text("SLOW", 0, 1, parent="sign-03"), text("from Monday", 0, 0.8, parent="sign-03", cap_px=5)),
-            'The road works sign reads "SLOW". There is more text, but it is too small to read.',
+            'The road works sign reads "SLOW". The rest is too small to read.',
         ),
         (
             "what text can you see?",
             (text("STAFF", 0, 1.2), text("PARKING", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
-            'I can read "STAFF PARKING". There is other text in view, but it is too small to read.',
+            'I can read "STAFF PARKING". The rest is too small to read.',
         ),
         (
             "what does the speed limit sign say?",

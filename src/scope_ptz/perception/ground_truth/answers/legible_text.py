@@ -65,15 +65,14 @@ def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[Text
         return _nothing_legible(subject if what else "", texts, plate)
     if plate:
         return TruthAnswer(english.sentence(f"the number plate reads {english.listing(quotes(texts))}"))
-    rest = _unread_text(view, what, texts)
-    if what is None:
-        return known_answer(f"I can read {english.listing(quotes(texts))}{rest}")
     readers = _things_with_text(texts, legible=True)
-    if unread := _illegible_things(view, texts):
+    if what is None:
+        return known_answer(f"I can read {english.listing(quotes(texts))}{_unread_rest(view, texts)}")
+    if is_plural(what) and (unread := _illegible_things(view, texts)):
         share = f"{len(readers)} of the {len(readers) + len(unread)} {noun_phrase(view, what, plural=True)} in view"
-        return known_answer(f"I can read {share}:{_quoted(view, texts, readers)}{rest}")
+        return known_answer(f"I can read {share}:{_quoted(view, texts, readers)}{_unread_things(texts, unread)}")
     verb = "read" if is_plural(what) else "reads"
-    return known_answer(f"{_quoted(view, texts, readers, f'{subject} {verb}')}{rest}")
+    return known_answer(f"{_quoted(view, texts, readers, f'{subject} {verb}')}{_unread_rest(view, texts)}")
 
 
 def _nothing_legible(subject: str, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
@@ -121,18 +120,17 @@ def _illegible_things(view: View, texts: Sequence[TextSighting]) -> list[str]:
     return [thing for thing in _things_with_text(texts, legible=False) if thing not in readers and thing in view.by_id]
 
 
-def _unread_text(view: View, what: tree.Description | None, texts: Sequence[TextSighting]) -> str:
-    """Return the sentence about text that is in view but cannot be read; empty if there is none."""
-    unread = _illegible_things(view, texts)
-    on_unread = [t for t in texts if t.text.parent in unread]
-    if not unread:
-        partly = [t for t in texts if not t.legible and t.unhidden_fraction > 0 and t.text.parent in view.by_id]
-        return f". There is more text, but {illegibility(partly)} to read" if partly else ""
-    if what is None:
-        return f". There is other text in view, but {illegibility(on_unread)} to read"
-    rest = "the other one is" if len(unread) == 1 else f"the other {len(unread)} are"
-    reasons = english.listing(list(dict.fromkeys(_REASONS[_problem(t)] for t in on_unread)), "or")
-    return f". {rest[0].upper()}{rest[1:]} {reasons} to read from here"
+def _unread_things(texts: Sequence[TextSighting], unread: Sequence[str]) -> str:
+    """Return the sentence about the things on which no text is legible, with all the reasons."""
+    rest = "The other one is" if len(unread) == 1 else f"The other {len(unread)} are"
+    reasons = dict.fromkeys(_REASONS[_problem(t)] for t in texts if t.text.parent in unread)
+    return f". {rest} {english.listing(list(reasons), 'or')} to read from here"
+
+
+def _unread_rest(view: View, texts: Sequence[TextSighting]) -> str:
+    """Return the sentence about visible text that is not legible, beside the text that is; empty if there is none."""
+    rest = [t for t in texts if not t.legible and t.unhidden_fraction > 0 and t.text.parent in view.by_id]
+    return f". The rest is {_REASONS[_problem(_largest(rest))]} to read" if rest else ""
 
 
 _REASONS = {"small": "too small", "oblique": "seen too much from the side", "hidden": "too much hidden or cut off"}
@@ -144,9 +142,13 @@ def _problem(text: TextSighting) -> Literal["small", "oblique", "hidden"]:
     return "oblique" if text.angle_deg > MAX_READING_ANGLE_DEG else "hidden"
 
 
+def _largest(texts: Sequence[TextSighting]) -> TextSighting:
+    return max(texts, key=lambda t: t.cap_height_px)
+
+
 def illegibility(texts: Sequence[TextSighting]) -> str:
     """Return why the largest of several illegible texts cannot be read, in words before "to read"."""
-    problem = _problem(max(texts, key=lambda t: t.cap_height_px))
+    problem = _problem(_largest(texts))
     return "too much of it is hidden or cut off" if problem == "hidden" else f"it is too {problem}"
 
 
