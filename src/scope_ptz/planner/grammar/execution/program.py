@@ -74,9 +74,8 @@ class Program(ComparisonSteps):
         start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
         # Report a move that was cut short as the camera made it.
-        shortfall = phrases.shortfall_text(result)
-        moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
-        report = f"I {phrases.move_text(moved)}{shortfall}"
+        moved = return_arguments(self.pose, start, self.limits) if phrases.shortfall_text(result) else arguments
+        report = phrases.report_of_move(arguments, moved, result)
         self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _back(self, step: ast.Back) -> CallGenerator:
@@ -105,7 +104,9 @@ class Program(ComparisonSteps):
     def _return(self, pose: Pose) -> CallGenerator:
         arguments = return_arguments(pose, self.pose, self.limits)
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        self._note(f"I {phrases.move_text(arguments)} to go back; the camera is now at {phrases.pose_text(result['pose'])}")
+        shortfall = phrases.shortfall_text(result)
+        done = phrases.move_text(arguments) if set(arguments) <= {"zoom_factor"} else "went back to where the camera was before"
+        self._note(f"I {done}{shortfall}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _go_to(self, place: VisitedPosition) -> CallGenerator:
         if place.preset:
@@ -128,6 +129,7 @@ class Program(ComparisonSteps):
     def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
         result = yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
+        self.stops.append(len(self.notes))
         self._note(f"I went to preset {step.ref.name}{phrases.shortfall_text(result)}")
 
     def _gothere(self, step: ast.GoThere) -> CallGenerator:
@@ -165,7 +167,7 @@ class Program(ComparisonSteps):
         self._moved_to_object = True
         matches = result.get("matches", 1)
         target = phrases.chosen_text(text, matches, result.get("chosen", "")) if matches > 1 else _the(step.thing)
-        limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
+        limits = f", as far as the {phrases.limits_text(result['limited_by'])}" if result.get("limited_by") else ""
         self._note(f"I zoomed in on {target}{limits}")
 
     def _track(self, step: ast.Track) -> CallGenerator:
@@ -181,9 +183,10 @@ class Program(ComparisonSteps):
             self._note(f"I could not find {_the(step.thing)} to follow")
             return
         self._moved_to_object = True
-        share = round(100 * result.get("held_share", 0.0))
+        followed = phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
-        self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
+        time = phrases.share_of_time(result.get("held_share", 0.0))
+        self._note(f"I followed the {followed} for {seconds} seconds and had it in view {time}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
         view, counted = step.view or "current", list[str]()
@@ -320,7 +323,7 @@ def _the(thing: ast.Thing) -> str:
 
 
 def _highest_count_text(best: int) -> str:
-    return f" (the most was {best})" if best >= 0 else ""
+    return f" (the most was {best})" if best > 0 else ""
 
 
 def _whole_as_int(value: float) -> float:
