@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.geometry import Pose
-from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, move_text
+from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, counted
+from scope_ptz.planner.grammar.execution.move_sentences import move_text
 from tests.planner.stage import Stage
 
 
@@ -231,3 +232,21 @@ def test_the_report_of_a_long_tour_has_a_line_for_each_preset() -> None:
     tour = ", then ".join(f"go to the {stop} and describe the view" for stop in stops)
     lines = Stage([{"answer": "I can see a van.", "known": True}]).run(tour).text.splitlines()
     assert [line.split(". ")[0] for line in lines] == [f"I went to preset {stop}" for stop in stops]
+
+
+@pytest.mark.parametrize(
+    ("instruction", "count", "answer"),
+    [
+        ("how many people are in the left half?", 8, "I can see 8 people in the left half."),
+        ("count the cars", 2, "I can see 2 cars in this view."),
+        ("how many workers wear a helmet?", 3, "I can see 3 workers who wear a helmet in this view."),
+    ],
+)
+def test_how_a_count_is_reported(instruction: str, count: int, answer: str) -> None:
+    assert Stage([count]).run(instruction).text.startswith(answer)
+
+
+def test_a_colour_alone_is_a_thing() -> None:
+    assert (counted("blue", 1), counted("blue", 2)) == ("1 blue thing", "2 blue things")
+    assert counted("workers wear a helmet", 1) == "1 worker who wears a helmet"
+    assert counted("vans carry a ladder", 2) == "2 vans that carry a ladder"

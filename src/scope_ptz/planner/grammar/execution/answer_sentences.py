@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
@@ -53,7 +52,7 @@ def count_word(count: int) -> str:
 
 def head_and_rest(description: str) -> tuple[str, str]:
     """Split a description after its head noun: "red cars" and " behind the gate", "people" and " sitting down"."""
-    match = _MODIFIER_START.search(description) or _participle_after_noun(description)
+    match = _MODIFIER_START.search(description) or _participle_after_noun(description) or _finite_verb_after_noun(description)
     return (description[: match.start()], description[match.start() :]) if match else (description, "")
 
 
@@ -76,14 +75,37 @@ def _participle_after_noun(description: str) -> re.Match[str] | None:
     return None
 
 
+def _finite_verb_after_noun(description: str) -> re.Match[str] | None:
+    """Return the verb that follows the noun, as in "workers wear a helmet", but not in "cars park"."""
+    match = _FINITE_VERB.search(description)
+    return match if match is not None and english.is_plural(description[: match.start()].split(" ")[-1].lower()) else None
+
+
+_FINITE_VERB = re.compile(r"\s(wear|carry|hold|have|use|ride|drive|push|pull)\s", re.IGNORECASE)
+_THIRD_PERSON = {"carry": "carries", "have": "has", "push": "pushes"}
+
+
+def _with_relative_pronoun(head: str, rest: str, count: float) -> str:
+    """Return what follows the noun, with "who" or "that" before a finite verb: "3 workers who wear a helmet"."""
+    if (match := _FINITE_VERB.match(rest)) is None:
+        return rest
+    verb = match[1].lower()
+    concept = lexicon().concept(head.split(" ")[-1].lower())
+    pronoun = "who" if concept is not None and "person" in lexicon().kinds(concept) else "that"
+    return f" {pronoun} {_THIRD_PERSON.get(verb, f'{verb}s') if count == 1 else verb} {rest[match.end() :]}"
+
+
 def noun(description: str, count: float) -> str:
     """Return the description with its head noun in the singular or plural."""
     if is_uncountable(description):
         return description
+    if description.lower() in english.COLOURS:
+        description += " thing"
     end = _end_of_noun(head_and_rest(description)[0])
     head, rest = description[:end], description[end:]
     *front, last = head.split(" ")
-    return " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)]) + rest
+    inflected = " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)])
+    return inflected + _with_relative_pronoun(head, rest, count)
 
 
 def is_uncountable(description: str) -> bool:
@@ -108,100 +130,23 @@ def counted(description: str, count: int, *, complete: bool = True) -> str:
     return f"{number} {noun(description, count)}"
 
 
-def where(view: str) -> str:
-    """Return the scope of a count or question in words."""
-    return "in the whole scene" if view == "full" else "in this view"
+def where(view: str, descriptions: Sequence[str] = ()) -> str:
+    """Return the scope of a count in words, after a space; empty if each description already names a part of the view."""
+    if view == "full":
+        return " in the whole scene"
+    return "" if descriptions and all(map(_PART_OF_VIEW.search, descriptions)) else " in this view"
+
+
+_PART_OF_VIEW = re.compile(
+    r" (?:in|on|at) the (?:(?:top|bottom|upper|lower|left|right)(?:[ -]hand)? ?)+(?:half|side|quarter|corner)?$"
+    r"| in the (?:middle|centre|foreground|background|distance|(?:left|right|top|bottom|middle) third)$",
+    re.IGNORECASE,
+)
 
 
 def pose_text(pose: Mapping[str, float]) -> str:
     """Return a pose in words."""
     return f"pan {pose['pan_deg']:.1f}, tilt {pose['tilt_deg']:.1f}, zoom {pose['zoom']:.1f}x"
-
-
-def move_text(arguments: Mapping[str, Any]) -> str:
-    """Describe a relative move in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
-    parts = []
-    if pan := _rounded(arguments.get("pan_deg", 0)):
-        parts.append(f"panned {'right' if pan > 0 else 'left'} {degrees(pan)}")
-    if tilt := _rounded(arguments.get("tilt_deg", 0)):
-        parts.append(f"tilted {'up' if tilt > 0 else 'down'} {degrees(tilt)}")
-    if factor := arguments.get("zoom_factor"):
-        times = _rounded(factor if factor >= 1 else 1 / factor)
-        parts += [f"zoomed {'in' if factor >= 1 else 'out'} by a factor of {number(times)}"] if times != 1 else []
-    if percent := arguments.get("zoom_percent"):
-        parts.append(f"zoomed {'in' if percent > 0 else 'out'} by {number(abs(percent))}%")
-    if limit := arguments.get("zoom_limit"):
-        parts.append(f"zoomed all the way {limit}")
-    return english.listing(parts) or _DID_NOT_MOVE
-
-
-_DID_NOT_MOVE = "did not move"
-
-
-def _rounded(value: float) -> float:
-    return round(value, 2)
-
-
-def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result: Mapping[str, Any]) -> str:
-    """Describe a relative move: "I panned right 20 degrees", or why the camera stayed where it is.
-
-    Args:
-        arguments: The move that was asked for.
-        made: The move that the camera made.
-        result: The result of the call.
-    """
-    shortfall = shortfall_text(result)
-    done = move_text(made)
-    if done != _DID_NOT_MOVE or not shortfall or result.get("held_back_by"):
-        return f"I {done}{shortfall}"
-    limits = [limit for axis in result["clamped"] if (limit := _limit_text(axis, arguments))]
-    return f"I did not move: the camera is already {english.listing(limits)}" if limits else f"I {done}{shortfall}"
-
-
-def _limit_text(axis: str, arguments: Mapping[str, Any]) -> str:
-    """Return where the camera is at an axis's limit: "zoomed out as far as it can"; empty if the move does not use the axis."""
-    if axis == "zoom":
-        zooms_in = arguments.get("zoom_factor", 1) > 1 or arguments.get("zoom_percent", 0) > 0
-        return f"zoomed {'in' if zooms_in or arguments.get('zoom_limit') == 'in' else 'out'} as far as it can"
-    angle_deg = arguments.get(f"{axis}_deg", 0)
-    verb, directions = ("turned", ("right", "left")) if axis == "pan" else ("tilted", ("up", "down"))
-    return f"{verb} {directions[0 if angle_deg > 0 else 1]} as far as it can" if angle_deg else ""
-
-
-def degrees(value: float) -> str:
-    """Return an angle without its sign, with the word "degree" or "degrees"."""
-    return f"{number(round(abs(value), 2))} {'degree' if abs(value) == 1 else 'degrees'}"
-
-
-def moves_text(arguments: Mapping[str, Any], times: int) -> str:
-    """Describe the moves of a loop: "two pans of 15 degrees to the right"."""
-    plural = "" if times == 1 else "s"
-    pan, tilt = arguments.get("pan_deg"), arguments.get("tilt_deg")
-    if pan and not tilt and len(arguments) == 1:
-        return f"{count_word(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
-    if tilt and not pan and len(arguments) == 1:
-        return f"{count_word(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
-    return f"{count_word(times)} move{plural}"
-
-
-def share_of_time(share: float) -> str:
-    """Return a share of a duration in words: "the whole time", "90% of the time"."""
-    return "the whole time" if round(100 * share) == 100 else f"{round(100 * share)}% of the time"
-
-
-def shortfall_text(result: Mapping[str, Any]) -> str:
-    """Return the words that state why a move ended early (a site rule or a camera limit); empty if it did not."""
-    if held_back_by := result.get("held_back_by"):
-        return f", held back by {held_back_by}"
-    clamped = result.get("clamped", ())
-    if not clamped:
-        return ""
-    return f", as far as the {limits_text(clamped)}"
-
-
-def limits_text(axes: Sequence[str]) -> str:
-    """Return the limits of the axes with their verb: "zoom limit allows", "pan and tilt limits allow"."""
-    return f"{english.listing(list(axes))} {'limit allows' if len(axes) == 1 else 'limits allow'}"
 
 
 def sentence(text: str) -> str:

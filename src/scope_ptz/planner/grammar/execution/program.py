@@ -17,6 +17,7 @@ from scope_ptz import english
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution import move_sentences as motion
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
@@ -74,8 +75,8 @@ class Program(ComparisonSteps):
         start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
         # Report a move that was cut short as the camera made it.
-        moved = return_arguments(self.pose, start, self.limits) if phrases.shortfall_text(result) else arguments
-        report = phrases.report_of_move(arguments, moved, result)
+        moved = return_arguments(self.pose, start, self.limits) if motion.shortfall_text(result) else arguments
+        report = motion.report_of_move(arguments, moved, result)
         self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _back(self, step: ast.Back) -> CallGenerator:
@@ -104,8 +105,8 @@ class Program(ComparisonSteps):
     def _return(self, pose: Pose) -> CallGenerator:
         arguments = return_arguments(pose, self.pose, self.limits)
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        shortfall = phrases.shortfall_text(result)
-        done = phrases.move_text(arguments) if set(arguments) <= {"zoom_factor"} else "went back to where the camera was before"
+        shortfall = motion.shortfall_text(result)
+        done = motion.move_text(arguments) if set(arguments) <= {"zoom_factor"} else "went back to where the camera was before"
         self._note(f"I {done}{shortfall}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _go_to(self, place: VisitedPosition) -> CallGenerator:
@@ -124,13 +125,13 @@ class Program(ComparisonSteps):
         result = yield from self._camera_call("go_home")
         self._went_home = True
         self._record_position(None, home=True)
-        self._note(f"I went to the home view{phrases.shortfall_text(result)}")
+        self._note(f"I went to the home view{motion.shortfall_text(result)}")
 
     def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
         result = yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
         self.stops.append(len(self.notes))
-        self._note(f"I went to preset {step.ref.name}{phrases.shortfall_text(result)}")
+        self._note(f"I went to preset {step.ref.name}{motion.shortfall_text(result)}")
 
     def _gothere(self, step: ast.GoThere) -> CallGenerator:
         if self._best_preset:
@@ -167,7 +168,7 @@ class Program(ComparisonSteps):
         self._moved_to_object = True
         matches = result.get("matches", 1)
         target = phrases.chosen_text(text, matches, result.get("chosen", "")) if matches > 1 else _the(step.thing)
-        limits = f", as far as the {phrases.limits_text(result['limited_by'])}" if result.get("limited_by") else ""
+        limits = f", as far as the {motion.limits_text(result['limited_by'])}" if result.get("limited_by") else ""
         self._note(f"I zoomed in on {target}{limits}")
 
     def _track(self, step: ast.Track) -> CallGenerator:
@@ -185,7 +186,7 @@ class Program(ComparisonSteps):
         self._moved_to_object = True
         followed = phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
-        time = phrases.share_of_time(result.get("held_share", 0.0))
+        time = motion.share_of_time(result.get("held_share", 0.0))
         self._note(f"I followed the {followed} for {seconds} seconds and had it in view {time}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
@@ -196,7 +197,7 @@ class Program(ComparisonSteps):
             if result is not None:
                 counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
         if counted:
-            self._note(f"I can see {english.listing(counted)} {phrases.where(view)}")
+            self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
 
     def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
         result = yield from self._answer_to(step.question, step.view or "current", thing)
@@ -263,7 +264,7 @@ class Program(ComparisonSteps):
             if met is None and isinstance(step.until, ast.Negated):
                 raise HaltedError(f"{reason}, so I stopped")  # "while" continues only as long as its condition is known to hold
             if met:
-                self._note(f"{reason} after {phrases.moves_text(last, moves)}" if moves else f"{reason} without having to move")
+                self._note(f"{reason} after {motion.moves_text(last, moves)}" if moves else f"{reason} without having to move")
                 return
             if moves >= limit:
                 break
@@ -278,10 +279,10 @@ class Program(ComparisonSteps):
             moves += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
                 yield from self._end_unmet_loop(
-                    step, best, f": the camera reached its limit after {phrases.moves_text(last, moves)}"
+                    step, best, f": the camera reached its limit after {motion.moves_text(last, moves)}"
                 )
                 return
-        yield from self._end_unmet_loop(step, best, f", and stopped after {phrases.moves_text(last, moves)}")
+        yield from self._end_unmet_loop(step, best, f", and stopped after {motion.moves_text(last, moves)}")
 
     def _end_unmet_loop(self, step: ast.Loop, best: int, ending: str) -> CallGenerator:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
