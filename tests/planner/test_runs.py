@@ -250,3 +250,10 @@ def test_a_colour_alone_is_a_thing() -> None:
     assert (counted("blue", 1), counted("blue", 2)) == ("1 blue thing", "2 blue things")
     assert counted("workers wear a helmet", 1) == "1 worker who wears a helmet"
     assert counted("vans carry a ladder", 2) == "2 vans that carry a ladder"
+
+
+def test_a_reason_is_given_once_in_a_row() -> None:
+    stage = Stage()
+    stage.do = lambda *_: (None, "The scene says nothing about the road, so it cannot tell.")  # type: ignore[method-assign]
+    reply = stage.run("count the cars on the road and count the vans on the road").text
+    assert reply == "I cannot tell: I cannot make out the road in the picture."

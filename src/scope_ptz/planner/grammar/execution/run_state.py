@@ -126,7 +126,9 @@ class RunState:
             outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             error = outcome.error or "no result"
-            self._note(phrases.not_understood_text(error) or f"I could not look ({tool} failed): {error}")
+            note = phrases.not_understood_text(error) or f"I could not look ({tool} failed): {error}"
+            if self.notes[-1:] != [note]:
+                self._note(note)
             return None
         return outcome.result
 
