@@ -27,12 +27,24 @@ def test_help_lists_the_commands(scope: Scope, monkeypatch: pytest.MonkeyPatch) 
 def test_the_note_about_perception_appears_once(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
     result = chat(scope, monkeypatch, "pan right 5", "pan right 5", "count the balls")
     assert result.out.count("not a model") == 1
+    assert result.out.index("not a model") < result.out.index("pan right 5")
+    assert "Source:" not in result.out
+
+
+def test_a_turn_is_one_line_for_each_step_the_answer_and_the_run_folder(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    welcome, note, *turn = chat(scope, monkeypatch, "count the balls").out.splitlines()
+    assert "/help" in welcome and "not a model" in note
+    instruction, step, answer, folder, end = turn
+    assert instruction == "› count the balls"
+    assert step.startswith("  1  count_objects  description=balls, view=current: ")
+    assert answer.startswith("Answer: I can see ")
+    assert " · " in folder and "count-the-balls" in folder and not end
 
 
 def test_a_clarification_has_a_question_and_no_filmstrip(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     result = chat(scope, monkeypatch, "florp the wibble")
     assert "Question: " in result.out
-    assert "Filmstrip" not in result.out and "not a model" not in result.out
+    assert "florp-the-wibble" not in result.out
     assert not list(tmp_path.glob("runs/*/filmstrip.png"))
 
 

@@ -34,7 +34,7 @@ def test_it_zooms_in_looks_again_and_puts_the_camera_back() -> None:
     [
         READ,
         {"answer": "There is text on the sign, but it is too oblique to read.", "known": False},
-        {"answer": "There is text on the sign, but it is too much hidden or cut off to read.", "known": False},
+        {"answer": "There is text on the sign, but too much of it is hidden or cut off to read.", "known": False},
         {"answer": "I cannot tell: there is no sign in view.", "known": False},
         {"answer": "The letters are too small for a road sign, but it reads STOP.", "known": True},
     ],
@@ -132,3 +132,12 @@ def test_an_offer_can_be_read_back(thing: str, question: str) -> None:
 @given(st.text())
 def test_other_replies_offer_nothing(text: str) -> None:
     assert offer_in(text) is None
+
+
+def test_the_answer_says_that_it_went_closer_to_only_one_of_several() -> None:
+    small = {"answer": "There is text on the signs, but it is too small to read.", "known": False}
+    read = {"answer": 'The signs read "STOP".', "known": True}
+    reply = Stage([small, 20, read], lands=CLOSE, simulated=True).run("read the signs").text
+    assert reply.startswith(
+        "I zoomed in on one of the 20 signs in view, and put the camera back afterwards; I did not go closer to the other 19."
+    )

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from scope_ptz.geometry import Pose
+from scope_ptz.planner.grammar.execution.answer_sentences import chosen_text, counted
+from scope_ptz.planner.grammar.execution.move_sentences import move_text
 from tests.planner.stage import Stage
 
 
@@ -183,3 +187,73 @@ def test_unclear_instructions_lead_to_a_question() -> None:
     ):
         finish = Stage().run(text)
         assert finish.kind == "clarification", text
+
+
+@pytest.mark.parametrize(
+    ("instruction", "report"),
+    [
+        ("zoom in 2x", "I zoomed in by a factor of 2; the camera is now at pan 0.0, tilt 0.0, zoom 2.0x."),
+        ("zoom in 4x, then zoom out by a factor of 2", "I zoomed out by a factor of 2; the camera is now at pan 0.0, tilt 0.0,"),
+        ("zoom out 2x", "I did not move: the camera is already zoomed out as far as it can; the camera is now at pan 0.0,"),
+        (
+            "pan right 30 and go back",
+            "I went back to where the camera was before; the camera is now at pan 0.0, tilt 0.0, zoom 1.0x.",
+        ),
+    ],
+)
+def test_how_a_move_is_reported(instruction: str, report: str) -> None:
+    assert report in Stage().run(instruction).text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"pan_deg": 10.86, "tilt_deg": -0.004, "zoom_factor": 1.001}, "panned right 10.86 degrees"),
+        ({"pan_deg": 0.001}, "did not move"),
+        ({"zoom_factor": 0.24}, "zoomed out by a factor of 4.17"),
+    ],
+)
+def test_a_part_of_a_move_that_rounds_to_nothing_is_not_mentioned(arguments: dict[str, float], text: str) -> None:
+    assert move_text(arguments) == text
+
+
+def test_a_thing_that_was_chosen_from_several_is_named() -> None:
+    assert Stage([20]).run("zoom in on the sign").text.startswith("I zoomed in on one of the 20 signs in view.")
+    assert chosen_text("sign", 20, "The Plough sign") == "one of the 20 signs in view, the Plough sign"
+
+
+def test_a_followed_thing_is_one_thing() -> None:
+    reply = Stage([True]).run("track the forklifts for 10 seconds").text
+    assert reply.startswith("I followed the forklift for 10 seconds and had it in view 90% of the time.")
+
+
+def test_the_report_of_a_long_tour_has_a_line_for_each_preset() -> None:
+    stops = ["gate", "highway", "gate"]
+    tour = ", then ".join(f"go to the {stop} and describe the view" for stop in stops)
+    lines = Stage([{"answer": "I can see a van.", "known": True}]).run(tour).text.splitlines()
+    assert [line.split(". ")[0] for line in lines] == [f"I went to preset {stop}" for stop in stops]
+
+
+@pytest.mark.parametrize(
+    ("instruction", "count", "answer"),
+    [
+        ("how many people are in the left half?", 8, "I can see 8 people in the left half."),
+        ("count the cars", 2, "I can see 2 cars in this view."),
+        ("how many workers wear a helmet?", 3, "I can see 3 workers who wear a helmet in this view."),
+    ],
+)
+def test_how_a_count_is_reported(instruction: str, count: int, answer: str) -> None:
+    assert Stage([count]).run(instruction).text.startswith(answer)
+
+
+def test_a_colour_alone_is_a_thing() -> None:
+    assert (counted("blue", 1), counted("blue", 2)) == ("1 blue thing", "2 blue things")
+    assert counted("workers wear a helmet", 1) == "1 worker who wears a helmet"
+    assert counted("vans carry a ladder", 2) == "2 vans that carry a ladder"
+
+
+def test_a_reason_is_given_once_in_a_row() -> None:
+    stage = Stage()
+    stage.do = lambda *_: (None, "The scene says nothing about the road, so it cannot tell.")  # type: ignore[method-assign]
+    reply = stage.run("count the cars on the road and count the vans on the road").text
+    assert reply == "I cannot tell: I cannot make out the road in the picture."

@@ -18,7 +18,7 @@ from rich.text import Text
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
-from scope_ptz.cli.display import LiveView, sanitize, show_end, show_planned
+from scope_ptz.cli.display import BriefView, sanitize, show_brief_end, show_planned
 from scope_ptz.cli.exit import has_input, print_error
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.errors import InputError
@@ -60,6 +60,8 @@ async def _open(flags: SessionFlags, models: ModelOptions) -> Session:
 def _read_and_run(portal: BlockingPortal, chat: _Chat) -> None:
     interactive = sys.stdin.isatty()
     chat.console.print(Text(_WELCOME, style="dim"))
+    if chat.session.note:
+        chat.console.print(Text(chat.session.note, style="yellow"))
     while True:
         try:
             line = input(_PROMPT if interactive else "").strip()
@@ -95,7 +97,6 @@ class _Chat:
         self.turns: tuple[PastTurn, ...] = ()
         self.picture_folder: RunFolder | None = None
         self.idle = Event()
-        self._note = session.note  # printed only after the first run
 
     async def turn(self, line: str) -> None:
         """Carry out a chat command or an instruction. ``idle`` is set at the end, even after a cancellation."""
@@ -124,17 +125,15 @@ class _Chat:
         folder = RunFolder.create(self.session.runs_dir, instruction)
         self.session.planned_commands.clear()
         try:
-            result = await self.session.run(instruction, folder, LiveView(self.console), self.turns)
+            view = BriefView(self.console, echoes=not sys.stdin.isatty())
+            result = await self.session.run(instruction, folder, view, self.turns)
         finally:
             folder.discard_if_not_started()
         self.turns = (*self.turns, result.past_turn())
         if self.session.flags.dry_run:
             show_planned(self.console, self.session.planned_commands)
-        if not result.exchanges and result.ended.outcome in ("clarification", "refused"):
-            show_end(self.console, result.ended)
-            return
-        show_end(self.console, result.ended, self._note, folder.path, make_filmstrip(read_trace(folder.path)))
-        self._note = ""
+        filmstrip = make_filmstrip(read_trace(folder.path))
+        show_brief_end(self.console, result.ended, folder.path if filmstrip is not None else None)
 
 
 @contextmanager

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 MAX_SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 MAX_PLANNED = 12  # maximum number of dry-run commands to print
 MAX_MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
+_TRUTH_SOURCE = " (Source: the simulator's ground truth.)"
 _OUTCOME_TITLES = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -109,6 +110,52 @@ class LiveView:
         elif outcome.result is not None:
             table.add_row("", "", Text(sanitize(shorten(str(outcome.result["message"]), MAX_MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
+
+
+class BriefView(LiveView):
+    """A run listener that prints one line for each step, with its result only where the answer may not repeat it.
+
+    Args:
+        console: The console to print on.
+        echoes: Whether to print the instruction, which an interactive prompt already shows.
+    """
+
+    def __init__(self, console: Console, *, echoes: bool) -> None:
+        super().__init__(console)
+        self._echoes = echoes
+
+    def _show_start(self, record: Started) -> None:
+        if self._echoes:
+            self.console.print(Text.assemble(("› ", "bold cyan"), (sanitize(shorten(record.instruction)), "bold")))
+
+    def _show_call(self, record: Called) -> None:
+        call, outcome = record.outcome.call, record.outcome
+        line = Text.assemble((f"{record.step:>3}  ", "cyan"), (sanitize(call.name), "bold"), "  ", arguments_text(call.arguments))
+        if outcome.error is not None:
+            line.append(f": {sanitize(shorten(outcome.error))}", style="red")
+        elif outcome.result is not None and (result := _brief_result(outcome.result)):
+            line.append(f": {result}", style="green")
+        self.console.print(line)
+
+
+def _brief_result(result: dict[str, Any]) -> str:
+    """Return the result of a step in a word or two: a count, or whether something was found. Empty for other results."""
+    if isinstance(count := result.get("count"), int):
+        return str(count)
+    found = result.get("found")
+    return "" if found is None else "found" if found else "not found"
+
+
+def show_brief_end(console: Console, ended: Ended, folder: Path | None = None) -> None:
+    """Print the answer and, with a run folder, one line with the duration and the path.
+
+    The note that names the simulator's ground truth as the source is left out: a chat states it once, at its start.
+    """
+    title, style = _OUTCOME_TITLES[ended.outcome]
+    console.print(Text.assemble((f"{title}: ", style), (sanitize(ended.text.removesuffix(_TRUTH_SOURCE)), "bold")))
+    if folder is not None:
+        console.print(Text(f"{seconds_text(ended.timings.total_s)} · {folder}", style="dim"), soft_wrap=True)
+    console.print()
 
 
 def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None = None, filmstrip: Path | None = None) -> None:

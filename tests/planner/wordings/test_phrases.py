@@ -24,7 +24,6 @@ NEVER_A_MOVE = [
     "go to gate and then fly over the fence",
     "zoom in on 3",
     "do not zoom",
-    "stop",
     "go to the moon",
     "zoom in on the red car the blue van",
     "track the man the dog",

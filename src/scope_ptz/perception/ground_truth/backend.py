@@ -135,7 +135,7 @@ class GroundTruthPerception(Perception):
         if reply.text.startswith((*_DENIAL_BEGINNINGS, *_ABSENCE_BEGINNINGS)) and (
             unstated := find_unknown_qualities(view, parsed)
         ):
-            return unknown_answer(f"I cannot tell: the scene does not say what is {_quote_list(unstated)}")
+            return unknown_answer(f"I cannot tell from the picture what is {_quote_list(unstated)}")
         return reply
 
     def _find(self, frame: Frame, description: str) -> list[Thing]:

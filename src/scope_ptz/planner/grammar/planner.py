@@ -8,6 +8,7 @@ from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.confirmations import yes_or_no
+from scope_ptz.planner.grammar.binding.small_talk import impossible_request
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.execution.camera_history import position_history
 from scope_ptz.planner.grammar.execution.closer_look import offer_in, offer_text
@@ -58,7 +59,8 @@ def decide_on(meaning: Understanding, state: State) -> Decision:
     if meaning.refusal:
         return Finish(kind="refused", text=meaning.refusal)
     if meaning.clarification:
-        return Finish(kind="clarification", text=meaning.clarification)
+        # A plan quotes the words that were not understood; the reply says why they cannot be carried out, if that is known.
+        return Finish(kind="clarification", text=impossible_request(state.instruction) or meaning.clarification)
     briefing = state.briefing
     positions = position_history(state.conversation)
     program = Program(briefing.limits, briefing.pose, positions=positions, may_go_closer=briefing.simulated)

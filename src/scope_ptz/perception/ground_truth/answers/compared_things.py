@@ -182,7 +182,7 @@ def answer_most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
     values = [value_of(t, ("colour",)) if colour else t.category for t in matches]
     counts = Counter(v for v in values if v is not None)
     if not counts:
-        return unknown_answer("I cannot tell: the scene does not say")
+        return unknown_answer("I cannot tell that from the picture")
     target = (min if question.least else max)(counts.values())
     best = [v for v, n in counts.items() if n == target]
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"

@@ -7,6 +7,7 @@ from dataclasses import replace
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.restating import (
+    cannot_make_out,
     none_in_view,
     noun_phrase,
     predicate_words,
@@ -41,10 +42,10 @@ def add_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> tr
 def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     """Answer whether anything in view matches the description."""
     if background := unmodelled_background(view, question.what):
-        return unknown_answer(f"I cannot tell: the scene says nothing about the {background}")
+        return unknown_answer(cannot_make_out(background))
     matches = find(view, question.what)
     if not matches and (place := unmodelled_place(view, question.what)):
-        return unknown_answer(f"I cannot tell: the scene says nothing about the {place}")
+        return unknown_answer(cannot_make_out(place))
     if question.least != 1 or question.most is not None:
         yes = question.least <= len(matches) and (question.most is None or len(matches) <= question.most)
         total = len(matches)
@@ -89,11 +90,11 @@ def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -
 def answer_count(view: View, question: tree.Count) -> TruthAnswer:
     """Answer how many things match the description and the tests."""
     if background := unmodelled_background(view, question.what):
-        return unknown_answer(f"I cannot tell: the scene says nothing about the {background}")
+        return unknown_answer(cannot_make_out(background))
     description = add_tests(question.what, question.tests)
     total = len(find(view, description))
     if not total and (place := unmodelled_place(view, description)):
-        return unknown_answer(f"I cannot tell: the scene says nothing about the {place}")
+        return unknown_answer(cannot_make_out(place))
     if len(question.what.phrases) > 1:
         return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
     statement = f"{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Literal
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.answers.restating import definite_phrase, is_plural, none_in_view
+from scope_ptz.perception.ground_truth.answers.restating import definite_phrase, is_plural, none_in_view, noun_phrase
+from scope_ptz.perception.ground_truth.answers.text_blocks import TextBlock, blocks_of
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
@@ -57,33 +59,97 @@ def _is_speed_limit(view: View, text: TextSighting) -> bool:
 
 
 def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
+    """Answer with the legible texts, and say what could not be read."""
     subject = definite_phrase(view, what, is_plural(what)) if what else "the picture"
-    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
-    if legible:
-        quoted = english.listing([f'"{t}"' for t in legible])
-        if plate:
-            return TruthAnswer(english.sentence(f"the number plate reads {quoted}"))
-        return TruthAnswer(
-            english.sentence(
-                f"{subject} {'read' if what and is_plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
-            )
-        )
-    if texts:
-        thing = "a number plate" if plate else "text"
-        return unknown_answer(
-            f"there is {thing} {'on ' + subject if what else 'in view'}, but it is {illegibility_reason(texts)} to read"
-        )
+    if not any(t.legible for t in texts):
+        return _nothing_legible(subject if what else "", texts, plate)
     if plate:
-        return unknown_answer(f"I cannot tell: I can see no number plate {'on ' + subject if what else 'in view'}")
-    return known_answer(f"there is no text on {subject}" if what else "there is no text in view")
+        return TruthAnswer(english.sentence(f"the number plate reads {english.listing(quotes(texts))}"))
+    readers = _things_with_text(texts, legible=True)
+    if what is None:
+        return known_answer(f"I can read {english.listing(quotes(texts))}{_unread_rest(view, texts)}")
+    if is_plural(what) and (unread := _illegible_things(view, texts)):
+        share = f"{len(readers)} of the {len(readers) + len(unread)} {noun_phrase(view, what, plural=True)} in view"
+        return known_answer(f"I can read {share}:{_quoted(view, texts, readers)}{_unread_things(texts, unread)}")
+    verb = "read" if is_plural(what) else "reads"
+    return known_answer(f"{_quoted(view, texts, readers, f'{subject} {verb}')}{_unread_rest(view, texts)}")
 
 
-def illegibility_reason(texts: Sequence[TextSighting]) -> str:
-    """Return why the largest of several illegible texts cannot be read."""
-    best = max(texts, key=lambda t: t.cap_height_px)
-    if best.cap_height_px < MIN_CAP_HEIGHT_PX:
-        return "too small"
-    return "too oblique" if best.angle_deg > MAX_READING_ANGLE_DEG else "too much hidden or cut off"
+def _nothing_legible(subject: str, texts: Sequence[TextSighting], plate: bool) -> TruthAnswer:
+    place = f"on {subject}" if subject else "in view"
+    if texts:
+        return unknown_answer(f"there is {'a number plate' if plate else 'text'} {place}, but {illegibility(texts)} to read")
+    if plate:
+        return unknown_answer(f"I cannot tell: I can see no number plate {place}")
+    return known_answer(f"I can see no text {f'{place} from here' if subject else place}")
+
+
+def quotes(texts: Sequence[TextSighting]) -> list[str]:
+    """Return the legible texts in quotation marks: the lines of a sign together, each row of a list on its own."""
+    return list(dict.fromkeys(f'"{line}"' for block in _blocks(texts) for line in block.lines))
+
+
+def _blocks(texts: Sequence[TextSighting]) -> list[TextBlock]:
+    return [
+        block
+        for thing in _things_with_text(texts, legible=True)
+        for block in blocks_of([t for t in texts if t.text.parent == thing and t.legible])
+    ]
+
+
+def _quoted(view: View, texts: Sequence[TextSighting], readers: Sequence[str], reads: str = "") -> str:
+    """Return the quotations after ``reads``. The rows of a list have a line each, and several lists have a heading each."""
+    by_thing = {thing: [t for t in texts if t.text.parent == thing] for thing in readers}
+    if not any(block.is_list for block in _blocks(texts)):
+        return f"{reads} {english.listing(quotes(texts))}"
+    rows = {thing: "\n".join(quotes(on_thing)) for thing, on_thing in by_thing.items()}
+    if len(rows) == 1 and reads:
+        return f"{reads}:\n{rows[readers[0]]}"
+    heading = "" if reads else "\n"
+    return heading + "\n".join(f"The {view.instances[thing].name} reads:\n{row}" for thing, row in rows.items())
+
+
+def _things_with_text(texts: Sequence[TextSighting], *, legible: bool) -> list[str]:
+    """Return the ids of the things that bear any of the texts."""
+    return list(dict.fromkeys(t.text.parent for t in texts if t.legible or not legible))
+
+
+def _illegible_things(view: View, texts: Sequence[TextSighting]) -> list[str]:
+    """Return the ids of the visible things on which no text is legible."""
+    readers = _things_with_text(texts, legible=True)
+    return [thing for thing in _things_with_text(texts, legible=False) if thing not in readers and thing in view.by_id]
+
+
+def _unread_things(texts: Sequence[TextSighting], unread: Sequence[str]) -> str:
+    """Return the sentence about the things on which no text is legible, with all the reasons."""
+    rest = "The other one is" if len(unread) == 1 else f"The other {len(unread)} are"
+    reasons = dict.fromkeys(_REASONS[_problem(t)] for t in texts if t.text.parent in unread)
+    return f". {rest} {english.listing(list(reasons), 'or')} to read from here"
+
+
+def _unread_rest(view: View, texts: Sequence[TextSighting]) -> str:
+    """Return the sentence about visible text that is not legible, beside the text that is; empty if there is none."""
+    rest = [t for t in texts if not t.legible and t.unhidden_fraction > 0 and t.text.parent in view.by_id]
+    return f". The rest is {_REASONS[_problem(_largest(rest))]} to read" if rest else ""
+
+
+_REASONS = {"small": "too small", "oblique": "seen too much from the side", "hidden": "too much hidden or cut off"}
+
+
+def _problem(text: TextSighting) -> Literal["small", "oblique", "hidden"]:
+    if text.cap_height_px < MIN_CAP_HEIGHT_PX:
+        return "small"
+    return "oblique" if text.angle_deg > MAX_READING_ANGLE_DEG else "hidden"
+
+
+def _largest(texts: Sequence[TextSighting]) -> TextSighting:
+    return max(texts, key=lambda t: t.cap_height_px)
+
+
+def illegibility(texts: Sequence[TextSighting]) -> str:
+    """Return why the largest of several illegible texts cannot be read, in words before "to read"."""
+    problem = _problem(_largest(texts))
+    return "too much of it is hidden or cut off" if problem == "hidden" else f"it is too {problem}"
 
 
 def answer_text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
@@ -98,18 +164,16 @@ def answer_text_exists(view: View, question: tree.TextExists) -> TruthAnswer:
         texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
         where = f"on {definite_phrase(view, question.what, is_plural(question.what))}"
         place = f" {where}"
-    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
-    if legible:
-        return known_answer(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}{place}")
+    if any(t.legible for t in texts):
+        return known_answer(f"yes, I can read {english.listing(quotes(texts))}{place}")
     if texts:
-        return unknown_answer(f"there is text {where}, but it is {illegibility_reason(texts)} to read")
-    return known_answer(f"no, there is no text {where}")
+        return unknown_answer(f"there is text {where}, but {illegibility(texts)} to read")
+    return known_answer(f"no, I can see no text {where}{' from here' if place else ''}")
 
 
 def answer_from_signs(view: View, signs: Sequence[Thing], fact: str) -> TruthAnswer | None:
     """Answer with a fact that is written on signs, such as the speed limit; None if the signs have no text."""
     texts = _texts_on(view, signs, plate=False)
-    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_speed_limit(view, t))))
-    if legible:
-        return TruthAnswer(english.sentence(f"the {fact} reads {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
+    if legible := [t for t in texts if t.legible and ("limit" not in fact or _is_speed_limit(view, t))]:
+        return TruthAnswer(english.sentence(f"the {fact} reads {english.listing(quotes(legible))}"))
     return _quote_texts(view, None, texts, plate=False) if texts else None

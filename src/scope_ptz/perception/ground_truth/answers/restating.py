@@ -83,7 +83,16 @@ def phrase_as_asked(view: View, description: tree.Description) -> str:
 
 def _with_article(view: View, phrase: tree.Phrase) -> str:
     words = _phrase_words(view, phrase, is_plural(tree.Description((phrase,))))
-    return english.article(words) if phrase.article == "a" else f"the {words}" if phrase.article == "the" else words
+    if phrase.article == "a":
+        return english.article(words)
+    return f"the {words}" if phrase.article == "the" or _lacks_article(phrase) else words
+
+
+def _lacks_article(phrase: tree.Phrase) -> bool:
+    """Return whether a phrase needs an article that its question left out: "doors on tram"."""
+    concept = lexicon().concept(phrase.words[-1]) if phrase.words else None
+    is_bare = phrase.words[-1:] != ("traffic",) and not phrase.tests and not is_plural(tree.Description((phrase,)))
+    return concept is not None and is_bare
 
 
 def definite_as_asked(view: View, description: tree.Description) -> str:
@@ -173,8 +182,8 @@ def _item_phrases(what: tree.Description, count: int = 1) -> str:
 
 
 def _item_phrase(words: str, is_pronoun: bool, count: int) -> str:
-    if is_pronoun or english.is_plural(words.split()[-1]):
-        return words
+    if is_pronoun or english.is_plural(words.split()[-1]) or words.split()[-1] in english.COLOURS:
+        return words  # "wearing red"
     return english.article(words) if count == 1 else english.plural(words)
 
 
@@ -238,6 +247,11 @@ def none_in_view(view: View, description: tree.Description) -> str:
     only_one = len(description.phrases) > 1 and not any(is_plural(tree.Description((p,))) for p in description.phrases)
     words = english.listing([noun_phrase(view, tree.Description((p,)), plural and not only_one) for p in description.phrases], "or")
     return f"there {'are' if plural and not only_one else 'is'} no {words} in view"
+
+
+def cannot_make_out(background: str) -> str:
+    """Return the statement that a background, which the scene does not model, cannot be seen well enough."""
+    return f"I cannot tell: I cannot make out the {background} in the picture"
 
 
 def unmodelled_background(view: View, description: tree.Description) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
+from scope_ptz.perception.ground_truth.answers.legible_text import quotes
 from scope_ptz.perception.ground_truth.answers.locations import answer_what
 from scope_ptz.perception.ground_truth.answers.restating import none_in_view, noun_phrase
 from scope_ptz.perception.ground_truth.answers.thing_names import (
@@ -45,8 +46,8 @@ def answer_describe(view: View, question: tree.Describe) -> TruthAnswer:
     if not groups:
         return known_answer("I can see nothing that stands out")
     parts = english.listing(groups[:MAX_GROUPS])
-    texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
-    readable = f". I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
+    texts = quotes(view.texts)[:MAX_TEXTS]
+    readable = f". I can read {english.listing(texts)}" if texts else ""
     return known_answer(f"I can see {parts}{readable}")
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.answers.legible_text import illegibility_reason
+from scope_ptz.perception.ground_truth.answers.legible_text import illegibility
 from scope_ptz.perception.ground_truth.answers.restating import phrase_as_asked
 from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
 from scope_ptz.perception.ground_truth.thing_facts import FILLER_WORDS
@@ -113,8 +113,8 @@ def _illegible_answer(groups: Sequence[_ThingTexts], what: str) -> TruthAnswer |
     group = next((p for p in groups if not all(t.legible for t in p.texts)), None)
     if group is None:
         return None
-    reason = illegibility_reason([t for t in group.texts if not t.legible])
-    return unknown_answer(f"{what} is on the {group.name}, but it is {reason} to read")
+    reason = illegibility([t for t in group.texts if not t.legible])
+    return unknown_answer(f"{what} is on the {group.name}, but {reason} to read")
 
 
 def _texts_by_thing(view: View, includes: Callable[[str], bool] = lambda _: True) -> list[_ThingTexts]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from scope_ptz import english
@@ -42,18 +43,51 @@ def coloured_name(thing: Thing) -> str:
 
 
 def list_names(things: Iterable[Thing]) -> str:
-    """List things in words, in the given order: "a white van, 2 traffic cones and a worker"."""
+    """List things in words: "a white van, 2 traffic cones, dock doors 2 and 3 and a worker".
+
+    The given order is kept if all things can be named; otherwise, those that look largest are named.
+    """
+    things = list(things)
+    parts = _names(things)
+    if len(parts) <= MAX_NAMED:
+        return english.listing(parts)
+    largest_first = sorted(things, key=lambda t: -t.sighting.pixels)
+    return english.listing([*_names(largest_first)[:MAX_NAMED], "smaller things"])
+
+
+def _names(things: Iterable[Thing]) -> list[str]:
+    """Return the names of things with their counts, in the given order."""
     counts = Counter(coloured_name(t) for t in things)
-    parts = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
-    if len(parts) > MAX_NAMED:
-        more = sum(list(counts.values())[MAX_NAMED:])
-        parts = [*parts[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
-    return english.listing(parts)
+    return [_counted_name(name, count) for name, count in _with_numbers_together(counts).items()]
+
+
+def _with_numbers_together(counts: Mapping[str, int]) -> dict[str, int]:
+    """Return names with their counts, where "dock door 2" and "dock door 3" have become "dock doors 2 and 3"."""
+    numbers: dict[str, list[int]] = {}
+    for name in counts:
+        if match := _NUMBERED.fullmatch(name):
+            numbers.setdefault(match["kind"], []).append(int(match["number"]))
+    together: dict[str, int] = {}
+    for name, count in counts.items():
+        match = _NUMBERED.fullmatch(name)
+        if match is not None and len(series := numbers[match["kind"]]) > 1:
+            together[f"{english.plural(match['kind'])} {english.listing([str(n) for n in sorted(series)])}"] = 1
+        else:
+            together[name] = count
+    return together
+
+
+_NUMBERED = re.compile(r"(?P<kind>.*[a-z]) (?P<number>\d+)")
+
+
+def _counted_name(name: str, count: int) -> str:
+    return english.article(name) if count == 1 else f"{count} {english.plural(name)}"
 
 
 def names_with_positions(things: Sequence[Thing]) -> str:
-    """List things with their positions: "a white van on the left and a red car in the middle"."""
-    return english.listing([f"{english.article(coloured_name(t))} {position_words(t)}" for t in things])
+    """List things with their positions: "a white van on the left and 2 red cars in the middle"."""
+    counts = Counter((coloured_name(t), position_words(t)) for t in things)
+    return english.listing([f"{_counted_name(name, count)} {place}" for (name, place), count in counts.items()])
 
 
 def position_words(thing: Thing) -> str:

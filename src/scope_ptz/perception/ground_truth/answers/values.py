@@ -7,10 +7,12 @@ from collections.abc import Sequence
 
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import singular_phrase
+from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_from_signs
 from scope_ptz.perception.ground_truth.answers.restating import (
+    cannot_make_out,
     definite_as_asked,
     definite_phrase,
     is_plural,
@@ -68,8 +70,9 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     stated = [(t, v) for t, v in values if v is not None]
     if not stated:
         attribute, subject = " ".join(question.attribute), definite_as_asked(view, question.what)
-        missing = f"what {subject} is {attribute}" if attribute.endswith("ing") else f"the {attribute} of {subject}"
-        return unknown_answer(f"I cannot tell: the scene does not state {missing}")
+        if attribute.endswith("ing"):
+            return unknown_answer(f"I cannot tell from the picture what {subject} is {attribute}")
+        return unknown_answer(f"I cannot tell the {attribute} of {subject} from the picture")
     prefix = next((v for words, v in _VALUE_PREFIXES.items() if set(words.split()) & set(question.attribute)), "")
     if prefix == "facing " and all("direction" in t.attributes for t, _ in stated):
         prefix = "pointing "
@@ -212,8 +215,9 @@ def answer_fact_in_view(view: View, attribute: Sequence[str]) -> TruthAnswer:
     signs = find(view, tree.Description((tree.Phrase(tuple(attribute)),)))
     if "limit" in attribute:
         signs = [t for t in (signs or view.with_cut_off_texts().things) if any(x.strip().isdigit() for x in t.texts)] or signs
+    names_fact = "NOUN" in parts_of_speech(attribute[-1])
     return answer_from_signs(view, signs, " ".join(attribute)) or unknown_answer(
-        f"I cannot tell: nothing in view says the {' '.join(attribute)}"
+        f"I cannot tell: nothing in view states the {' '.join(attribute)}" if names_fact else "I cannot tell that from the picture"
     )
 
 
@@ -230,5 +234,5 @@ def answer_absent(view: View, subject: tree.Description) -> TruthAnswer:
     if any(p.words and p.words[-1] in UNANSWERABLE_SUBJECTS for p in subject.phrases):
         return unknown_answer("I cannot tell that from the picture")
     if background := unmodelled_background(view, subject):
-        return unknown_answer(f"I cannot tell: the scene says nothing about the {background}")
+        return unknown_answer(cannot_make_out(background))
     return known_answer(none_in_view(view, subject))

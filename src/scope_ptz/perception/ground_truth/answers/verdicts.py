@@ -47,13 +47,13 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     subject, tests = _split_question(view, question)
     if not tests:
         if not find(view, subject) and (activity := _unstated_activity(view, subject)):
-            return unknown_answer(f"I cannot tell: the scene does not state whether anyone is {activity}")
+            return unknown_answer(f"I cannot tell from the picture whether anyone is {activity}")
         return answer_exists(view, tree.Exists(subject))
     if (text := _answer_as_text(view, subject, tests)) is not None:
         return text
     things = find(view, subject)
     if not things and (activity := _unstated_activity(view, subject)):
-        return unknown_answer(f"I cannot tell: the scene does not state whether anyone is {activity}")
+        return unknown_answer(f"I cannot tell from the picture whether anyone is {activity}")
     if not things:
         return _answer_about_part(view, subject, tests) or answer_absent(view, subject)
     missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)

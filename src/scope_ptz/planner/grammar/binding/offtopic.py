@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from scope_ptz.english import singular
+from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.planner.grammar.lexing.lexicon import off_topic_phrases
 
 _ARITHMETIC = re.compile(r"\d\s*[-+*/×]\s*\d|\bwhat(?:'s| is) \d+\b")
@@ -21,7 +23,13 @@ def is_about_the_scene(question: str) -> bool:
     text = " ".join(question.lower().replace("’", "'").split())
     if _CLOCK.search(text):
         return True  # "what is the time on the station clock?"
-    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in off_topic_phrases()) or _ARITHMETIC.search(text))
+    return not (any(_is_topic(phrase, text) for phrase in off_topic_phrases()) or _ARITHMETIC.search(text))
+
+
+def _is_topic(phrase: str, text: str) -> bool:
+    """Return whether a text is about a phrase, and does not just contain it in the name of a thing ("news" in "news kiosk")."""
+    founds = re.finditer(rf"\b{re.escape(phrase)}\b(?: ([a-z]+))?", text)
+    return any(" " in phrase or not found[1] or lexicon().concept(singular(found[1])) is None for found in founds)
 
 
 def is_harmful(instruction: str) -> bool:

@@ -9,6 +9,8 @@ from typing import Literal
 from scope_ptz.english import is_plural
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.preset_matching import match_exactly
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
 
 _BARE_WHO_OR_WHAT = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
 _WAITING = re.compile(r"(when(?!(?:['’]s| (?:do|does|did|is|are|will|was|were))\b)|once|as soon as|whenever)\b", re.IGNORECASE)
@@ -42,6 +44,7 @@ _ANY_THERE = re.compile(
     re.IGNORECASE,
 )
 _DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
+_BEFORE_CAMERA = "(FILLER)* what BE (in_front_of_you|in_front_of_us|in_front_of_the_camera) (FILLER|NOW|QUESTION|STOP)*"
 _POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
 _IMPERSONAL = re.compile(
@@ -71,8 +74,8 @@ def how_many_predicate(question: str) -> str:
 
 
 def is_request_to_describe(question: str) -> bool:
-    """Return whether the question is the bare request "describe", "describe each view" or the like."""
-    return bool(_DESCRIBE.fullmatch(question.strip()))
+    """Return whether the question is the bare request "describe", "describe each view", "what is in front of you?" or the like."""
+    return bool(_DESCRIBE.fullmatch(question.strip()) or full_match(_BEFORE_CAMERA, lexemes_of(question)))
 
 
 def is_about_the_future(question: str, *, embedded: bool) -> bool:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
 from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
+from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
 from scope_ptz.planner.grammar.consistency.check import (
     not_understood,
     objection,
@@ -61,6 +63,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification=f"What shall I do? For example: {_EXAMPLES}.")
     if is_harmful(instruction):
         return Understanding(refusal=REFUSAL)
+    if reply := reply_to_small_talk(instruction):
+        return Understanding((ast.Reply(reply),))
     preset_names = None if presets is None else tuple(presets)
     if _NO.fullmatch(instruction.strip()):
         return Understanding(clarification="Then I do nothing. What shall I do instead?")
@@ -115,6 +119,8 @@ def _question_about_unparsed(parsed: Parsed) -> UnresolvedError:
     if len(parsed.text) > MAX_CHARS:
         return UnresolvedError(f"That is too long: I read at most {MAX_CHARS} characters, so I did nothing. Please split it.")
     if parsed.unread:
+        if is_whole_question(parsed.text, parsed.unread):
+            return UnresolvedError(f"I did not understand that question. {answerable_questions(parsed.text)}")
         return UnresolvedError(not_understood(parsed.unread))
     if all(x.has("FILLER", "COMMA", "STOP", "QUESTION") for x in lexemes_of(parsed.text)):
         return UnresolvedError(f"What shall I do? For example: {_EXAMPLES}.")  # "hello"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 from scope_ptz import english
 from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import lexicon
 from scope_ptz.english.nouns import plural_noun
+from scope_ptz.planner.grammar.answerable import answerable_questions
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
     Joined,
@@ -52,7 +52,7 @@ def count_word(count: int) -> str:
 
 def head_and_rest(description: str) -> tuple[str, str]:
     """Split a description after its head noun: "red cars" and " behind the gate", "people" and " sitting down"."""
-    match = _MODIFIER_START.search(description) or _participle_after_noun(description)
+    match = _MODIFIER_START.search(description) or _participle_after_noun(description) or _finite_verb_after_noun(description)
     return (description[: match.start()], description[match.start() :]) if match else (description, "")
 
 
@@ -75,14 +75,37 @@ def _participle_after_noun(description: str) -> re.Match[str] | None:
     return None
 
 
+def _finite_verb_after_noun(description: str) -> re.Match[str] | None:
+    """Return the verb that follows the noun, as in "workers wear a helmet", but not in "cars park"."""
+    match = _FINITE_VERB.search(description)
+    return match if match is not None and english.is_plural(description[: match.start()].split(" ")[-1].lower()) else None
+
+
+_FINITE_VERB = re.compile(r"\s(wear|carry|hold|have|use|ride|drive|push|pull)\s", re.IGNORECASE)
+_THIRD_PERSON = {"carry": "carries", "have": "has", "push": "pushes"}
+
+
+def _with_relative_pronoun(head: str, rest: str, count: float) -> str:
+    """Return what follows the noun, with "who" or "that" before a finite verb: "3 workers who wear a helmet"."""
+    if (match := _FINITE_VERB.match(rest)) is None:
+        return rest
+    verb = match[1].lower()
+    concept = lexicon().concept(head.split(" ")[-1].lower())
+    pronoun = "who" if concept is not None and "person" in lexicon().kinds(concept) else "that"
+    return f" {pronoun} {_THIRD_PERSON.get(verb, f'{verb}s') if count == 1 else verb} {rest[match.end() :]}"
+
+
 def noun(description: str, count: float) -> str:
     """Return the description with its head noun in the singular or plural."""
     if is_uncountable(description):
         return description
+    if description.lower() in english.COLOURS:
+        description += " thing"
     end = _end_of_noun(head_and_rest(description)[0])
     head, rest = description[:end], description[end:]
     *front, last = head.split(" ")
-    return " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)]) + rest
+    inflected = " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)])
+    return inflected + _with_relative_pronoun(head, rest, count)
 
 
 def is_uncountable(description: str) -> bool:
@@ -107,56 +130,23 @@ def counted(description: str, count: int, *, complete: bool = True) -> str:
     return f"{number} {noun(description, count)}"
 
 
-def where(view: str) -> str:
-    """Return the scope of a count or question in words."""
-    return "in the whole scene" if view == "full" else "in this view"
+def where(view: str, descriptions: Sequence[str] = ()) -> str:
+    """Return the scope of a count in words, after a space; empty if each description already names a part of the view."""
+    if view == "full":
+        return " in the whole scene"
+    return "" if descriptions and all(map(_PART_OF_VIEW.search, descriptions)) else " in this view"
+
+
+_PART_OF_VIEW = re.compile(
+    r" (?:in|on|at) the (?:(?:top|bottom|upper|lower|left|right)(?:[ -]hand)? ?)+(?:half|side|quarter|corner)?$"
+    r"| in the (?:middle|centre|foreground|background|distance|(?:left|right|top|bottom|middle) third)$",
+    re.IGNORECASE,
+)
 
 
 def pose_text(pose: Mapping[str, float]) -> str:
     """Return a pose in words."""
     return f"pan {pose['pan_deg']:.1f}, tilt {pose['tilt_deg']:.1f}, zoom {pose['zoom']:.1f}x"
-
-
-def move_text(arguments: Mapping[str, Any]) -> str:
-    """Describe a relative move in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
-    parts = []
-    if pan := arguments.get("pan_deg"):
-        parts.append(f"panned {'right' if pan > 0 else 'left'} {degrees(pan)}")
-    if tilt := arguments.get("tilt_deg"):
-        parts.append(f"tilted {'up' if tilt > 0 else 'down'} {degrees(tilt)}")
-    if factor := arguments.get("zoom_factor"):
-        parts.append(f"zoomed {'in' if factor >= 1 else 'out'} {number(round(factor if factor >= 1 else 1 / factor, 2))} times")
-    if percent := arguments.get("zoom_percent"):
-        parts.append(f"zoomed {'in' if percent > 0 else 'out'} by {number(abs(percent))}%")
-    if limit := arguments.get("zoom_limit"):
-        parts.append(f"zoomed all the way {limit}")
-    return english.listing(parts) or "did not move"
-
-
-def degrees(value: float) -> str:
-    """Return an angle without its sign, with the word "degree" or "degrees"."""
-    return f"{number(round(abs(value), 2))} {'degree' if abs(value) == 1 else 'degrees'}"
-
-
-def moves_text(arguments: Mapping[str, Any], times: int) -> str:
-    """Describe the moves of a loop: "two pans of 15 degrees to the right"."""
-    plural = "" if times == 1 else "s"
-    pan, tilt = arguments.get("pan_deg"), arguments.get("tilt_deg")
-    if pan and not tilt and len(arguments) == 1:
-        return f"{count_word(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
-    if tilt and not pan and len(arguments) == 1:
-        return f"{count_word(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
-    return f"{count_word(times)} move{plural}"
-
-
-def shortfall_text(result: Mapping[str, Any]) -> str:
-    """Return the words that state why a move ended early (a site rule or a camera limit); empty if it did not."""
-    if held_back_by := result.get("held_back_by"):
-        return f", held back by {held_back_by}"
-    clamped = result.get("clamped", ())
-    if not clamped:
-        return ""
-    return f", as far as the {english.listing(list(clamped))} {'limit allows' if len(clamped) == 1 else 'limits allow'}"
 
 
 def sentence(text: str) -> str:
@@ -183,10 +173,12 @@ def not_understood_text(error: str) -> str:
     Empty for other errors.
     """
     if place := _NOT_MODELLED.match(error):
-        return f"I cannot tell: the scene says nothing about the {place['place']}"
+        return f"I cannot tell: I cannot make out the {place['place']} in the picture"
     match = _NOT_UNDERSTOOD.match(error)
     if match is None:
         return ""
+    if match["text"] and error.startswith("The question"):
+        return f"I did not understand that question. {answerable_questions(match['text'])}"
     words = re.sub(r"'( and |, )'", r'"\1"', match["words"] or "")
     return f'I did not understand "{match["text"] or words}"'
 
@@ -194,6 +186,12 @@ def not_understood_text(error: str) -> str:
 def with_lower_initial(text: str) -> str:
     """Return text with a lower-case first letter, unless it begins with "I" or capitals, so that it can follow a colon."""
     return text if len(text) < 2 or not text[1].islower() else text[0].lower() + text[1:]
+
+
+def chosen_text(description: str, matches: int, chosen: str) -> str:
+    """Return which of several things was chosen: "one of the 20 signs in view, the Plough sign"."""
+    name = chosen.removeprefix("The ").removeprefix("the ")
+    return f"one of the {matches} {noun(description, matches)} in view{f', the {name}' if name else ''}"
 
 
 def reason_and_reaction(reason: str, reaction: str) -> str:

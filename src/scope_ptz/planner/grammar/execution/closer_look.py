@@ -84,6 +84,10 @@ class CloserLook(RunState):
         result = yield from self._perception_call("query_answer", question=question, view="current")
         if result is None or not result.get("known", True):
             self._note(f"I zoomed in on the {thing}, but that did not help, so I put the camera back")
+        elif (matches := zoomed.get("matches", 1)) > 1:
+            chosen = phrases.chosen_text(thing, matches, zoomed.get("chosen", ""))
+            others = "other one" if matches == 2 else f"other {matches - 1}"
+            self._note(f"I zoomed in on {chosen}, and put the camera back afterwards; I did not go closer to the {others}")
         else:
             self._note(f"I zoomed in on the {thing} to answer that, and put the camera back afterwards")
         if self.assume_met:

@@ -21,7 +21,7 @@ def counts_text(parts: Sequence[ast.Tally], counts: Sequence[int]) -> str:
         else phrases.counted(part.thing.text, count) + (_at(part) if part.place else "")
         for i, (part, count) in enumerate(zip(parts, counts, strict=True))
     ]
-    where = "" if any(part.place for part in parts) else f" {phrases.where(parts[0].view or 'current')}"
+    where = "" if any(part.place for part in parts) else phrases.where(parts[0].view or "current")
     return f"I can see {english.listing(listed)}{where}"
 
 

@@ -17,6 +17,7 @@ from scope_ptz import english
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
+from scope_ptz.planner.grammar.execution import move_sentences as motion
 from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
@@ -74,9 +75,8 @@ class Program(ComparisonSteps):
         start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
         # Report a move that was cut short as the camera made it.
-        shortfall = phrases.shortfall_text(result)
-        moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
-        report = f"I {phrases.move_text(moved)}{shortfall}"
+        moved = return_arguments(self.pose, start, self.limits) if motion.shortfall_text(result) else arguments
+        report = motion.report_of_move(arguments, moved, result)
         self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _back(self, step: ast.Back) -> CallGenerator:
@@ -105,7 +105,9 @@ class Program(ComparisonSteps):
     def _return(self, pose: Pose) -> CallGenerator:
         arguments = return_arguments(pose, self.pose, self.limits)
         result = yield from self._camera_call("adjust_ptz", **arguments)
-        self._note(f"I {phrases.move_text(arguments)} to go back; the camera is now at {phrases.pose_text(result['pose'])}")
+        shortfall = motion.shortfall_text(result)
+        done = motion.move_text(arguments) if set(arguments) <= {"zoom_factor"} else "went back to where the camera was before"
+        self._note(f"I {done}{shortfall}; the camera is now at {phrases.pose_text(result['pose'])}")
 
     def _go_to(self, place: VisitedPosition) -> CallGenerator:
         if place.preset:
@@ -123,12 +125,13 @@ class Program(ComparisonSteps):
         result = yield from self._camera_call("go_home")
         self._went_home = True
         self._record_position(None, home=True)
-        self._note(f"I went to the home view{phrases.shortfall_text(result)}")
+        self._note(f"I went to the home view{motion.shortfall_text(result)}")
 
     def _gotopreset(self, step: ast.GoToPreset) -> CallGenerator:
         result = yield from self._camera_call("go_to_preset", name=step.ref.name)
         self._record_position(step.ref.name)
-        self._note(f"I went to preset {step.ref.name}{phrases.shortfall_text(result)}")
+        self.stops.append(len(self.notes))
+        self._note(f"I went to preset {step.ref.name}{motion.shortfall_text(result)}")
 
     def _gothere(self, step: ast.GoThere) -> CallGenerator:
         if self._best_preset:
@@ -163,9 +166,10 @@ class Program(ComparisonSteps):
                 self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
             return
         self._moved_to_object = True
-        many = f" ({result['matches']} matched; {result['chosen'] or 'one was chosen'})" if result.get("matches", 1) > 1 else ""
-        limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
-        self._note(f"I zoomed in on {_the(step.thing)}{many}{limits}")
+        matches = result.get("matches", 1)
+        target = phrases.chosen_text(text, matches, result.get("chosen", "")) if matches > 1 else _the(step.thing)
+        limits = f", as far as the {motion.limits_text(result['limited_by'])}" if result.get("limited_by") else ""
+        self._note(f"I zoomed in on {target}{limits}")
 
     def _track(self, step: ast.Track) -> CallGenerator:
         text = step.thing.text
@@ -180,9 +184,10 @@ class Program(ComparisonSteps):
             self._note(f"I could not find {_the(step.thing)} to follow")
             return
         self._moved_to_object = True
-        share = round(100 * result.get("held_share", 0.0))
+        followed = phrases.noun(text, 1)
         seconds = phrases.number(result.get("duration_s", step.seconds))
-        self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
+        time = motion.share_of_time(result.get("held_share", 0.0))
+        self._note(f"I followed the {followed} for {seconds} seconds and had it in view {time}")
 
     def _count(self, step: ast.Count) -> CallGenerator:
         view, counted = step.view or "current", list[str]()
@@ -192,7 +197,7 @@ class Program(ComparisonSteps):
             if result is not None:
                 counted.append(phrases.counted(thing.text, result["count"], complete=result.get("complete", True)))
         if counted:
-            self._note(f"I can see {english.listing(counted)} {phrases.where(view)}")
+            self._note(f"I can see {english.listing(counted)}{phrases.where(view, [thing.text for thing in step.things])}")
 
     def _ask(self, step: ast.Ask, thing: str = "") -> CallGenerator:
         result = yield from self._answer_to(step.question, step.view or "current", thing)
@@ -218,11 +223,17 @@ class Program(ComparisonSteps):
 
     def _camerastate(self, step: ast.CameraState) -> CallGenerator:
         yield from ()
-        self._note(f"The camera is at {phrases.pose_text(self.pose.as_dict())}")
+        place = self._visited[-1]
+        preset = f"preset {place.preset}: " if place.preset and place.pose == self.pose else ""
+        self._note(f"The camera is at {preset}{phrases.pose_text(self.pose.as_dict())}")
 
     def _help(self, step: ast.Help) -> CallGenerator:
         yield from ()
         self._note(_CAPABILITIES)
+
+    def _reply(self, step: ast.Reply) -> CallGenerator:
+        yield from ()
+        self._note(step.text)
 
     def _do_nothing(self, step: ast.Step) -> CallGenerator:
         yield from ()
@@ -253,7 +264,7 @@ class Program(ComparisonSteps):
             if met is None and isinstance(step.until, ast.Negated):
                 raise HaltedError(f"{reason}, so I stopped")  # "while" continues only as long as its condition is known to hold
             if met:
-                self._note(f"{reason} after {phrases.moves_text(last, moves)}" if moves else f"{reason} without having to move")
+                self._note(f"{reason} after {motion.moves_text(last, moves)}" if moves else f"{reason} without having to move")
                 return
             if moves >= limit:
                 break
@@ -268,10 +279,10 @@ class Program(ComparisonSteps):
             moves += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
                 yield from self._end_unmet_loop(
-                    step, best, f": the camera reached its limit after {phrases.moves_text(last, moves)}"
+                    step, best, f": the camera reached its limit after {motion.moves_text(last, moves)}"
                 )
                 return
-        yield from self._end_unmet_loop(step, best, f", and stopped after {phrases.moves_text(last, moves)}")
+        yield from self._end_unmet_loop(step, best, f", and stopped after {motion.moves_text(last, moves)}")
 
     def _end_unmet_loop(self, step: ast.Loop, best: int, ending: str) -> CallGenerator:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
@@ -313,7 +324,7 @@ def _the(thing: ast.Thing) -> str:
 
 
 def _highest_count_text(best: int) -> str:
-    return f" (the most was {best})" if best >= 0 else ""
+    return f" (the most was {best})" if best > 0 else ""
 
 
 def _whole_as_int(value: float) -> float:

@@ -10,6 +10,9 @@ from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
 
+_MIN_LISTED_STOPS = 3
+"""Minimum number of presets in an answer with a line for each of them."""
+
 CallRequest = tuple[str, dict[str, Any]]
 """The name and arguments of a requested tool call."""
 
@@ -65,6 +68,7 @@ class RunState:
         may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers to.
         moves_are_forbidden: Whether the user forbids camera moves.
         notes: The sentences of the answer.
+        stops: The indices of the notes with which the report about a preset begins.
         sources: The sources of the perception results.
     """
 
@@ -76,6 +80,7 @@ class RunState:
     moves_are_forbidden: bool = False
     offers: list[Offer] = field(default_factory=list)  # closer looks that the user must allow first
     notes: list[str] = field(default_factory=list)
+    stops: list[int] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     _not_found: set[str] = field(default_factory=set)  # descriptions of objects that were not found
     _visited: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
@@ -86,9 +91,10 @@ class RunState:
     _last_was_yes: bool | None = None  # whether the last answer was yes or the last look found something; None if unknown
 
     def answer(self) -> str:
-        """Return the answer: all notes, and the note about the sources."""
-        text = " ".join(phrases.sentence(note) for note in self.notes if note) or "There was nothing to do."
-        return text + phrases.source_text(self.sources)
+        """Return the answer: all notes, and the note about the sources. The report of a long tour has a line for each preset."""
+        starts = self.stops if len(self.stops) >= _MIN_LISTED_STOPS else ()
+        notes = (("\n" if i in starts else " ") + phrases.sentence(note) for i, note in enumerate(self.notes) if note)
+        return ("".join(notes).strip() or "There was nothing to do.") + phrases.source_text(self.sources)
 
     def _note(self, text: str) -> None:
         self.notes.append(text)
@@ -120,7 +126,9 @@ class RunState:
             outcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             error = outcome.error or "no result"
-            self._note(phrases.not_understood_text(error) or f"I could not look ({tool} failed): {error}")
+            note = phrases.not_understood_text(error) or f"I could not look ({tool} failed): {error}"
+            if self.notes[-1:] != [note]:
+                self._note(note)
             return None
         return outcome.result
 

@@ -113,6 +113,13 @@ class Help:
 
 
 @dataclass(frozen=True, slots=True)
+class Reply:
+    """Reply to words that ask for nothing, such as thanks or a greeting."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """A request to report ("let me know"). It adds nothing, because every run ends with an answer.
 

@@ -22,6 +22,7 @@ from scope_ptz.planner.grammar.instruction_tree.looks import (
     LookCloser,
     Mention,
     Read,
+    Reply,
     Report,
     Rescope,
     Snap,
@@ -144,7 +145,7 @@ class BeforeAfter:
 Step = (
     Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
     | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | FirstWith | Compare | BeforeAfter | Sweep | Forbid | Report
-    | CameraState | Help | WhatAbout | Between | AtIntervals | CompareWithBefore | LookCloser | Total
+    | CameraState | Help | Reply | WhatAbout | Between | AtIntervals | CompareWithBefore | LookCloser | Total
     | Difference | RankCounts | Mention | Rescope | Unclear
 )  # fmt: skip
 

@@ -57,8 +57,11 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         "(looking|facing|pointing|AIM-ING|aimed|NOW|FILLER)+",
         lexemes,
     )
-    if is_at_preset or is_zoomed or is_facing:
-        return CameraState()  # "which preset are we on?", "how far are you zoomed in?"
+    is_located = full_match(
+        "(FILLER|TELL|me|us)* where (BE (SELF|DET? CAMERA)|(SELF|DET? CAMERA) BE) (NOW|FILLER|VISIBLE)*", lexemes
+    )
+    if is_at_preset or is_zoomed or is_facing or is_located:
+        return CameraState()  # "which preset are we on?", "how far are you zoomed in?", "where are you?"
     if full_match(r"(FILLER)* HELP (FILLER)*", lexemes):
         return Help()
     if (

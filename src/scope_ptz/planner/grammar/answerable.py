@@ -1,0 +1,47 @@
+"""Say which questions can be answered, after one that was not understood."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import lexicon
+from scope_ptz.planner.grammar.lexing.lexer import lexemes_of
+
+_MIN_SHARE = 0.7
+"""Minimum share of the words of an instruction that a quotation must contain to name nothing in particular."""
+_MIN_WORDS = 3
+
+
+def is_whole_question(text: str, quotations: Sequence[str]) -> bool:
+    """Return whether the words that were not understood are nearly all words of a question."""
+    words, quoted = text.split(), " ".join(quotations).removesuffix(" ...").split()
+    is_truncated = any(quotation.endswith(" ...") for quotation in quotations)
+    is_most = len(quoted) >= _MIN_WORDS and (is_truncated or len(quoted) >= _MIN_SHARE * len(words))
+    return is_most and _is_question(text)
+
+
+def _is_question(text: str) -> bool:
+    lexemes = [x for x in lexemes_of(text) if not x.has("FILLER", "COMMA")]
+    return bool(lexemes) and (lexemes[-1].has("QUESTION") or lexemes[0].has("WHQ", "HOWMANY", "BE", "DOV", "HAVEV"))
+
+
+def answerable_questions(question: str) -> str:
+    """Return the kinds of questions that can be answered, with an example about a thing in the question."""
+    thing = _thing_in(question)
+    return (
+        "I can say what is in view, how many there are, where things are, what colour they are, what people are doing, and what a "
+        f'sign says, for example: "how many {english.plural(thing)} are there?" or "where is the {thing}?".'
+    )
+
+
+def _thing_in(question: str) -> str:
+    """Return the first word of a question that names a kind of thing, in the singular; "sign" if there is none."""
+    for word in english.letters(question).split():
+        concept = lexicon().concept(word)
+        if concept is not None and concept not in _TOO_GENERAL:
+            return english.singular(word)
+    return "sign"
+
+
+_TOO_GENERAL = frozenset({"thing", "person", "text", "surface", "part"})

@@ -1,0 +1,113 @@
+"""Reply to what needs no camera: thanks, greetings, "stop", and requests that no camera can carry out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
+from scope_ptz.planner.grammar.parsing.parts.courtesy import bare_clause
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, match_start
+
+_THANKS = frozenset({
+    "thank", "thanks", "thankyou", "thx", "tx", "ty", "cheers", "ta", "appreciated", "merci", "danke", "gracias", "grazie", "takk",
+})  # fmt: skip
+_FAREWELLS = frozenset({
+    "goodbye", "bye", "bye_bye", "cheerio", "good_night", "see_you", "see_ya", "see_you_later", "catch_you_later", "talk_later",
+})  # fmt: skip
+_GREETINGS = frozenset({
+    "hello", "hello_there", "hi", "hi_there", "hey", "hey_there", "hiya", "howdy", "g'day", "good_morning", "morning",
+    "good_afternoon", "afternoon", "good_evening", "evening",
+})  # fmt: skip
+_PRAISE = frozenset({
+    "great", "perfect", "excellent", "lovely", "brilliant", "nice", "nice_one", "cool", "well_done", "good_job", "job_done",
+    "spot_on", "bang_on", "much_better", "that_is_great", "that_is_perfect", "that_is_fine", "that_is_better", "that_is_it",
+    "that_will_do", "that_will_do_nicely",
+})  # fmt: skip
+
+_WELCOME = "You're welcome."
+_GOODBYE = "Goodbye."
+_ALL_RIGHT = "All right. Tell me when you want to see something else."
+_NOT_MOVING = "I am not moving. The camera stays where it is."
+_HELLO = 'Hello. Tell me where to look, or ask what is in view, for example: "how many people are there?" or "zoom in on the sign".'
+
+_MOVING = "AIM-ING|PAN-ING|TILT-ING|ZOOM-ING|TURN-ING|CARRY-ING"
+_HALT = (
+    f"(FILLER|LEADFILLER|COMMA)* (HALT|stop_moving) (HALT|there|here|now|everything|{_MOVING}|DET CAMERA|CAMERA|FILLER|COMMA|STOP)*"
+)
+_THANKS_FOR = "(FILLER)+ for ((?!AND|THEN|NUM|LEFT|RIGHT|UP|DOWN|IN|OUT)_){1,4}"
+_CLOSING = (
+    "(FILLER)* (that|this) (BE|MODAL be) all (FILLER|SELF (need|want|wanted|needed)|for (now|today|tonight))*"
+    "|(FILLER)* (that|this|it) (BE|was) (very|so|most|FILLER|ADVERB)* (helpful|useful|handy|kind|enough) (FILLER)*"
+)
+_NO_THANKS = "(no|nope|nah) (FILLER)*"
+
+
+def reply_to_small_talk(instruction: str) -> str:
+    """Return the reply to thanks, a greeting, or "stop" on its own; empty for a text that asks for anything."""
+    lexemes = lexemes_of(instruction)
+    if full_match(_HALT, lexemes):
+        return _NOT_MOVING
+    sentences = _split(lexemes)
+    if len(sentences) > 1 and full_match(_NO_THANKS, sentences[0]):  # "no thanks, that's all"
+        sentences = [*sentences[1:], [x for x in sentences[0] if x.has("FILLER")]]
+    if not sentences or not all(_is_small_talk(sentence) for sentence in sentences):
+        return ""
+    words = {x.word for x in lexemes}
+    if any(_has_thanks(sentence) for sentence in sentences):
+        return _WELCOME
+    if any(full_match(_CLOSING, sentence) for sentence in sentences):
+        return _ALL_RIGHT
+    if words & _FAREWELLS:
+        return _GOODBYE
+    if words & _GREETINGS:
+        return _HELLO
+    return _ALL_RIGHT if words & _PRAISE else ""
+
+
+def _split(lexemes: Sequence[Lexeme]) -> list[Sequence[Lexeme]]:
+    """Split lexemes at punctuation."""
+    sentences: list[list[Lexeme]] = [[]]
+    for lexeme in lexemes:
+        if lexeme.has("COMMA", "STOP", "DASH", "QUESTION"):
+            sentences.append([])
+        else:
+            sentences[-1].append(lexeme)
+    return [sentence for sentence in sentences if sentence]
+
+
+def _is_small_talk(sentence: Sequence[Lexeme]) -> bool:
+    return bool(
+        all(x.has("FILLER", "LEADFILLER", "CAMERA") for x in sentence)
+        or (_has_thanks(sentence) and full_match(_THANKS_FOR, sentence))
+        or full_match(_CLOSING, sentence)
+    )
+
+
+def _has_thanks(sentence: Sequence[Lexeme]) -> bool:
+    return any(word in _THANKS for x in sentence if x.has("FILLER") for word in x.word.split("_"))
+
+
+_SWITCHING = "(switch|turn|put|flick|flip) (DET|FREE)* (on|off) (DET|FREE)*"
+_SPEAKING = "(tell|ask|order|remind|warn|instruct|call|phone|ring|radio|alert|notify|page) (DET)? (FREE)+ (_)*"
+_HANDLING = (
+    "(open|close|shut|lock|unlock|push|pull|lift|clean|wash|paint|repair|mend|fix|park|drive|water|feed|sell|buy|deliver|unload"
+    "|remove|sweep|tidy|print|email|play|build|stop|start|move) (DET)+ (FREE)+ (_)*"
+)
+_CANNOT = (
+    (_SWITCHING, "switch anything on or off"),
+    (_SPEAKING, "talk to anyone"),
+    (_HANDLING, "touch or operate what I see"),
+)
+
+
+def impossible_request(instruction: str) -> str:
+    """Return why a request that was not understood cannot be carried out: "open the gate". Empty for other texts.
+
+    It is called only if the text is no camera command, so "turn on the spot" does not get here.
+    """
+    lexemes = bare_clause([x for x in lexemes_of(instruction) if not x.has("STOP", "QUESTION")])
+    is_request = any(x.has("FREE") for x in lexemes)
+    deed = next((deed for pattern, deed in _CANNOT if is_request and match_start(pattern, lexemes)), "")
+    if not deed:
+        return ""
+    return f"I can only move the camera and answer questions about what it sees; I cannot {deed}. What shall I look at?"

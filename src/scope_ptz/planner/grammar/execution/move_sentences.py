@@ -1,0 +1,95 @@
+"""Phrase what the camera did: moves, the limits that ended them, and how long it followed a thing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from scope_ptz import english
+from scope_ptz.planner.grammar.execution.answer_sentences import count_word, number
+
+
+def move_text(arguments: Mapping[str, Any]) -> str:
+    """Describe a relative move in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
+    parts = []
+    if pan := _rounded(arguments.get("pan_deg", 0)):
+        parts.append(f"panned {'right' if pan > 0 else 'left'} {degrees(pan)}")
+    if tilt := _rounded(arguments.get("tilt_deg", 0)):
+        parts.append(f"tilted {'up' if tilt > 0 else 'down'} {degrees(tilt)}")
+    if factor := arguments.get("zoom_factor"):
+        times = _rounded(factor if factor >= 1 else 1 / factor)
+        parts += [f"zoomed {'in' if factor >= 1 else 'out'} by a factor of {number(times)}"] if times != 1 else []
+    if percent := arguments.get("zoom_percent"):
+        parts.append(f"zoomed {'in' if percent > 0 else 'out'} by {number(abs(percent))}%")
+    if limit := arguments.get("zoom_limit"):
+        parts.append(f"zoomed all the way {limit}")
+    return english.listing(parts) or _DID_NOT_MOVE
+
+
+_DID_NOT_MOVE = "did not move"
+
+
+def _rounded(value: float) -> float:
+    return round(value, 2)
+
+
+def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result: Mapping[str, Any]) -> str:
+    """Describe a relative move: "I panned right 20 degrees", or why the camera stayed where it is.
+
+    Args:
+        arguments: The move that was asked for.
+        made: The move that the camera made.
+        result: The result of the call.
+    """
+    shortfall = shortfall_text(result)
+    done = move_text(made)
+    if done != _DID_NOT_MOVE or not shortfall or result.get("held_back_by"):
+        return f"I {done}{shortfall}"
+    limits = [limit for axis in result["clamped"] if (limit := _limit_text(axis, arguments))]
+    return f"I did not move: the camera is already {english.listing(limits)}" if limits else f"I {done}{shortfall}"
+
+
+def _limit_text(axis: str, arguments: Mapping[str, Any]) -> str:
+    """Return where the camera is at an axis's limit: "zoomed out as far as it can"; empty if the move does not use the axis."""
+    if axis == "zoom":
+        zooms_in = arguments.get("zoom_factor", 1) > 1 or arguments.get("zoom_percent", 0) > 0
+        return f"zoomed {'in' if zooms_in or arguments.get('zoom_limit') == 'in' else 'out'} as far as it can"
+    angle_deg = arguments.get(f"{axis}_deg", 0)
+    verb, directions = ("turned", ("right", "left")) if axis == "pan" else ("tilted", ("up", "down"))
+    return f"{verb} {directions[0 if angle_deg > 0 else 1]} as far as it can" if angle_deg else ""
+
+
+def degrees(value: float) -> str:
+    """Return an angle without its sign, with the word "degree" or "degrees"."""
+    return f"{number(round(abs(value), 2))} {'degree' if abs(value) == 1 else 'degrees'}"
+
+
+def moves_text(arguments: Mapping[str, Any], times: int) -> str:
+    """Describe the moves of a loop: "two pans of 15 degrees to the right"."""
+    plural = "" if times == 1 else "s"
+    pan, tilt = arguments.get("pan_deg"), arguments.get("tilt_deg")
+    if pan and not tilt and len(arguments) == 1:
+        return f"{count_word(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
+    if tilt and not pan and len(arguments) == 1:
+        return f"{count_word(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
+    return f"{count_word(times)} move{plural}"
+
+
+def share_of_time(share: float) -> str:
+    """Return a share of a duration in words: "the whole time", "90% of the time"."""
+    return "the whole time" if round(100 * share) == 100 else f"{round(100 * share)}% of the time"
+
+
+def shortfall_text(result: Mapping[str, Any]) -> str:
+    """Return the words that state why a move ended early (a site rule or a camera limit); empty if it did not."""
+    if held_back_by := result.get("held_back_by"):
+        return f", held back by {held_back_by}"
+    clamped = result.get("clamped", ())
+    if not clamped:
+        return ""
+    return f", as far as the {limits_text(clamped)}"
+
+
+def limits_text(axes: Sequence[str]) -> str:
+    """Return the limits of the axes with their verb: "zoom limit allows", "pan and tilt limits allow"."""
+    return f"{english.listing(list(axes))} {'limit allows' if len(axes) == 1 else 'limits allow'}"

@@ -1,0 +1,91 @@
+"""Texts on one thing are read together, line by line, and what cannot be read is mentioned."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from scope_ptz.english.grammar.questions.question_parser import parse_question
+from scope_ptz.perception.ground_truth.answers import answer
+from scope_ptz.perception.ground_truth.answers.text_blocks import blocks_of
+from scope_ptz.perception.ground_truth.view import View, read_view
+from scope_ptz.simulator.models import SceneText
+from scope_ptz.simulator.truth import TextSighting
+from tests.perception import yard
+
+CAP_M = 0.1
+
+
+def text(words: str, x_m: float, z_m: float, *, parent: str = "sign-01", cap_px: float = 20.0, facing: float = 1.0) -> TextSighting:
+    """Return a text in the plane y = 0 that faces the camera, or with ``facing`` -1 the other way."""
+    placed = SceneText(
+        id=f"{words}-{x_m}-{z_m}-{facing}", text=words, parent=parent, centre_m=(x_m, 0.0, z_m), right=(facing, 0.0, 0.0),
+        up=(0.0, 0.0, 1.0), width_m=0.06 * len(words), height_m=0.15, cap_height_m=CAP_M,
+    )  # fmt: skip
+    return TextSighting(placed, (0.4, 0.5 - z_m / 10, 0.5, 0.55 - z_m / 10), cap_px, 10.0, 1.0)
+
+
+BOARD = [
+    text("DEPARTURES", 0.3, 3.2), text("Platform", 2.6, 3.2),
+    text("09:44", 0.0, 2.9), text("Harrowfield", 0.7, 2.9), text("1", 2.6, 2.9),
+    text("09:52", 0.0, 2.6), text("Port Ellis", 0.7, 2.61), text("3", 2.6, 2.6),
+    text("09:58", 0.0, 2.3), text("Brampton", 0.7, 2.28), text("2", 2.6, 2.3),
+]  # fmt: skip
+ROWS = ["DEPARTURES Platform", "09:44 Harrowfield 1", "09:52 Port Ellis 3", "09:58 Brampton 2"]
+PRICES = ["PLUMS", "1.80 A KILO", "LEEKS 0.95"]
+
+
+@pytest.mark.parametrize(
+    ("texts", "lines"),
+    [
+        ([text("PARKING", 0.0, 1.0), text("STAFF", 0.0, 1.2)], [["STAFF PARKING"]]),
+        (BOARD, [ROWS]),
+        (BOARD[::-1], [ROWS]),
+        ([text("PLUMS", 0.0, 1.0), text("1.80 A KILO", 0.0, 0.8), text("LEEKS 0.95", 0.0, 0.6)], [PRICES]),
+        ([text("SOUP", 0.0, 1.0), text("SOUP", 0.0, 1.0, facing=-1.0)], [["SOUP"]]),
+        ([text("7", 0.0, 3.0), text("HARROW VALE BUSES", 0.0, 1.0)], [["7"], ["HARROW VALE BUSES"]]),
+        ([text("Brampton 14", 0.0, 3.0), text("50", 2.0, 3.0)], [["Brampton 14"], ["50"]]),
+    ],
+)  # fmt: skip
+def test_texts_next_to_each_other_are_one_block(texts: list[TextSighting], lines: list[list[str]]) -> None:
+    assert [block.lines for block in blocks_of(texts)] == lines
+
+
+def view_with(*texts: TextSighting) -> View:
+    return read_view(replace(yard.truth(), texts=texts), yard.SCENE, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("question", "texts", "expected"),
+    [
+        (
+            "what do the signs say?",
+            (text("50", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5), text("DIG", 0, 1, parent="sign-03", cap_px=4)),
+            'I can read 1 of the 3 signs in view: "50". The other 2 are too small to read from here.',
+        ),
+        (
+            "what do the signs say?",
+            (text("50", 0, 1), replace(text("A1", 0, 1, parent="sign-02"), angle_deg=70.0)),
+            'I can read 1 of the 2 signs in view: "50". The other one is seen too much from the side to read from here.',
+        ),
+        ("what do the signs say?", (text("50", 0, 1), text("A1", 0, 1, parent="sign-02")), 'The signs read "50" and "A1".'),
+        (
+            "what does the road works sign say?",
+            (text("SLOW", 0, 1, parent="sign-03"), text("from Monday", 0, 0.8, parent="sign-03", cap_px=5)),
+            'The road works sign reads "SLOW". The rest is too small to read.',
+        ),
+        (
+            "what text can you see?",
+            (text("STAFF", 0, 1.2), text("PARKING", 0, 1), text("A1", 0, 1, parent="sign-02", cap_px=5)),
+            'I can read "STAFF PARKING". The rest is too small to read.',
+        ),
+        (
+            "what does the speed limit sign say?",
+            tuple(BOARD),
+            "The speed limit sign reads:\n" + "\n".join(f'"{row}"' for row in ROWS) + ".",
+        ),
+    ],
+)
+def test_what_is_left_out_is_mentioned(question: str, texts: tuple[TextSighting, ...], expected: str) -> None:
+    assert answer(view_with(*texts), parse_question(question)).text == expected

@@ -1,0 +1,92 @@
+"""Courtesy, requests that no camera can carry out, and questions that are not understood."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import Briefing, Finish, State
+from scope_ptz.planner.grammar import decide
+from scope_ptz.planner.plan import plan
+from tests.planner.stage import LIMITS, PRESETS, Stage
+
+
+def reply_to(instruction: str) -> tuple[str, str]:
+    """Return the outcome and the text of an instruction that needs no calls."""
+    decision = decide(State(instruction=instruction, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=LIMITS)))
+    assert isinstance(decision, Finish)
+    return decision.kind, decision.text
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "thanks", "thanks, that's all", "many thanks, good night", "thank you for your help", "cheers, bye",
+        "no thanks, that's all", "thank you, that was very helpful", "that's all for now, thank you",
+    ],
+)  # fmt: skip
+def test_thanks_are_answered_and_nothing_else(instruction: str) -> None:
+    assert reply_to(instruction) == ("answered", "You're welcome.")
+
+
+@pytest.mark.parametrize("instruction", ["hello", "hi there", "good morning, camera"])
+def test_a_greeting_is_answered_with_an_example(instruction: str) -> None:
+    kind, text = reply_to(instruction)
+    assert kind == "answered"
+    assert text.startswith("Hello. ") and "how many people are there?" in text
+
+
+@pytest.mark.parametrize("instruction", ["stop", "please cancel", "stop moving!", "stop panning now", "stop the camera"])
+def test_stop_on_its_own_does_nothing(instruction: str) -> None:
+    assert reply_to(instruction) == ("answered", "I am not moving. The camera stays where it is.")
+
+
+@pytest.mark.parametrize(
+    ("instruction", "call"),
+    [
+        ("thanks, now pan right 10 degrees", "adjust_ptz"),
+        ("hello, how many people are there?", "count_objects"),
+        ("great, thanks. Zoom in on the sign, please", "zoom_to_object"),
+    ],
+)
+def test_a_command_with_a_courtesy_is_carried_out(instruction: str, call: str) -> None:
+    assert [planned.name for planned in plan(instruction, PRESETS).calls] == [call]
+
+
+@pytest.mark.parametrize(
+    ("instruction", "deed"),
+    [
+        ("switch on the floodlights", "switch anything on or off"),
+        ("please turn the radio off", "switch anything on or off"),
+        ("tell the worker to put his helmet on", "talk to anyone"),
+        ("open the barrier", "touch or operate what I see"),
+        ("could you move the van?", "touch or operate what I see"),
+    ],
+)
+def test_a_request_that_no_camera_can_carry_out_gets_the_reason(instruction: str, deed: str) -> None:
+    kind, text = reply_to(instruction)
+    assert kind == "clarification"
+    assert text == f"I can only move the camera and answer questions about what it sees; I cannot {deed}. What shall I look at?"
+
+
+@pytest.mark.parametrize("instruction", ["is the news kiosk open?", "is the film poster on the wall?"])
+def test_a_topic_in_the_name_of_a_thing_is_about_the_picture(instruction: str) -> None:
+    assert [call.name for call in plan(instruction, PRESETS).calls] == ["query_answer"]
+
+
+def test_where_the_camera_is() -> None:
+    assert Stage().run("where are you?").text == "The camera is at pan 0.0, tilt 0.0, zoom 1.0x."
+    assert (
+        Stage().run("go to the gate. Where are you?").text.endswith("The camera is at preset gate: pan 0.0, tilt 0.0, zoom 1.0x.")
+    )
+    (call,) = plan("what is in front of you?", PRESETS).calls
+    assert call.arguments["question"] == "Describe the scene."
+
+
+def test_a_question_that_is_not_understood_gets_an_example_about_the_same_thing() -> None:
+    error = "The question 'is the bus of a sort to go with?' is not understood. Ask one question."
+    stage = Stage()
+    stage.do = lambda *_: (None, error)  # type: ignore[method-assign]
+    reply = stage.run("is the bus of a sort to go with?").text
+    assert reply.startswith("I did not understand that question. ")
+    assert reply.endswith('for example: "how many buses are there?" or "where is the bus?".')
