@@ -95,6 +95,10 @@ def _phrase_words(view: View, phrase: tree.Phrase, plural: bool) -> str:
     head, after = split_after_noun(view, phrase.words)
     if len(head) > 1 and head[0] in _PRONOUNS and head[0] != "traffic":  # "anyone buying bread"
         head, after = head[:1], (*head[1:], *after)
+    owner = next((t for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and not t.preposition), None)
+    if owner is not None and not (phrase.order or phrase.ordinal):
+        part = _phrase_words(view, replace(phrase, tests=tuple(t for t in phrase.tests if t is not owner)), plural)
+        return f"{noun_phrase(view, owner.other, is_plural(owner.other))}'s {part}"
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
         return " ".join([*_ranked_words(view, phrase, " ".join(core)), *after, *_test_words(view, phrase)])
@@ -127,6 +131,8 @@ def _ordinal_word(number: int) -> str:
 def words_after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
+        case tree.Has(what=what, sold=True):
+            return f"selling {' and '.join(' '.join(p.words) for p in what.phrases)}"
         case tree.Has(what=what, worn=worn):
             has_pronoun = any(p.words[-1] in _PRONOUNS for p in what.phrases)
             return f"{'wearing' if worn else 'carrying' if has_pronoun else 'with'} {_item_phrases(what)}"
@@ -173,8 +179,8 @@ def _item_phrases(what: tree.Description, count: int = 1) -> str:
 
 
 def _item_phrase(words: str, is_pronoun: bool, count: int) -> str:
-    if is_pronoun or english.is_plural(words.split()[-1]):
-        return words
+    if is_pronoun or english.is_plural(words.split()[-1]) or words.split()[-1] in english.COLOURS:
+        return words  # "wearing red"
     return english.article(words) if count == 1 else english.plural(words)
 
 
@@ -182,8 +188,11 @@ def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated:
     """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
     words: list[str] = []
     for i, test in enumerate(tests):
-        if i and not negated and isinstance(tests[i - 1], tree.Is) and isinstance(test, tree.Relation | tree.Region):
+        before = tests[i - 1] if i else None
+        if not negated and isinstance(before, tree.Is) and isinstance(test, tree.Relation | tree.Region):
             words[-1] += f" {words_after_noun(view, test)}"  # "is parked in bay 12"
+        elif isinstance(before, tree.Is) and before.words[-1] == "for" and isinstance(test, tree.Is):
+            words[-1] += f" {english.article(' '.join(test.words))}"  # "is waiting for a taxi"
         else:
             words.append(_predicate_of_test(view, test, count, negated))
     return english.listing(words, "or" if negated else "and")
@@ -193,6 +202,8 @@ def _predicate_of_test(view: View, test: tree.Test, count: int, negated: bool) -
     match test:
         case tree.Not(test=inner):
             return _predicate_of_test(view, inner, count, not negated)
+        case tree.Has(what=what, sold=True):
+            return f"{_verb_form('sell', 'sells', count, negated)} {' and '.join(' '.join(p.words) for p in what.phrases)}"
         case tree.Has(what=what, worn=False):
             return f"{_verb_form('have', 'has', count, negated)} {_item_phrases(what, count)}"
         case tree.Has(what=what):
