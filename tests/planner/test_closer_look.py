@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from scope_ptz.english.grammar.questions.positions import without_position
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small, offer_in, offer_text, thing_of, without_close_up
 from scope_ptz.planner.grammar.execution.run_state import Offer
-from tests.planner.stage import Stage
+from tests.planner.stage import LIMITS, Stage
 
 SMALL = {"answer": "There is text on the sign, but it is too small to read.", "known": False}
 READ = {"answer": 'The sign reads "STOP".', "known": True}
@@ -27,6 +28,50 @@ def test_it_zooms_in_looks_again_and_puts_the_camera_back() -> None:
     assert finish.text.startswith(
         'I zoomed in on the sign to answer that, and put the camera back afterwards. The sign reads "STOP".'
     )
+
+
+def test_from_close_up_it_asks_without_the_position() -> None:
+    stage = Stage([SMALL, True, READ], lands=CLOSE, simulated=True)
+    stage.run("what does the sign at the bottom say?")
+    assert stage.calls[1] == ("zoom_to_object", {"description": "sign at the bottom"})
+    assert stage.calls[2][1]["question"] == "what does the sign say?"
+
+
+@pytest.mark.parametrize(
+    ("question", "closer"),
+    [
+        ("what does the van say?", "text on the van"),
+        ("what is the number plate of the van?", "number plate of the van"),
+    ],
+)
+def test_it_zooms_in_on_the_text_while_the_lens_has_room(question: str, closer: str) -> None:
+    stage = Stage([SMALL, True, SMALL, True, READ], lands=CLOSE, simulated=True)
+    finish = stage.run(question)
+    assert [name for name, _ in stage.calls] == [
+        "query_answer", "zoom_to_object", "query_answer", "zoom_to_object", "query_answer", "adjust_ptz"
+    ]  # fmt: skip
+    assert stage.calls[3] == ("zoom_to_object", {"description": closer})
+    assert "STOP" in finish.text
+    at_limit = Stage([SMALL, True, SMALL], lands=Pose(12, -3, LIMITS.max_zoom), simulated=True)
+    at_limit.run(question)
+    assert [name for name, _ in at_limit.calls] == ["query_answer", "zoom_to_object", "query_answer", "adjust_ptz"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("what does the yellow sign at the bottom say?", "what does the yellow sign say?"),
+        ("what does the leftmost sign say?", "what does the sign say?"),
+        ("what is written on the nearest van?", "what is written on the van?"),
+        ("sign at the bottom left of the picture", "sign"),
+        ("what does the sign in the distance say?", "what does the sign say?"),
+        ("what does the sign on the left of the van say?", "what does the sign on the left of the van say?"),
+        ("the van in front of the bus", "the van in front of the bus"),
+        ("what colour is the left door?", "what colour is the left door?"),
+    ],
+)
+def test_a_position_in_the_frame_is_removed(text: str, expected: str) -> None:
+    assert without_position(text) == expected
 
 
 @pytest.mark.parametrize(

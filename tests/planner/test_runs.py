@@ -254,6 +254,6 @@ def test_a_colour_alone_is_a_thing() -> None:
 
 def test_a_reason_is_given_once_in_a_row() -> None:
     stage = Stage()
-    stage.do = lambda *_: (None, "The scene says nothing about the road, so it cannot tell.")  # type: ignore[method-assign]
+    stage.do = lambda *_: (None, "I cannot tell what is on the road.")  # type: ignore[method-assign]
     reply = stage.run("count the cars on the road and count the vans on the road").text
-    assert reply == "I cannot tell: I cannot make out the road in the picture."
+    assert reply == "I cannot tell what is on the road."

@@ -19,6 +19,7 @@ from scope_ptz.simulator.truth import ViewTruth, view_truth
 
 if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth.answers import TruthAnswer
+    from scope_ptz.perception.ground_truth.answers.legible_text import TextRegion
     from scope_ptz.perception.ground_truth.view import Thing, View
 
 GROUND_TRUTH_VERSION = 3
@@ -61,15 +62,16 @@ class GroundTruthPerception(Perception):
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = time.perf_counter()
-        things = await to_thread.run_sync(self._find, frame, description)
-        boxes = tuple(t.box for t in things)
-        return Detections(boxes=boxes, source=self.name, raw=_join_ids(things), latency_s=time.perf_counter() - began)
+        things, complete = await to_thread.run_sync(self._find, frame, description)
+        boxes, latency_s = tuple(t.box for t in things), time.perf_counter() - began
+        return Detections(boxes=boxes, complete=complete, source=self.name, raw=_join_ids(things), latency_s=latency_s)
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = time.perf_counter()
-        things = await to_thread.run_sync(self._find, frame, description)
-        points = tuple(Point(x=t.sighting.point[0], y=t.sighting.point[1], label=t.name) for t in things)
-        return Points(points=points, source=self.name, raw=_join_ids(things), latency_s=time.perf_counter() - began)
+        things, complete = await to_thread.run_sync(self._find, frame, description)
+        points = tuple(Point(x=t.point[0], y=t.point[1], label=t.name) for t in things)
+        latency_s = time.perf_counter() - began
+        return Points(points=points, complete=complete, source=self.name, raw=_join_ids(things), latency_s=latency_s)
 
     def view(self, frame: Frame, request: str) -> View:
         """Return the visible contents of a simulated frame.
@@ -135,13 +137,16 @@ class GroundTruthPerception(Perception):
         if reply.text.startswith((*_DENIAL_BEGINNINGS, *_ABSENCE_BEGINNINGS)) and (
             unstated := find_unknown_qualities(view, parsed)
         ):
-            return unknown_answer(f"I cannot tell from the picture what is {_quote_list(unstated)}")
+            return unknown_answer(f"I cannot tell what is {english.listing(unstated)}")
         return reply
 
-    def _find(self, frame: Frame, description: str) -> list[Thing]:
+    def _find(self, frame: Frame, description: str) -> tuple[Sequence[Thing | TextRegion], bool]:
+        """Return the things or texts that match a description, and whether the scene decides it for everything in view."""
         from scope_ptz.english.grammar.questions.question_parser import parse_description
         from scope_ptz.english.grammar.questions.recognition import is_description
+        from scope_ptz.perception.ground_truth.answers.legible_text import find_text_regions
         from scope_ptz.perception.ground_truth.answers.restating import unmodelled_place
+        from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
         from scope_ptz.perception.ground_truth.thing_search import find
         from scope_ptz.perception.ground_truth.unknown_words import find_unknown_nouns, find_unknown_qualities
 
@@ -149,8 +154,14 @@ class GroundTruthPerception(Perception):
             raise PerceptionError("The description is empty.")
         parsed, view = parse_description(description), self.view(frame, description)
         things = find(view, parsed)
+        if not things and (regions := find_text_regions(view, parsed)):
+            return regions, True
+        if reason := undecided_reason(view, parsed):
+            if not things:
+                raise NotUnderstoodError(f"{reason}.")
+            return things, False
         if not things and (place := unmodelled_place(view, parsed)):
-            raise NotUnderstoodError(f"The scene says nothing about the {place}, so its ground truth cannot tell what is there.")
+            raise NotUnderstoodError(f"I cannot tell what is on the {place}.")
         if not things and not is_description(description):
             raise NotUnderstoodError(
                 f"The description '{description}' is not understood, because it is not a noun phrase. Name the things to find."
@@ -158,13 +169,11 @@ class GroundTruthPerception(Perception):
         if not things and (unknown := find_unknown_nouns(view, parsed)):
             raise NotUnderstoodError(f"I did not understand {_quote_list(unknown)} in the description. Name a kind of thing.")
         if not things and (unstated := find_unknown_qualities(view, parsed)):
-            raise NotUnderstoodError(_UNSTATED_QUALITIES.format(words=_quote_list(unstated)))
-        return things
+            raise NotUnderstoodError(_UNSTATED_QUALITIES.format(words=english.listing(unstated)))
+        return things, True
 
 
-_UNSTATED_QUALITIES = (
-    "The scene does not say what is {words}, so its ground truth cannot tell. Describe the things by what a picture shows."
-)
+_UNSTATED_QUALITIES = "I cannot tell what is {words}. Describe the things by what a picture shows."
 _DENIAL_BEGINNINGS = ("No, there is no ", "No, there are no ")
 _ABSENCE_BEGINNINGS = (
     "There is no ",
@@ -179,5 +188,5 @@ def _quote_list(phrases: Sequence[str]) -> str:
     return english.listing([f"'{words}'" for words in dict.fromkeys(phrases)])
 
 
-def _join_ids(things: list[Thing]) -> str:
+def _join_ids(things: Sequence[Thing | TextRegion]) -> str:
     return " ".join(t.id for t in things)

@@ -99,6 +99,12 @@ def _rests_on(a: Thing, b: Thing) -> bool:
     return is_within and bool(lowest_m - ON_TOLERANCE_M / 2 <= a.low_m[2] <= highest_m) and _volume_m3(a) < _volume_m3(b)
 
 
+def stands_above(a: Thing, b: Thing) -> bool:
+    """Return whether ``a`` is in the world above ``b``: over its footprint, and no lower than its top."""
+    overlap = bool(np.all(a.low_m[:2] < b.high_m[:2]) and np.all(b.low_m[:2] < a.high_m[:2]))
+    return a is not b and overlap and bool(a.low_m[2] >= b.high_m[2] - ON_TOLERANCE_M)
+
+
 def _volume_m3(thing: Thing) -> float:
     return float(np.prod(np.maximum(thing.high_m - thing.low_m, 0.1)))
 

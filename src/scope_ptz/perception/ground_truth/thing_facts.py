@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
@@ -17,7 +18,7 @@ _STATES = [
     "lit: illuminated glowing flashing alight",
     "unlit: dark",
     "moving: driving travelling traveling",
-    "stationary: parked stopped waiting still standstill idle",
+    "stationary: parked stopped still standstill idle",
     "empty: unloaded unoccupied vacant free",
     "full: loaded occupied laden",
     "raised: up lifted",
@@ -38,7 +39,7 @@ _OPPOSITES = [
     ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"),
     ("raised", "lowered"),
     ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
-    ("working", "off"),
+    ("working", "off"), ("waiting", "moving"), ("waiting", "walking"),
 ]  # fmt: skip
 IGNORABLE_WORDS = frozenset(
     [
@@ -74,7 +75,6 @@ IGNORABLE_WORDS = frozenset(
         "individual",
         "standing",
         "sitting",
-        "waiting",
         "hanging",
         "lying",
         "placed",
@@ -123,6 +123,9 @@ FILLER_WORDS = frozenset(
 """Words that say nothing about a thing and are skipped. "On" and "in" are tested if no other word remains ("is it on?")."""
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat the text on a thing. They are not used, because only legible text may be reported."""
+_ROLE_KEYS = frozenset({"role", "stall", "area", "facing"})
+"""Attributes that say who somebody is or where, and not what they have."""
+_CLOTHING_KEYS = frozenset({"wearing", "clothing", "clothes", "outfit", "ppe"})
 COLOUR_KEYS = ("colour", "color")
 ABSENT_VALUES = frozenset({"", "none", "no", "false", "nothing", "without"})
 """Lower-case attribute values of things that lack the attribute."""
@@ -148,6 +151,10 @@ def value_words(value: object) -> list[str]:
     return [canonical_form(x) for x in english.letters(str(value)).split()]
 
 
+_BOOM_STATES = {"raised": "open", "lowered": "closed"}
+"""What the position of a barrier arm means for those who want to pass."""
+
+
 def fact_words(thing: Thing) -> set[str]:
     """Return the words that describe a thing: its name, attribute values, true flags and motion, but not people's clothes."""
     result = {canonical_form(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
@@ -164,6 +171,8 @@ def fact_words(thing: Thing) -> set[str]:
             result |= set(value_words(value))
         if words[-1] in {"load", "cargo"} and str(value).lower() not in ABSENT_VALUES:
             result.add("full")
+    if "boom gate" in thing.concepts:
+        result |= {_BOOM_STATES[x] for x in result & _BOOM_STATES.keys()}
     if "lit" in result:
         result.add("on")
     if "unlit" in result:
@@ -205,12 +214,25 @@ def colour_of(thing: Thing) -> str | None:
     return named[0] if named else None
 
 
+SEXES = {"man": "male", "gentleman": "male", "guy": "male", "woman": "female", "lady": "female"}
+"""The sex that a noun for a person states."""
+
+
+def stated_sex(thing: Thing) -> str | None:
+    """Return "male" or "female" if the name of a person states it; None if it does not."""
+    return next((SEXES[word] for word in english.letters(thing.name).split() if word in SEXES), None)
+
+
 def fits_noun(view: View, thing: Thing, noun: str) -> bool:
     """Return whether a noun (singular or plural) is a name for the thing.
 
     If the scene itself uses a word, such as "pylon" for an electricity pylon, other meanings of the word do not count.
     """
     singular = english.letters(singular_phrase(noun))
+    if singular in SEXES and "person" in thing.concepts:
+        sex = stated_sex(thing)
+        # One person of unknown sex may be called a man or a woman, but must not be counted among "the men".
+        return sex == SEXES[singular] if sex is not None else not english.is_plural(noun)
     name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
     if singular in (category, name) or name.endswith(f" {singular}"):
         return True
@@ -257,6 +279,10 @@ def _word_fits(view: View, thing: Thing, word: str) -> bool | None:
         return False
     if canonical_word in english.COLOURS and colour_of(thing) is not None:
         return False
+    if canonical_word == "waiting" and "person" in thing.concepts:
+        return None  # a person who stands or sits may be waiting
+    if canonical_word in {"empty", "full"} and "vehicle" in thing.concepts:
+        return None  # nobody can see into a vehicle
     if any(_word_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
     return False if lexicon().concept(word) else None
@@ -280,6 +306,8 @@ def has_form_in(word: str, words: Iterable[str]) -> bool:
 
 def _is_context_word(view: View, thing: Thing, word: str) -> bool:
     """Return whether the word names something that the thing is part of ("the gantry sign", "the cabin door")."""
+    if word in english.COLOURS:
+        return False  # a green awning on a red shop is not red
     holder = thing.parent
     while holder is not None:
         words = english.letters(view.instances[holder].name).split()
@@ -302,23 +330,45 @@ def has_item(view: View, thing: Thing, words: Sequence[str], amount: int | None 
     if lexicon().concept(noun) == "thing":  # "carrying something"
         carried = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
         return any(str(v).lower() not in ABSENT_VALUES and all(x in value_words(v) for x in others) for v in carried)
-    if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
-        return True
+    is_only_colour = noun in english.COLOURS  # "in red" is about clothes, and not about an umbrella
+    for key, value in facts(thing):
+        is_about = is_worn(key) or key in _CLOTHING_KEYS if is_only_colour and "person" in thing.concepts else key not in _ROLE_KEYS
+        if is_about and attribute_has(key, value, names_of(noun), others, amount):
+            return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
     if any(fits_noun(view, part, noun) and all(_word_fits(view, part, x) for x in others) for part in parts):
         return True
-    requested = english.letters(" ".join(rest))
-    return any(requested in english.letters(text) for text in thing.texts)
+    if others and "person" in thing.concepts and _has_beside(view, thing, noun, others):
+        return True
+    return any(contains_words(text, rest) for text in thing.texts)
 
 
-def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
+def _has_beside(view: View, person: Thing, noun: str, others: Sequence[str]) -> bool:
+    """Return whether a person has the item beside them: "with a purple suitcase", if the scene says "pulling a suitcase"."""
+    return any(attribute_has(key, value, names_of(noun), [], None) for key, value in facts(person)) and any(
+        fits_noun(view, t, noun) and person.gap_m(t) <= _WITHIN_REACH_M and all(_word_fits(view, t, x) for x in others)
+        for t in view.things
+    )
+
+
+_WITHIN_REACH_M = 0.3  # maximum gap between a person and something that they pull or push
+
+
+def contains_words(text: str, words: Sequence[str]) -> bool:
+    """Return whether a text contains these whole words in this order, in upper or lower case and whatever the punctuation."""
+    return f" {english.letters(' '.join(words))} " in f" {english.letters(text)} "
+
+
+def attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
     """Return whether an attribute contains one of the names, in its key or its value, together with all other words."""
     if _key_matches(key, names):
         stated = value_words(value)
         if str(value).lower() not in ABSENT_VALUES and value is not False and all(x in stated for x in others):
             return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
     return any(
-        any(name in item for name in names) and all(x in value_words(item) for x in others) and "no" not in item.split()
+        any(contains_words(item, [name]) for name in names)
+        and all(x in value_words(item) for x in others)
+        and "no" not in item.split()
         for item in _split_items(value)
     )
 
@@ -335,18 +385,22 @@ def names_of(noun: str) -> frozenset[str]:
     return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
 
 
+_GOAL = re.compile(r"\b(?:for|to|by|at) [^,]*")
+"""The goal or place of an activity, which a person does not carry: "waiting for a taxi" is no taxi."""
+
+
 def _split_items(value: object) -> list[str]:
-    """Split "orange vest and white helmet" into items, so that "white" applies only to the helmet."""
+    """Split "orange vest and white helmet" into items, so that "white" applies only to the helmet. Goals are left out."""
     if not isinstance(value, str):
         return []
     text = value.lower().replace(" and ", ",").replace(" with ", ",").replace(";", ",")
+    text = _GOAL.sub("", text)
     return [english.letters(" ".join([*(c.split()[:-1]), english.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
 
 
 def has_text(thing: Thing, words: Sequence[str]) -> bool:
     """Return whether legible text on a thing contains these words in this order. Without words, any legible text counts."""
-    requested = f" {' '.join(words)} "
-    return any(requested in f" {english.letters(text)} " or not words for text in thing.texts) or _has_plate(thing, words)
+    return any(not words or contains_words(text, words) for text in thing.texts) or _has_plate(thing, words)
 
 
 def _has_plate(thing: Thing, words: Sequence[str]) -> bool:

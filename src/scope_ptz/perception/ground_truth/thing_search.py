@@ -1,6 +1,9 @@
 """Search a view for the things that match a description.
 
 - Facts that the scene states ("in the left lane", "in an orange vest") take precedence over the spatial relations of ``relations``.
+- *at*: people are at a thing if they are at most 1 m from it.
+- *in* a vehicle or a machine: only people whom the scene models as part of it.
+- *waiting at* a place: being there, and not walking, because a picture shows no more.
 - *between*: the centre lies horizontally between the centres of two things, and the thing is not clearly in front of both or behind
 both.
 - Matches are sorted by visible pixels, largest first, unless a superlative or an ordinal orders them. Ordinals without a side
@@ -9,6 +12,7 @@ count from the left. A superlative keeps only the best match ("the two nearest" 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import cast
@@ -16,6 +20,7 @@ from typing import cast
 from scope_ptz import english
 from scope_ptz.english.grammar.lexicon import lexicon, nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.full_names import find_by_full_name
 from scope_ptz.perception.ground_truth.relations import (
     BACKGROUND_CONCEPTS,
@@ -27,6 +32,7 @@ from scope_ptz.perception.ground_truth.relations import (
     relation_holds,
     visible_pixels,
 )
+from scope_ptz.perception.ground_truth.stated_items import is_open_item
 from scope_ptz.perception.ground_truth.thing_facts import (
     FILLER_WORDS,
     IGNORABLE_WORDS,
@@ -39,6 +45,9 @@ from scope_ptz.perception.ground_truth.thing_facts import (
 )
 from scope_ptz.perception.ground_truth.view import Thing, View
 
+INSIDE = frozenset({"in", "inside", "inside of", "inside the"})
+"""The prepositions of kind "on" that say that a thing is inside another."""
+AT_M = 1.0  # maximum gap between a thing and the people who are at it
 _SIDES: dict[str, tree.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
 
 
@@ -62,7 +71,7 @@ def find_excluding_wearers(view: View, description: tree.Description) -> list[Th
 
 def _find_wearers(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return the people who wear what the phrase describes ("hard hats"), because clothes are not separate things."""
-    if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
+    if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words) or is_person(phrase.words):
         return []
     return sorted(
         (t for t in view.things if "person" in t.concepts and has_item(view, t, phrase.words)), key=visible_pixels, reverse=True
@@ -84,9 +93,32 @@ def _find_two_coloured(view: View, description: tree.Description) -> list[Thing]
 
 def find_phrase(view: View, phrase: tree.Phrase) -> list[Thing]:
     """Return all things that match one noun phrase, best first."""
+    asked, phrase = phrase, _without_waiting_at_place(phrase)
     core, extra, order = _match_core(view, phrase)
+    if phrase is not asked:
+        core = [t for t in core if fits_words(view, t, ["walking"]) is not True]
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
     return _select_by_order(view, sorted(matches, key=visible_pixels, reverse=True), order, phrase)
+
+
+def _without_waiting_at_place(phrase: tree.Phrase) -> tree.Phrase:
+    """Return "people at the bus stop" for "people waiting at the bus stop": nobody can see more than that they are there."""
+    if not any(is_place(test) for test in phrase.tests):
+        return phrase
+    words = tuple(x for x in phrase.words if x != "waiting")
+    if words == phrase.words and tree.Is(("waiting",)) not in phrase.tests:
+        return phrase
+    return replace(phrase, words=words or phrase.words, tests=without_waiting(phrase.tests))
+
+
+def is_place(test: tree.Test) -> bool:
+    """Return whether a test is for a place beside, on or at other things."""
+    return isinstance(test, tree.Relation) and test.kind in {"on", "near", "front", "behind"} and test.preposition not in {"", "of"}
+
+
+def without_waiting(tests: tuple[tree.Test, ...]) -> tuple[tree.Test, ...]:
+    """Return the tests without the word "waiting", if one of the others is for a place."""
+    return tuple(t for t in tests if t != tree.Is(("waiting",))) if any(map(is_place, tests)) else tests
 
 
 def split_after_noun(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -204,8 +236,8 @@ def holds(view: View, thing: Thing, test: tree.Test) -> bool | None:
             return True if answer is None and all(_is_ignorable(view, thing, x) for x in words) else answer
         case tree.Says(words=words):
             return has_text(thing, words) or (len(words) == 1 and is_facing(thing, words[0]) is True)
-        case tree.Has(what=what):
-            return _has(view, thing, what)
+        case tree.Has(what=what, worn=worn):
+            return _has(view, thing, what) or (None if is_open_item(view, thing, what, worn) else False)
         case tree.Faces(side=side):
             return is_facing(thing, side)
         case tree.Order():
@@ -223,8 +255,8 @@ def _holds_in_space(
             return is_in_region(view, thing, test)
         case tree.Between(first=first, second=second):
             return _is_between(view, thing, first, second)
-        case tree.Relation(kind=kind, other=other):
-            return has_relation(view, thing, kind, other)
+        case tree.Relation(kind=kind, other=other, preposition=preposition):
+            return has_relation(view, thing, kind, other, preposition)
         case tree.Measured(key=key, other=other):
             rank = rank_key(key)
             return any(rank(thing) < rank(o) for o in find(view, other)[:1] if o is not thing)
@@ -242,21 +274,42 @@ def _has(view: View, thing: Thing, what: tree.Description) -> bool:
     )
 
 
-def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description) -> bool:
+def has_relation(view: View, thing: Thing, kind: tree.RelationKind, other: tree.Description, preposition: str = "") -> bool:
     """Return whether a thing has a relation to any thing that matches ``other``."""
     others = find_excluding_wearers(view, other)
+    if preposition in INSIDE and "person" in thing.concepts and _names_vehicle(view, other):
+        return any(view.belongs(thing.id, o.id) for o in others)  # a lorry driver is not always in the lorry
+    if _is_only_colour(other) and "person" in thing.concepts:
+        return kind == "on" and has_item(view, thing, other.phrases[0].words)
     if kind == "on" and thing not in others and _is_stated(view, thing, other):
         return True
+    if preposition == "at" and "person" in thing.concepts:  # people stand in front of a counter, not on it
+        return any(relation_holds(view, thing, kind, o) or thing.gap_m(o) <= AT_M for o in others if o is not thing)
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
+
+
+def _is_only_colour(other: tree.Description) -> bool:
+    """Return whether a description has no noun: "a man in red" is a person in red clothes, and not in a red thing."""
+    return all(x in english.COLOURS for phrase in other.phrases for x in phrase.words)
+
+
+def _names_vehicle(view: View, other: tree.Description) -> bool:
+    """Return whether the noun of a description is a vehicle or a machine."""
+    phrase = other.phrases[0]
+    return bool(nouns_in(phrase.words, view.nouns)) and any(t.concepts & {"vehicle", "machine"} for t in find_phrase(view, phrase))
 
 
 def _is_stated(view: View, thing: Thing, other: tree.Description) -> bool:
     """Return whether a fact or clothing states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
-    if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_fact_words(thing))):
+    names = english.letters(_ELSEWHERE.sub("", thing.name.lower())).split()
+    if any(set(words) <= set(stated) for stated in (names, *_fact_words(thing))):
         return True
     return has_item(view, thing, words)
 
+
+_ELSEWHERE = re.compile(r"\b(?:for|to|by|beside|near|behind) .*")
+"""The end of a name or fact that says what a thing is beside, and not in: "visitor beside a car"."""
 
 # Words for lanes, by lane number.
 _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}
@@ -265,7 +318,7 @@ _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "r
 def _fact_words(thing: Thing) -> Iterable[list[str]]:
     """Yield the words in each fact about a thing."""
     for key, value in facts(thing):
-        yield english.letters(f"{key.replace('_', ' ')} {value}").split()
+        yield english.letters(f"{key.replace('_', ' ')} {_ELSEWHERE.sub('', str(value).lower())}").split()
         if key == "lane" and isinstance(value, int):
             yield ["lane", *_LANES.get(value, "").split()]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,8 +19,24 @@ from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 
 Floats = NDArray[np.float64]
 
-PART_WORDS = (" with ", " of ", " on ", " in ", " at ", " for ", " by ", " from ", " near ")
+PART_WORDS = (
+    " with ",
+    " without ",
+    " of ",
+    " on ",
+    " in ",
+    " at ",
+    " for ",
+    " by ",
+    " from ",
+    " near ",
+    " beside ",
+    " behind ",
+    " to ",
+)
 """Words that end the head of a name: "lorry with crane" is a lorry."""
+_PARTICIPLE_WITH_OBJECT = re.compile(r" \w+ing (?:an?|the) .*")
+"""The end of a name that says what somebody does with a thing: "worker carrying a box" is a worker, not a box."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +84,10 @@ class Thing:
     def box(self) -> Box:
         x0, y0, x1, y1 = self.sighting.box
         return Box(x_min=max(x0, 0.0), y_min=max(y0, 0.0), x_max=min(x1, 1.0), y_max=min(y1, 1.0), label=self.name)
+
+    @property
+    def point(self) -> tuple[float, float]:
+        return self.sighting.point
 
     @property
     def distance_m(self) -> float:
@@ -203,7 +224,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
 
 def head_of(name: str) -> str:
     """Return the part of a name that identifies the kind of thing."""
-    head = name.lower()
+    head = _PARTICIPLE_WITH_OBJECT.sub("", name.lower())
     for word in PART_WORDS:
         head = head.partition(word)[0]
     return head

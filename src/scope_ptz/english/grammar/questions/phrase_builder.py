@@ -75,6 +75,18 @@ class _Predicate(tuple[tree.Test, ...]):
     """The tests of a relative clause ("that is ...") or of a question ("is ...?")."""
 
 
+def _with_shared_reference(tests: tuple[tree.Test, ...]) -> tuple[tree.Test, ...]:
+    """Return the alternatives of "to the left or to the right of the van", in which the van belongs to both."""
+    match tests:
+        case (
+            tree.Region(sides=("left" | "right" as side,), half=False),
+            tree.Relation(kind="left" | "right", other=other) as last,
+        ):
+            return tree.Relation(side, other), last
+        case _:
+            return tests
+
+
 class Core(tuple[str, ...]):
     """The words of a noun phrase."""
 
@@ -224,6 +236,15 @@ class NounPhrases:
     def has(self, children: Children) -> tree.Has:
         return tree.Has(descriptions(children)[0])
 
+    def sells(self, children: Children) -> tree.Has:
+        return tree.Has(descriptions(children)[0], sold=True)
+
+    def awaits(self, children: Children) -> tree.Is:
+        """Build "waiting for the tram", which only a scene's facts can state."""
+        phrase = descriptions(children)[0].phrases[0]
+        article = [phrase.article] if phrase.article else []
+        return tree.Is(("waiting", "for", *article, *phrase.words))
+
     def wears(self, children: Children) -> tree.Has:
         return tree.Has(descriptions(children)[0], worn=True)
 
@@ -256,6 +277,8 @@ class NounPhrases:
     def predicate(self, children: Children) -> _Predicate:
         """Build a predicate. If its tests are joined by "or", one of them must hold; otherwise all must hold."""
         tests = tests_of(children)
+        if tokens_of(children, "OR"):
+            tests = _with_shared_reference(tests)
         return _Predicate((tree.Any(tests),) if tokens_of(children, "OR") and len(tests) > 1 else tests)
 
     predicate_at = that

@@ -148,6 +148,9 @@ class QuestionBuilder(NounPhrases):
     def ask_carried(self, children: Children) -> tree.Ask:
         return tree.Ask(("carrying",), descriptions(children)[0])
 
+    def ask_sold(self, children: Children) -> tree.Ask:
+        return tree.Ask(("sells",), descriptions(children)[0])
+
     def ask_direction(self, children: Children) -> tree.Ask:
         return tree.Ask(("direction",), descriptions(children)[0])
 
@@ -202,6 +205,12 @@ class QuestionBuilder(NounPhrases):
     def what_at(self, children: Children) -> tree.What:
         who = bool(tokens_of(children, "WHO"))
         return tree.What(tree.Description((tree.Phrase(("person",)),)) if who else EVERYTHING, tests_of(children))
+
+    def who_does(self, children: Children) -> tree.What:
+        """Build "who is driving the taxi?"."""
+        words = descriptions(children)[0].phrases[0].words
+        tests = (tree.Is((str(value_of(children, "W")),)), tree.Is(words))
+        return tree.What(tree.Description((tree.Phrase(("person",)),)), tests)
 
     def what_that(self, children: Children) -> tree.What:
         return tree.What(descriptions(children)[0], tests_of(children))

@@ -71,10 +71,14 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """A test for parts and clothing ("with a yellow helmet", "wearing orange vests"). ``worn`` is True for clothing."""
+    """A test for parts, clothing and goods ("with a yellow helmet", "wearing orange vests", "selling fish").
+
+    ``worn`` is True for clothing, ``sold`` for goods.
+    """
 
     what: Description
     worn: bool = False
+    sold: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,8 +126,9 @@ def _noun_length(words: list[str], start: int, table: Mapping[tuple[str, ...], t
     """Return the number of words in a known noun at ``start`` that contains a closed-class word ("charging points"), or 0."""
     for size in range(min(_LONGEST_NOUN, len(words) - start), 1, -1):
         phrase = words[start : start + size]
-        if any((word,) in table for word in phrase[1:]) and (phrase[0],) not in table and lexicon().concept(" ".join(phrase)):
-            return size
+        is_known = any((word,) in table for word in phrase) and lexicon().concept(" ".join(phrase)) is not None
+        if is_known and (phrase[0] == "no" or (phrase[0],) not in table):
+            return size  # "no entry sign" is a noun
     return 0
 
 

@@ -23,6 +23,7 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     position_words,
     unknown_answer,
 )
+from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
 from scope_ptz.perception.ground_truth.answers.values import value_of
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
@@ -119,6 +120,8 @@ def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer
         return unknown_answer("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
         return _answer_most_numerous(view, question)
+    if reason := undecided_reason(view, question.first) or undecided_reason(view, question.second):
+        return unknown_answer(reason)
     a, b = len(find(view, question.first)), len(find(view, question.second))
     first, second = noun_phrase(view, question.first, plural=True), noun_phrase(view, question.second, plural=True)
     counts = f"{english.counted(a, noun_phrase(view, question.first))} and {english.counted(b, noun_phrase(view, question.second))}"
@@ -134,6 +137,8 @@ def answer_compare_count(view: View, question: tree.CompareCount) -> TruthAnswer
 
 def answer_difference(view: View, question: tree.Difference) -> TruthAnswer:
     """Answer how many more things of one kind there are than of another."""
+    if reason := undecided_reason(view, question.first) or undecided_reason(view, question.second):
+        return unknown_answer(reason)
     first, second = (len(find(view, what)) for what in (question.first, question.second))
     a = english.counted(first, noun_phrase(view, question.first))
     b = english.counted(second, noun_phrase(view, question.second))
@@ -182,7 +187,9 @@ def answer_most_common(view: View, question: tree.MostCommon) -> TruthAnswer:
     values = [value_of(t, ("colour",)) if colour else t.category for t in matches]
     counts = Counter(v for v in values if v is not None)
     if not counts:
-        return unknown_answer("I cannot tell that from the picture")
+        return unknown_answer(
+            f"I cannot tell the {'colours' if colour else 'kinds'} of {definite_phrase(view, question.what, plural=True)}"
+        )
     target = (min if question.least else max)(counts.values())
     best = [v for v, n in counts.items() if n == target]
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"

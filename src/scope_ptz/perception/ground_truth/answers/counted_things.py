@@ -7,7 +7,8 @@ from dataclasses import replace
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.restating import (
-    cannot_make_out,
+    definite_as_asked,
+    is_plural,
     none_in_view,
     noun_phrase,
     predicate_words,
@@ -22,8 +23,10 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     names_with_positions,
     unknown_answer,
 )
-from scope_ptz.perception.ground_truth.thing_facts import has_item
-from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers
+from scope_ptz.perception.ground_truth.answers.undecided import undecided_people, undecided_reason, with_plural_sex
+from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
+from scope_ptz.perception.ground_truth.thing_facts import SEXES, has_item
+from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers, holds, without_waiting
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_LISTED = 3
@@ -41,11 +44,22 @@ def add_tests(description: tree.Description, tests: tuple[tree.Test, ...]) -> tr
 
 def answer_exists(view: View, question: tree.Exists) -> TruthAnswer:
     """Answer whether anything in view matches the description."""
-    if background := unmodelled_background(view, question.what):
-        return unknown_answer(cannot_make_out(background))
-    matches = find(view, question.what)
-    if not matches and (place := unmodelled_place(view, question.what)):
-        return unknown_answer(cannot_make_out(place))
+    plural = is_plural(question.what)
+    named = noun_phrase(view, question.what, plural)
+    whether = f"I cannot tell whether there {'are any' if plural else 'is'} {named if plural else english.article(named)}"
+    if unmodelled_background(view, question.what):
+        return unknown_answer(whether)
+    what = question.what
+    matches = find(view, what)
+    if len(matches) > 1 or any(SEXES.get(x) == "female" for p in what.phrases for x in p.words):
+        what = with_plural_sex(what)  # several people must not be called women if their sex is unknown
+        matches = find(view, what)
+    if not matches and unmodelled_place(view, what):
+        return unknown_answer(whether)
+    if not matches and (vehicle := asked_vehicle(view, question.what)) is not None:
+        return answer_about_occupants(view, vehicle)
+    if not matches and undecided_people(view, what):
+        return unknown_answer(whether)
     if question.least != 1 or question.most is not None:
         yes = question.least <= len(matches) and (question.most is None or len(matches) <= question.most)
         total = len(matches)
@@ -89,18 +103,46 @@ def describe_matches(view: View, what: tree.Description, matches: list[Thing]) -
 
 def answer_count(view: View, question: tree.Count) -> TruthAnswer:
     """Answer how many things match the description and the tests."""
-    if background := unmodelled_background(view, question.what):
-        return unknown_answer(cannot_make_out(background))
-    description = add_tests(question.what, question.tests)
+    tests = without_waiting(question.tests)
+    description = add_tests(question.what, tests)
     total = len(find(view, description))
-    if not total and (place := unmodelled_place(view, description)):
-        return unknown_answer(cannot_make_out(place))
+    open_number = len(undecided_people(view, description))
+    kind = noun_phrase(view, question.what, plural=True)
+    how_many = f"I cannot tell how many {kind} {predicate_words(view, tests, 2) if tests else 'there are'}"
+    if unmodelled_background(view, question.what) or (not total and unmodelled_place(view, description)):
+        return unknown_answer(how_many)
+    if not total and (vehicle := asked_vehicle(view, description)) is not None:
+        return answer_about_occupants(view, vehicle)
+    is_open = any(holds(view, t, test) is None for t in find(view, question.what) for test in tests if isinstance(test, tree.Has))
+    if not total and (open_number or is_open or _asks_for_parts(view, question)):
+        return unknown_answer(_how_many_parts(view, question) or how_many)
+    if open_number:
+        return known_answer(
+            f"there {is_or_are(total)} at least {total} {noun_phrase(view, description, plural=total != 1)}; "
+            f"{undecided_reason(view, description)}"
+        )
     if len(question.what.phrases) > 1:
         return known_answer(f"there {is_or_are(total)} {total} in view: {_counts_per_phrase(view, question)}")
     statement = f"{total or 'no'} {noun_phrase(view, question.what, plural=total != 1)}"
     if question.tests:
-        return known_answer(f"{statement} {predicate_words(view, question.tests, total)}")
+        return known_answer(f"{statement} {predicate_words(view, tests, total)}")
     return known_answer(f"there {is_or_are(total)} {statement} in view")
+
+
+def _asks_for_parts(view: View, question: tree.Count) -> bool:
+    """Return whether a question is about the parts of things in view: "how many windows does the hotel have?"."""
+    return any(
+        isinstance(t, tree.Relation) and t.kind == "on" and not t.preposition and find(view, t.other) for t in question.tests
+    )
+
+
+def _how_many_parts(view: View, question: tree.Count) -> str:
+    """Return that the number of parts is unknown, in the words of the question; empty if it does not ask for parts."""
+    if not _asks_for_parts(view, question):
+        return ""
+    (owner,) = [t.other for t in question.tests if isinstance(t, tree.Relation)][:1]
+    verb = "have" if is_plural(owner) else "has"
+    return f"I cannot tell how many {noun_phrase(view, question.what, plural=True)} {definite_as_asked(view, owner)} {verb}"
 
 
 def _counts_per_phrase(view: View, question: tree.Count) -> str:

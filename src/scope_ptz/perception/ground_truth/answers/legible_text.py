@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 from scope_ptz import english
 from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.perception.base import Box
 from scope_ptz.perception.ground_truth.answers.restating import definite_phrase, is_plural, none_in_view, noun_phrase
 from scope_ptz.perception.ground_truth.answers.text_blocks import TextBlock, blocks_of
-from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, unknown_answer
+from scope_ptz.perception.ground_truth.answers.thing_names import TruthAnswer, known_answer, position_words, unknown_answer
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
@@ -22,8 +24,9 @@ def answer_read(view: View, question: tree.Read) -> TruthAnswer:
         return _quote_texts(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
     things = find(view.with_cut_off_texts(), question.what)
     if not things and _PLATE_WORDS.issuperset(phrase.words for phrase in question.what.phrases):
-        # "the number plate" names no vehicle, so the plates of all vehicles are read
-        return answer_read(view, tree.Read(None, plate=True))
+        # A plate is no thing of its own: that "of the taxi" is read on the taxi, and "the number plate" on all vehicles.
+        owners = [t.other for p in question.what.phrases for t in p.tests if isinstance(t, tree.Relation) and t.kind == "on"]
+        return answer_read(view, tree.Read(owners[0] if owners else None, plate=True))
     if not things:
         return unknown_answer(f"I cannot tell: {none_in_view(view, question.what)}")
     texts = _texts_on(view, things, question.plate)
@@ -62,6 +65,8 @@ def _quote_texts(view: View, what: tree.Description | None, texts: Sequence[Text
     """Answer with the legible texts, and say what could not be read."""
     subject = definite_phrase(view, what, is_plural(what)) if what else "the picture"
     if not any(t.legible for t in texts):
+        if not (texts or plate) and what and (clocks := [t for t in find(view, what) if "clock" in t.concepts]):
+            return _answer_clock_time(clocks)
         return _nothing_legible(subject if what else "", texts, plate)
     if plate:
         return TruthAnswer(english.sentence(f"the number plate reads {english.listing(quotes(texts))}"))
@@ -150,6 +155,65 @@ def illegibility(texts: Sequence[TextSighting]) -> str:
     """Return why the largest of several illegible texts cannot be read, in words before "to read"."""
     problem = _problem(_largest(texts))
     return "too much of it is hidden or cut off" if problem == "hidden" else f"it is too {problem}"
+
+
+def _answer_clock_time(clocks: Sequence[Thing]) -> TruthAnswer:
+    """Answer what the hands of clocks show, if their faces are large enough."""
+    shown = [(t, str(t.attributes.get("time", t.attributes.get("shows", "")))) for t in clocks]
+    stated = [(t, time) for t, time in shown if time]
+    if not stated:
+        return unknown_answer("I cannot tell the time from the clock hands")
+    large = [(t, time) for t, time in stated if t.sighting.pixels >= _MIN_CLOCK_PX]
+    if not large:
+        return unknown_answer(
+            "the clocks are too small to read" if len(stated) > 1 else f"the {stated[0][0].name} is too small to read"
+        )
+    if len(large) == 1:
+        return known_answer(f"the {large[0][0].name} shows {large[0][1]}")
+    return known_answer(english.listing([f"the {t.name} {position_words(t)} shows {time}" for t, time in large]))
+
+
+_MIN_CLOCK_PX = 1200
+"""Minimum number of visible pixels of a clock whose hands can be read, a face of about 40 x 40 pixels."""
+
+
+@dataclass(frozen=True, slots=True)
+class TextRegion:
+    """The part of the frame with all texts on a thing. A camera can zoom in on it, although it is not a thing of its own."""
+
+    id: str
+    name: str
+    box: Box
+
+    @property
+    def point(self) -> tuple[float, float]:
+        return self.box.centre
+
+
+def find_text_regions(view: View, description: tree.Description) -> list[TextRegion]:
+    """Return the regions of the texts that a description names ("number plate of the van", "text on the sign"), largest first."""
+    phrase = description.phrases[0]
+    plate = phrase.words[-1:] != ("text",)
+    if len(description.phrases) > 1 or (plate and phrase.words not in _PLATE_WORDS):
+        return []
+    owners = [t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on"]
+    things = find(view.with_cut_off_texts(), owners[0]) if owners else view.things
+    texts = [t for t in _texts_on(view, things, plate) if t.cap_height_px >= _MIN_LOCATED_CAP_PX]
+    heights = {holder: max(t.cap_height_px for t in texts if t.text.parent == holder) for holder in {t.text.parent for t in texts}}
+    return [
+        _region([t for t in texts if t.text.parent == holder], "number plate" if plate else "text")
+        for holder in sorted(heights, key=lambda holder: (-heights[holder], holder))
+    ]
+
+
+def _region(texts: Sequence[TextSighting], name: str) -> TextRegion:
+    x_min, y_min = (min(t.box[i] for t in texts) for i in (0, 1))
+    x_max, y_max = (max(t.box[i] for t in texts) for i in (2, 3))
+    return TextRegion(texts[0].text.id, name, Box(x_min=x_min, y_min=y_min, x_max=x_max, y_max=y_max, label=name))
+
+
+_MIN_LOCATED_CAP_PX = 3.0
+"""Minimum height in pixels of the capitals of a text that can be located, although not read."""
 
 
 def answer_text_exists(view: View, question: tree.TextExists) -> TruthAnswer:

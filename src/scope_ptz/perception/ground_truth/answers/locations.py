@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 from scope_ptz import english
+from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.perception.ground_truth.answers.counted_things import add_tests
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_read
@@ -14,6 +16,7 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     none_in_view,
     noun_phrase,
     predicate_words,
+    unmodelled_place,
     words_after_noun,
 )
 from scope_ptz.perception.ground_truth.answers.thing_names import (
@@ -26,10 +29,12 @@ from scope_ptz.perception.ground_truth.answers.thing_names import (
     position_words,
     unknown_answer,
 )
-from scope_ptz.perception.ground_truth.answers.values import UNANSWERABLE_SUBJECTS, answer_fact_in_view, value_of
+from scope_ptz.perception.ground_truth.answers.undecided import undecided_reason
+from scope_ptz.perception.ground_truth.answers.values import UNANSWERABLE_SUBJECTS, answer_absent, answer_fact_in_view, value_of
+from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
-from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds
-from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds, stands_above
+from scope_ptz.perception.ground_truth.thing_search import find, holds
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 MAX_LOCATED = 3
@@ -41,7 +46,7 @@ def answer_where(view: View, question: tree.Where) -> TruthAnswer:
     """Answer where the things that match a description are."""
     matches = find(view, question.what)
     if not matches:
-        return known_answer(none_in_view(view, question.what))
+        return answer_absent(view, question.what)
     if len(matches) == 1:
         thing = matches[0]
         return known_answer(
@@ -90,7 +95,7 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
         return _answer_listed(view, question)
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
-        return known_answer(none_in_view(view, missing))
+        return answer_absent(view, missing)
     description = add_tests(question.what, question.tests)
     matches = find(view, description)
     thing_with_text = _thing_with_text(question)
@@ -99,7 +104,9 @@ def answer_what(view: View, question: tree.What) -> TruthAnswer:
         return answer_read(view, tree.Read(thing_with_text))
     if not matches:
         return _answer_no_match(view, question, description)
-    return answer_matches(view, question.tests, _sort_by_nearness(view, question.tests, matches))
+    return answer_matches(
+        view, question.tests, _sort_by_nearness(view, question.tests, _prefer_stacked(view, question.tests, matches))
+    )
 
 
 def _thing_with_text(question: tree.What) -> tree.Description | None:
@@ -133,9 +140,29 @@ def _answer_no_match(view: View, question: tree.What, description: tree.Descript
     state_words = [x for t in question.tests if isinstance(t, tree.Is) for x in t.words]
     if state_words and not find(view, question.what):
         return answer_fact_in_view(view, (*question.what.phrases[0].words, *state_words))
+    if unmodelled_place(view, description):
+        where = english.listing([words_after_noun(view, t) for t in question.tests]) or noun_phrase(view, description)
+        return unknown_answer(f"I cannot tell what is {where}")
+    open_tests = [t for t in (*question.tests, *question.what.phrases[0].tests) if isinstance(t, tree.Has)]
+    bare = tree.Description(tuple(replace(p, tests=()) for p in question.what.phrases))
+    if any(holds(view, t, test) is None or find(view, test.what) for t in find(view, bare) for test in open_tests):
+        return unknown_answer(f"I cannot tell which {noun_phrase(view, bare, plural=True)} {predicate_words(view, open_tests, 2)}")
     if description.phrases[0].words == ("thing",):
+        places = [t.other for t in question.tests if isinstance(t, tree.Relation) and not find(view, t.other)]
+        if places and nouns_in(places[0].phrases[0].words, view.nouns):
+            return answer_absent(view, places[0])
         return known_answer(f"I can see nothing {english.listing([words_after_noun(view, t) for t in question.tests])}")
-    return known_answer(none_in_view(view, description))
+    if (vehicle := asked_vehicle(view, description)) is not None:
+        return answer_about_occupants(view, vehicle)
+    if reason := undecided_reason(view, description):
+        return unknown_answer(reason)
+    return answer_absent(view, description)
+
+
+def _prefer_stacked(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> list[Thing]:
+    """Return the things that stand on what they are above, if there are any: "which cabin is above the grey one?"."""
+    lower = [a for t in tests if isinstance(t, tree.Relation) and t.kind == "above" for a in find(view, t.other)]
+    return [t for t in matches if any(stands_above(t, a) for a in lower)] or matches
 
 
 def _sort_by_nearness(view: View, tests: tuple[tree.Test, ...], matches: list[Thing]) -> list[Thing]:

@@ -104,6 +104,10 @@ def _phrase_words(view: View, phrase: tree.Phrase, plural: bool) -> str:
     head, after = split_after_noun(view, phrase.words)
     if len(head) > 1 and head[0] in _PRONOUNS and head[0] != "traffic":  # "anyone buying bread"
         head, after = head[:1], (*head[1:], *after)
+    owner = next((t for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and not t.preposition), None)
+    if owner is not None and not (phrase.order or phrase.ordinal):
+        part = _phrase_words(view, replace(phrase, tests=tuple(t for t in phrase.tests if t is not owner)), plural)
+        return f"{noun_phrase(view, owner.other, is_plural(owner.other))}'s {part}"
     core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
         return " ".join([*_ranked_words(view, phrase, " ".join(core)), *after, *_test_words(view, phrase)])
@@ -136,6 +140,8 @@ def _ordinal_word(number: int) -> str:
 def words_after_noun(view: View, test: tree.Test) -> str:
     """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
+        case tree.Has(what=what, sold=True):
+            return f"selling {' and '.join(' '.join(p.words) for p in what.phrases)}"
         case tree.Has(what=what, worn=worn):
             has_pronoun = any(p.words[-1] in _PRONOUNS for p in what.phrases)
             return f"{'wearing' if worn else 'carrying' if has_pronoun else 'with'} {_item_phrases(what)}"
@@ -191,8 +197,11 @@ def predicate_words(view: View, tests: Sequence[tree.Test], count: int, negated:
     """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
     words: list[str] = []
     for i, test in enumerate(tests):
-        if i and not negated and isinstance(tests[i - 1], tree.Is) and isinstance(test, tree.Relation | tree.Region):
+        before = tests[i - 1] if i else None
+        if not negated and isinstance(before, tree.Is) and isinstance(test, tree.Relation | tree.Region):
             words[-1] += f" {words_after_noun(view, test)}"  # "is parked in bay 12"
+        elif isinstance(before, tree.Is) and before.words[-1] == "for" and isinstance(test, tree.Is):
+            words[-1] += f" {english.article(' '.join(test.words))}"  # "is waiting for a taxi"
         else:
             words.append(_predicate_of_test(view, test, count, negated))
     return english.listing(words, "or" if negated else "and")
@@ -202,6 +211,8 @@ def _predicate_of_test(view: View, test: tree.Test, count: int, negated: bool) -
     match test:
         case tree.Not(test=inner):
             return _predicate_of_test(view, inner, count, not negated)
+        case tree.Has(what=what, sold=True):
+            return f"{_verb_form('sell', 'sells', count, negated)} {' and '.join(' '.join(p.words) for p in what.phrases)}"
         case tree.Has(what=what, worn=False):
             return f"{_verb_form('have', 'has', count, negated)} {_item_phrases(what, count)}"
         case tree.Has(what=what):
@@ -247,11 +258,6 @@ def none_in_view(view: View, description: tree.Description) -> str:
     only_one = len(description.phrases) > 1 and not any(is_plural(tree.Description((p,))) for p in description.phrases)
     words = english.listing([noun_phrase(view, tree.Description((p,)), plural and not only_one) for p in description.phrases], "or")
     return f"there {'are' if plural and not only_one else 'is'} no {words} in view"
-
-
-def cannot_make_out(background: str) -> str:
-    """Return the statement that a background, which the scene does not model, cannot be seen well enough."""
-    return f"I cannot tell: I cannot make out the {background} in the picture"
 
 
 def unmodelled_background(view: View, description: tree.Description) -> str:

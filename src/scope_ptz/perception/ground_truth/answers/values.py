@@ -6,13 +6,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from scope_ptz import english
-from scope_ptz.english.grammar.lexicon import singular_phrase
+from scope_ptz.english.grammar.lexicon import nouns_in, singular_phrase
 from scope_ptz.english.grammar.parts_of_speech import parts_of_speech
 from scope_ptz.english.grammar.questions import question_tree as tree
 from scope_ptz.english.grammar.questions.ambiguity import is_person
 from scope_ptz.perception.ground_truth.answers.legible_text import answer_from_signs
 from scope_ptz.perception.ground_truth.answers.restating import (
-    cannot_make_out,
     definite_as_asked,
     definite_phrase,
     is_plural,
@@ -40,7 +39,7 @@ from scope_ptz.perception.ground_truth.thing_facts import (
     names_of,
     value_words,
 )
-from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.thing_search import find, find_excluding_wearers
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 UNANSWERABLE_SUBJECTS = frozenset(
@@ -66,19 +65,23 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
     matches = find(view, question.what)
     if not matches:
         return _answer_about_part(view, question) or answer_absent(view, question.what)
+    if question.attribute[-1] in COLOUR_KEYS and (answer := _answer_about_worn(view, question.what, matches)) is not None:
+        return answer
     values = [(t, value_of(t, question.attribute)) for t in matches]
     stated = [(t, v) for t, v in values if v is not None]
     if not stated:
         attribute, subject = " ".join(question.attribute), definite_as_asked(view, question.what)
-        if attribute.endswith("ing"):
-            return unknown_answer(f"I cannot tell from the picture what {subject} is {attribute}")
-        return unknown_answer(f"I cannot tell the {attribute} of {subject} from the picture")
+        verb = is_or_are(2 if is_plural(question.what) else 1)
+        missing = f"what {subject} {verb} {attribute}" if attribute.endswith("ing") else f"the {attribute} of {subject}"
+        return unknown_answer(f"I cannot tell {missing}")
     prefix = next((v for words, v in _VALUE_PREFIXES.items() if set(words.split()) & set(question.attribute)), "")
     if prefix == "facing " and all("direction" in t.attributes for t, _ in stated):
         prefix = "pointing "
     if question.attribute[-1] in COLOUR_KEYS and is_person(question.what.phrases[0].words):
         prefix = "wearing "  # the scene states the colours of people's clothes
     distinct = Counter(v for _, v in stated)
+    if question.attribute == ("sells",):
+        return _goods_sentence(view, question.what, distinct)
     if len(distinct) == 1:
         subject = definite_phrase(view, question.what, plural=len(stated) > 1)
         return known_answer(f"{subject} {is_or_are(len(stated))} {prefix}{stated[0][1]}")
@@ -92,6 +95,17 @@ def answer_attribute(view: View, question: tree.Ask) -> TruthAnswer:
         f"{len(stated)} {noun_phrase(view, question.what, plural=True)}: "
         + english.listing([f"{n} {prefix}{v}" for v, n in distinct.most_common()])
     )
+
+
+def _goods_sentence(view: View, what: tree.Description, goods: Counter[str]) -> TruthAnswer:
+    """State what is sold: "the purple stall sells flowers", "2 stalls sell fruit and 1 sells fish"."""
+    if len(goods) == 1:
+        plural = goods.total() > 1
+        return known_answer(f"{definite_phrase(view, what, plural)} {'sell' if plural else 'sells'} {next(iter(goods))}")
+    (first, number), *rest = goods.most_common()
+    others = [f"{n} {'sells' if n == 1 else 'sell'} {sold}" for sold, n in rest]
+    kind = noun_phrase(view, what, plural=number != 1)
+    return known_answer(english.listing([f"{number} {kind} {'sells' if number == 1 else 'sell'} {first}", *others]))
 
 
 def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
@@ -121,6 +135,7 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
 _VALUE_PREFIXES = {
     "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
     "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
+    "dock platform": "at ", "bay space": "in ",
 }  # fmt: skip
 """The words between "is" and the value of an attribute, by the words that ask for the attribute."""
 # Activities in scene files, and the words for them in answers.
@@ -143,11 +158,16 @@ _STATES_WITH_OPPOSITE = ("open", "closed", "lit", "unlit", "raised", "lowered", 
 """States that have an opposite. They answer questions about a thing's state."""
 
 
+_NUMBERED_PLACES = frozenset({"dock", "bay", "platform"})
+
+
 def _value_words(key: str, value: object) -> str:
     if key == "carrying" and str(value) not in ABSENT_VALUES:
         return english.article(str(value))
     if key == "lane":
         return f"lane {value}" if isinstance(value, int) else f"the {value}"
+    if key in _NUMBERED_PLACES:
+        return f"{key} {value}"
     if isinstance(value, bool):
         return " ".join(key_words(key)) if value else f"not {' '.join(key_words(key))}"
     return str(value)
@@ -172,15 +192,41 @@ def _describe_clothes(thing: Thing) -> str | None:
 
 def _answer_about_part(view: View, question: tree.Ask) -> TruthAnswer | None:
     """Answer a question about a part that the scene states as a fact about its owner ("the worker's helmet colour")."""
-    if question.what is None:
+    if question.what is None or not (set(question.attribute) & _FACTS_OF_PARTS):
         return None
     matches = part_values(view, question.what)
-    if not matches:
+    return _part_sentence(english.singular(question.what.phrases[0].words[-1]), matches) if matches else None
+
+
+_FACTS_OF_PARTS = {*COLOUR_KEYS, *_KEY_SYNONYMS["state"], *_KEY_SYNONYMS["material"]}
+"""What the scene states about a part as a fact about its owner: the value of "helmet" is a colour, that of "door" a state."""
+
+
+def _answer_about_worn(view: View, what: tree.Description, wearers: Sequence[Thing]) -> TruthAnswer | None:
+    """Answer what colour clothes are ("the helmets"), which are facts about their wearers; None if the things are no clothes."""
+    if find_excluding_wearers(view, what):
         return None
-    part = english.singular(question.what.phrases[0].words[-1])
-    if len({v for _, v in matches}) == 1:
-        return known_answer(f"the {part} is {matches[0][1]}" if len(matches) == 1 else f"all {len(matches)} are {matches[0][1]}")
+    words = what.phrases[0].words
+    matches = [(t, value) for t in wearers for value in [_part_value(t, words[-1:])] if value is not None]
+    return _part_sentence(english.singular(words[-1]), matches) if matches else None
+
+
+def _part_sentence(part: str, matches: Sequence[tuple[Thing, str]]) -> TruthAnswer:
+    """State the value of a part for each of its owners: "the helmet is white", "5 helmets: 3 white and 2 blue"."""
+    values = Counter(value for _, value in matches)
+    if len(matches) == 1:
+        return known_answer(f"the {part} is {matches[0][1]}")
+    if len(values) == 1:
+        return known_answer(f"{'both' if len(matches) == 2 else f'all {len(matches)}'} {english.plural(part)} are {matches[0][1]}")
+    if len(matches) > _MAX_OWNERS:
+        return known_answer(
+            f"{len(matches)} {english.plural(part)}: {english.listing([f'{n} {v}' for v, n in values.most_common()])}"
+        )
     return known_answer(english.listing([f"the {part} of the {t.category} {position_words(t)} is {v}" for t, v in matches]))
+
+
+_MAX_OWNERS = 4
+"""Maximum number of parts to describe individually."""
 
 
 def part_values(view: View, what: tree.Description) -> list[tuple[Thing, str]]:
@@ -199,7 +245,7 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
     requested = names_of(" ".join(words))
     for key, value in facts(thing):
         part = singular_phrase(" ".join(x for x in key_words(key) if x not in COLOUR_KEYS) or key)
-        if part in requested and isinstance(value, str) and value.lower() not in ABSENT_VALUES and not value.isdigit():
+        if part in requested and isinstance(value, str) and value.lower() not in {*ABSENT_VALUES, "yes"} and not value.isdigit():
             return value
     return None
 
@@ -234,5 +280,29 @@ def answer_absent(view: View, subject: tree.Description) -> TruthAnswer:
     if any(p.words and p.words[-1] in UNANSWERABLE_SUBJECTS for p in subject.phrases):
         return unknown_answer("I cannot tell that from the picture")
     if background := unmodelled_background(view, subject):
-        return unknown_answer(cannot_make_out(background))
+        return unknown_answer(f"I cannot tell anything about the {background}")
+    if (owner := _missing_owner(view, subject)) is not None:
+        return known_answer(none_in_view(view, owner))
+    if is_unmodelled_part(view, subject):
+        return unknown_answer(f"I cannot tell anything about {definite_as_asked(view, subject)}")
     return known_answer(none_in_view(view, subject))
+
+
+_OCCUPANTS = frozenset({("driver",), ("passenger",)})
+"""The owners of doors and seats of vehicles: "the driver's door"."""
+
+
+def _missing_owner(view: View, subject: tree.Description) -> tree.Description | None:
+    """Return the description of the owner in "the forklift driver's helmet" if the owner is not in view; otherwise None."""
+    owners = [t.other for t in subject.phrases[0].tests if isinstance(t, tree.Relation) and t.kind == "on" and not t.preposition]
+    return next((o for o in owners if not find(view, o) and o.phrases[0].words not in _OCCUPANTS), None)
+
+
+def is_unmodelled_part(view: View, subject: tree.Description) -> bool:
+    """Return whether a description names a part that no fact states, of a thing in view: "the cabin door", "the driver's door"."""
+    phrase = subject.phrases[0]
+    owners = [t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {"", "of"}]
+    if owners:
+        return bool(find(view, owners[0])) or owners[0].phrases[0].words in _OCCUPANTS
+    head = phrase.words[:-1]
+    return bool(head) and bool(nouns_in(head, view.nouns)) and bool(find(view, tree.Description((tree.Phrase(head),))))

@@ -9,7 +9,7 @@ from scope_ptz import english
 from scope_ptz.english.grammar.common_nouns import is_common_noun
 from scope_ptz.english.grammar.lexicon import nouns_in
 from scope_ptz.english.grammar.questions import question_tree as tree
-from scope_ptz.perception.ground_truth.answers.counted_things import answer_exists
+from scope_ptz.perception.ground_truth.answers.counted_things import add_tests, answer_exists
 from scope_ptz.perception.ground_truth.answers.restating import (
     definite_as_asked,
     definite_phrase,
@@ -17,25 +17,32 @@ from scope_ptz.perception.ground_truth.answers.restating import (
     none_in_view,
     noun_phrase,
     predicate_words,
+    unmodelled_background,
+    unmodelled_place,
     words_after_noun,
 )
 from scope_ptz.perception.ground_truth.answers.thing_names import (
     TruthAnswer,
     coloured_name,
+    is_or_are,
     known_answer,
     position_words,
     unknown_answer,
 )
-from scope_ptz.perception.ground_truth.answers.values import answer_absent, part_values
+from scope_ptz.perception.ground_truth.answers.undecided import undecided_people, undecided_words
+from scope_ptz.perception.ground_truth.answers.values import answer_absent, is_unmodelled_part, part_values
+from scope_ptz.perception.ground_truth.answers.vehicle_interiors import answer_about_occupants, asked_vehicle
 from scope_ptz.perception.ground_truth.thing_facts import (
+    TEXT_KEYS,
     are_opposites,
     canonical_form,
     colour_of,
+    contains_words,
     fact_words,
     fits_noun,
     has_form_in,
 )
-from scope_ptz.perception.ground_truth.thing_search import find, holds, split_after_numbered_noun
+from scope_ptz.perception.ground_truth.thing_search import find, holds, is_place, split_after_numbered_noun, without_waiting
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 _ANYBODY_WORDS = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
@@ -44,29 +51,36 @@ _EVERYBODY_WORDS = frozenset(["everyone", "everybody", "everything", "they"])
 
 def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     """Answer whether the tests hold for the subject."""
+    whole = add_tests(question.subject, question.tests)
+    if (vehicle := asked_vehicle(view, whole)) is not None and not find(view, whole):
+        return answer_about_occupants(view, vehicle)
+    if undecided_people(view, whole) and not find(view, whole):
+        return unknown_answer(f"I cannot tell whether anyone is {undecided_words(view, whole)}")
     subject, tests = _split_question(view, question)
     if not tests:
         if not find(view, subject) and (activity := _unstated_activity(view, subject)):
-            return unknown_answer(f"I cannot tell from the picture whether anyone is {activity}")
+            return unknown_answer(f"I cannot tell whether anyone is {activity}")
         return answer_exists(view, tree.Exists(subject))
     if (text := _answer_as_text(view, subject, tests)) is not None:
         return text
     things = find(view, subject)
     if not things and (activity := _unstated_activity(view, subject)):
-        return unknown_answer(f"I cannot tell from the picture whether anyone is {activity}")
+        return unknown_answer(f"I cannot tell whether anyone is {activity}")
+    if not things and (part := _answer_about_part(view, subject, tests)) is not None:
+        return part
+    if not things and (unmodelled_background(view, subject) or is_unmodelled_part(view, subject)):
+        return _cannot_tell_whether(view, subject, tests)
     if not things:
-        return _answer_about_part(view, subject, tests) or answer_absent(view, subject)
+        return answer_absent(view, subject)
     missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
     if missing is not None:
         return unknown_answer(f"I cannot tell: {none_in_view(view, missing)}")
     answers = [_all_hold([holds(view, t, test) for test in tests]) for t in things]
-    if (None in answers or any(_is_unknown_place(view, t) for t in tests)) and True not in answers:
-        predicate = english.listing([words_after_noun(view, t) for t in tests])
-        is_anyone = subject.phrases[0].words[0] in _ANYBODY_WORDS
-        subject_words = "anyone" if is_anyone else definite_as_asked(view, subject)
-        return unknown_answer(
-            f"I cannot tell whether {subject_words} {'are' if is_plural(subject) and not is_anyone else 'is'} {predicate}"
-        )
+    if things and True not in answers and False not in answers:
+        return _answer_about_compound(view, question, subject, tests) or _cannot_tell_whether(view, subject, tests)
+    is_unknown = None in answers or any(_is_unknown_place(view, t) or unmodelled_place(view, _at(t)) for t in tests)
+    if is_unknown and True not in answers:
+        return _cannot_tell_whether(view, subject, tests)
     choice = _answer_choice(view, subject, tests, things)
     if choice is not None:
         return choice
@@ -75,13 +89,50 @@ def answer_yes_no(view: View, question: tree.YesNo) -> TruthAnswer:
     )
 
 
+def _answer_about_compound(
+    view: View, question: tree.YesNo, subject: tree.Description, tests: tuple[tree.Test, ...]
+) -> TruthAnswer | None:
+    """Answer "is the barrier raised?" about the barrier arms in view, if no other barrier can be raised."""
+    phrase = subject.phrases[0]
+    noun = english.singular(phrase.words[-1])
+    for category in dict.fromkeys(t.category for t in view.things if t.category.startswith(f"{noun} ")):
+        compound = tree.Description((replace(phrase, words=(*phrase.words[:-1], *category.split())),))
+        if any(_states(view, t, test) for t in find(view, compound) for test in tests):
+            return answer_yes_no(view, tree.YesNo(compound, tests, question.scope))
+    return None
+
+
+def _states(view: View, thing: Thing, test: tree.Test) -> bool:
+    """Return whether the scene states that a test holds for a thing, or states the opposite."""
+    if isinstance(test, tree.Any):
+        return any(_states(view, thing, option) for option in test.tests)
+    requested = {canonical_form(x) for x in test.words} if isinstance(test, tree.Is) else set[str]()
+    return holds(view, thing, test) is True or any(are_opposites(x, fact) for x in requested for fact in fact_words(thing))
+
+
+def _cannot_tell_whether(view: View, subject: tree.Description, tests: Sequence[tree.Test]) -> TruthAnswer:
+    """Answer that it is unknown whether the tests hold for the subject."""
+    predicate = english.listing([words_after_noun(view, t) for t in tests])
+    is_anyone = subject.phrases[0].words[0] in _ANYBODY_WORDS
+    subject_words = subject.phrases[0].words[0] if is_anyone else definite_as_asked(view, subject)
+    number = 2 if is_plural(subject) and not is_anyone else 1
+    if any(isinstance(t, tree.Has) for t in tests):
+        return unknown_answer(f"I cannot tell whether {subject_words} {predicate_words(view, tests, number)}")
+    return unknown_answer(f"I cannot tell whether {subject_words} {is_or_are(number)} {predicate}")
+
+
+def _at(test: tree.Test) -> tree.Description:
+    """Return the description of anything for which a test holds."""
+    return tree.Description((tree.Phrase(("thing",), (test,)),))
+
+
 def _unstated_activity(view: View, subject: tree.Description) -> str:
     """Return the activity in "anyone unloading" if nothing in the scene has such an activity; otherwise an empty string."""
     words = subject.phrases[0].words
     if len(words) < 2 or words[0] not in _ANYBODY_WORDS or not words[1].endswith("ing"):
         return ""
-    stated = frozenset[str]().union(*view.values.values())
-    return "" if has_form_in(words[1], stated) else words[1]
+    stated = frozenset[str]().union(*(words for key, words in view.values.items() if key not in TEXT_KEYS))
+    return "" if has_form_in(words[1], stated) and len(words) == 2 else words[1]
 
 
 def _answer_as_text(view: View, subject: tree.Description, tests: tuple[tree.Test, ...]) -> TruthAnswer | None:
@@ -92,8 +143,7 @@ def _answer_as_text(view: View, subject: tree.Description, tests: tuple[tree.Tes
     texts = [text for t in find(view.with_cut_off_texts(), tests[0].other) for text in t.texts]
     if not texts:
         return None
-    requested = english.letters(" ".join(phrase.words))
-    yes = any(requested in english.letters(text) for text in texts)
+    yes = any(contains_words(text, phrase.words) for text in texts)
     quoted = english.listing([f'"{text}"' for text in dict.fromkeys(texts)])
     return known_answer(f"{'yes' if yes else 'no'}, {definite_as_asked(view, tests[0].other)} reads {quoted}")
 
@@ -119,6 +169,8 @@ def missing_reference(view: View, test: tree.Test) -> tree.Description | None:
             others: tuple[tree.Description, ...] = (other,)
         case tree.Measured(other=other):
             others = (other,)
+        case tree.Any(tests=tests):
+            return next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
         case tree.Between(first=first, second=second):
             others = (first, second)
         case _:
@@ -144,7 +196,7 @@ def _split_question(view: View, question: tree.YesNo) -> tuple[tree.Description,
     """
     *others, last = question.subject.phrases
     tests = list(question.tests)
-    if tests and isinstance(tests[0], tree.Is) and not last.tests and not last.order:
+    if tests and isinstance(tests[0], tree.Is) and tests[0].words[0] != "waiting" and not last.tests and not last.order:
         last = replace(last, words=(*last.words, *tests.pop(0).words))  # type: ignore[union-attr]
     head, after = split_after_numbered_noun(view, last.words)
     if after:
@@ -164,7 +216,9 @@ def _split_question(view: View, question: tree.YesNo) -> tuple[tree.Description,
         isinstance(tests[0], tree.Region | tree.Relation | tree.Between) or (isinstance(tests[0], tree.Has) and not tests[0].worn)
     ):
         last = replace(last, tests=(*last.tests, tests.pop(0)))
-    return tree.Description((*others, last)), tuple(tests)
+    if "waiting" in last.words and any(map(is_place, tests)):  # "is anyone waiting at the bus stop?"
+        last = replace(last, words=tuple(x for x in last.words if x != "waiting"))
+    return tree.Description((*others, last)), without_waiting(tuple(tests))
 
 
 def _all_hold(answers: Sequence[bool | None]) -> bool | None:

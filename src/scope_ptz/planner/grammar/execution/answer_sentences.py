@@ -164,7 +164,7 @@ _NOT_UNDERSTOOD = re.compile(
 )
 
 
-_NOT_MODELLED = re.compile(r"The scene says nothing about the (?P<place>.+?), so\b")
+_CANNOT_TELL = re.compile(r"I cannot tell\b[^.]*")
 
 
 def not_understood_text(error: str) -> str:
@@ -172,8 +172,8 @@ def not_understood_text(error: str) -> str:
 
     Empty for other errors.
     """
-    if place := _NOT_MODELLED.match(error):
-        return f"I cannot tell: I cannot make out the {place['place']} in the picture"
+    if unknown := _CANNOT_TELL.match(error):
+        return unknown[0]
     match = _NOT_UNDERSTOOD.match(error)
     if match is None:
         return ""

@@ -6,6 +6,7 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
+from scope_ptz.english.grammar.questions.positions import without_position
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
 from scope_ptz.planner.grammar.execution.move_arguments import return_arguments
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, Offer, RunState
@@ -67,6 +68,10 @@ class CloserLook(RunState):
             return result
         return (yield from self._from_close_up(question, thing, result))
 
+    def _can_zoom_in(self) -> bool:
+        """Return whether the lens has room for a closer view."""
+        return self.pose is not None and self.pose.zoom < self.limits.max_zoom - 0.01
+
     def _from_close_up(self, question: str, thing: str, before: dict[str, Any] | None) -> CallGenerator:
         """Zoom in on a thing, ask a question about it, and put the camera back. Return the result, or ``before`` if there is none.
 
@@ -81,7 +86,14 @@ class CloserLook(RunState):
                 break
         if not found:
             return before
+        question = without_position(question)  # what was at the bottom is now in the middle
         result = yield from self._perception_call("query_answer", question=question, view="current")
+        if result is not None and is_too_small(result) and self._can_zoom_in():
+            text = "number plate of" if _ASKS_FOR_PLATE.search(question) else "text on"
+            whole = without_position(_whole_of(thing) if "plate" in text else thing)
+            zoomed = yield from self._perception_call("zoom_to_object", description=f"{text} the {whole}")
+            if zoomed is not None and zoomed.get("found"):
+                result = yield from self._perception_call("query_answer", question=question, view="current")
         if result is None or not result.get("known", True):
             self._note(f"I zoomed in on the {thing}, but that did not help, so I put the camera back")
         elif (matches := zoomed.get("matches", 1)) > 1:
@@ -95,6 +107,9 @@ class CloserLook(RunState):
         elif arguments := return_arguments(start, self.pose, self.limits):
             yield from self._camera_call("adjust_ptz", **arguments)
         return before if result is None else result
+
+
+_ASKS_FOR_PLATE = re.compile(r"\b(?:plate|registration)\b", re.IGNORECASE)
 
 
 def _object_with_text(result: dict[str, Any]) -> str:

@@ -52,7 +52,7 @@ def without_view(lexemes: Sequence[Lexeme]) -> tuple[tuple[Lexeme, ...], View | 
     ):
         lexemes = (*seen["body"], *seen["scope"])  # "the number of flags, looking over the whole area"
     if all_around := full_match("(?P<body>_+) COMMA SCAN-ING", lexemes):
-        lexemes, view = all_around["body"], "full"  # "how many trailers, looking all around?"
+        lexemes, view = tuple(all_around["body"]), "full"  # "how many trailers, looking all around?"
     changed = True
     while changed and len(lexemes) > 1:
         changed = False

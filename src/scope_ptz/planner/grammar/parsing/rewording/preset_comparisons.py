@@ -39,7 +39,8 @@ _FUNCTION_WORDS = frozenset({
 _LAST_CLAUSE = re.compile(r"[,.;?!]+ +(?P<last>[^,.;?!]+)[.!]*$")
 
 _GOES_THERE = re.compile(
-    r"(?:[,.;?!] *|(?<=\w) )(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?(?:there|to (?:it|that one))\W*$",
+    r"(?:[,.;?!] *|(?<=\w) )(?:then |and |and then )?(?:please )?(?:go|move|switch|head) (?:over )?"
+    r"(?:there|to (?:it|that one))\W*$",
     re.IGNORECASE,
 )
 

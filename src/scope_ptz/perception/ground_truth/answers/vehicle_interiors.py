@@ -1,0 +1,57 @@
+"""Answer who is in a vehicle. A picture does not show that, unless the scene models the driver."""
+
+from __future__ import annotations
+
+from scope_ptz import english
+from scope_ptz.english.grammar.questions import question_tree as tree
+from scope_ptz.english.grammar.questions.ambiguity import is_person
+from scope_ptz.perception.ground_truth.answers.restating import definite_as_asked
+from scope_ptz.perception.ground_truth.answers.thing_names import (
+    TruthAnswer,
+    coloured_name,
+    known_answer,
+    position_words,
+    unknown_answer,
+)
+from scope_ptz.perception.ground_truth.thing_facts import ABSENT_VALUES
+from scope_ptz.perception.ground_truth.thing_search import INSIDE, find
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+_DRIVING = frozenset({"driving", "operating", "steering", "riding"})
+
+
+def asked_vehicle(view: View, description: tree.Description) -> tree.Description | None:
+    """Return the vehicle whose occupants a description names ("a driver in the taxi", "anyone driving the taxi"), or None."""
+    (phrase, *others) = description.phrases
+    if others or not phrase.words or not is_person(phrase.words[:1]):
+        return None
+    driven = driven_vehicle(phrase)
+    inside = [
+        t.other for t in phrase.tests if isinstance(t, tree.Relation) and t.kind == "on" and t.preposition in {*INSIDE, "of", ""}
+    ]
+    candidates = [driven] if driven is not None else inside
+    return next((c for c in candidates if _vehicles(view, c) or c.phrases[0].words == ("it",)), None)
+
+
+def driven_vehicle(phrase: tree.Phrase) -> tree.Description | None:
+    """Return the vehicle in "anyone driving the taxi", which the parser reads as a state of a person; None if there is none."""
+    words = [*phrase.words, *(x for t in phrase.tests if isinstance(t, tree.Is) for x in t.words)]
+    start = next((i + 1 for i, x in enumerate(words) if x in _DRIVING), len(words))
+    return tree.Description((tree.Phrase(tuple(words[start:]), article="the"),)) if words[start:] else None
+
+
+def answer_about_occupants(view: View, vehicle: tree.Description) -> TruthAnswer:
+    """Answer who is in a vehicle: the people whom the scene models in it, or that this cannot be seen."""
+    vehicles = _vehicles(view, vehicle)
+    occupants = [t for t in view.things if t.parent in {v.id for v in vehicles} and "person" in t.concepts]
+    if occupants:
+        return known_answer(f"yes, there is {english.article(coloured_name(occupants[0]))} {position_words(occupants[0])}")
+    stated = {str(v.attributes.get("driver", "")).lower() for v in vehicles}
+    named = definite_as_asked(view, vehicle)
+    if stated and stated <= ABSENT_VALUES - {""}:
+        return known_answer(f"no, {named} has no driver")
+    return unknown_answer(f"I cannot see who is in {'it' if vehicle.phrases[0].words == ('it',) else named}")
+
+
+def _vehicles(view: View, vehicle: tree.Description) -> list[Thing]:
+    return [t for t in find(view, vehicle) if t.concepts & {"vehicle", "machine"}]
