@@ -165,7 +165,18 @@ def test_a_correction_says_what_the_camera_did_in_all() -> None:
 
 
 @pytest.mark.parametrize(
-    "said", ["no, up", "no, not left", "no, 10 seconds", "no left", "make it 15 or 20", "no, 2x", "no, pan left 5"]
+    "said",
+    [
+        "no, up",
+        "no, not left",
+        "no, 10 seconds",
+        "no left",
+        "make it 15 or 20",
+        "no, 2x",
+        "no, pan left 5",
+        "no, that's right",
+        "that should be right",
+    ],
 )
 def test_an_unclear_correction_moves_nothing(said: str) -> None:
     stage = Stage()
@@ -190,6 +201,12 @@ def test_another_thing_is_looked_for_from_the_start_of_the_command(command: str,
     assert stage.calls[-1][1]["description"] == "red van"
     if tool == "zoom_to_object":
         assert stage.calls[0] == ("adjust_ptz", {"pan_deg": -42, "tilt_deg": 6, "zoom_factor": 0.25})
+
+
+def test_another_number_of_a_preset_is_gone_to() -> None:
+    stage = Stage()
+    talk(stage, "go to the first preset", "no, the second one")
+    assert stage.calls == [("go_to_preset", {"name": "highway"})]
 
 
 def test_other_things_are_counted() -> None:
@@ -226,6 +243,10 @@ def test_again_refers_to_the_last_command_that_was_carried_out(asked: str) -> No
         (("zoom in 2x", "double that"), Pose(0, 0, 4)),
         (("pan right 25", "pan right again"), Pose(50)),
         (("pan right 25", "pan left again"), Pose(0)),
+        (("pan right 25", "back 5"), Pose(20)),
+        (("pan right 25", "too far, back 10"), Pose(15)),
+        (("pan right 20", "half of that back"), Pose(10)),
+        (("pan right 20", "30 the other way"), Pose(-10)),
     ],
 )
 def test_a_move_about_the_same_axis_takes_its_amount(instructions: tuple[str, ...], pose: Pose) -> None:

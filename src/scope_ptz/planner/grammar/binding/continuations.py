@@ -139,7 +139,7 @@ def _continuation(
         return Continuation(meant, corrects=True)
     if (again := _same_axis_again(said, lexemes, commands, presets) or _share_of_zoom(lexemes, move)) is not None:
         return Continuation(again)
-    return Continuation(_more(said, move) or instruction)
+    return Continuation(_more(said, move) or _measured_by_last(said, last, presets) or instruction)
 
 
 def _answer_about_other_way(lexemes: Sequence[Lexeme], turn: PastTurn, last: Command | None) -> str | None:
@@ -171,6 +171,18 @@ def _more(said: str, move: SingleMove | None) -> str | None:
     if number and move.axis == "zoom":
         return None
     return f"{move.axis} {move.way} {number} degrees" if number else f"{move.axis} {move.way} a bit"
+
+
+def _measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
+    """Return the move of an instruction that needs the last move to be understood: "back 5", "30 the other way"."""
+    alone = parse(said, presets).steps
+    if alone is None or not any(isinstance(step, ast.Unclear) for step in alone):
+        return None
+    together = parse(f"{last.text.rstrip('.!? ')}, {said}", presets).steps
+    if together is None or len(together) != 2 or together[:1] != last.steps:
+        return None
+    move = single_move(together[1:])
+    return move.text if move is not None else None
 
 
 def _same_axis_again(said: str, lexemes: Sequence[Lexeme], commands: Sequence[Command], presets: tuple[str, ...]) -> str | None:

@@ -30,6 +30,7 @@ _SIZE_IN_ANSWER = (
     r"(by|DET|AMOUNTISH|FILLER)* ((?P<number>NUM) (DEG|X|PERCENT)?|(?P<same>(SAMEAMOUNT|same (amount|angle)?|as_before) "
     r"(as before|as last_time|amount|as (much|far))?)|(?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER|AGAINWORD|STOP)*"
 )
+_OTHER_NUMBER = "DET? (?P<which>ORDINAL) (one|PRESETNOUN)?"
 _SIZES = {"little": "a bit", "lot": "a lot", "limit": "all the way"}
 _UNITS = {"DEG": "degrees", "X": "times", "PERCENT": "percent"}
 _VERBS = ("PAN", "TILT", "TURN", "ZOOM", "AIM", "SWITCH", "SHOW", "FIND", "COUNT", "TRACK", "SNAP", "READ")
@@ -54,8 +55,10 @@ def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_r
     rest = _without_edges(lexemes[size:])
     if not rest or any(x.has("NOT", "OR") for x in rest):
         return None
-    if _is_bare_no(lexemes[:size]):
+    if _is_bare_no(lexemes[:size]) or _may_approve(lexemes[:size], rest):
         return None  # "no left" may forbid a turn
+    if len(last.steps) == 1 and isinstance(last.steps[0], ast.GoToPreset):
+        return f"go to the {number['which'][0].word} preset" if (number := full_match(_OTHER_NUMBER, rest)) else None
     if isinstance(last.steps[0] if len(last.steps) == 1 else None, ast.ZoomTo | ast.Track | ast.Count):
         return _with_other_thing(last.steps[0], text[rest[0].start : rest[-1].end], rest)
     if any(x.has(*_VERBS) for x in rest):
@@ -137,6 +140,12 @@ def _with_other_thing(step: ast.Step, thing: str, lexemes: Sequence[Lexeme]) -> 
 def _is_bare_no(editing: Sequence[Lexeme]) -> bool:
     """Return whether "no" stands directly before a word, so that it may belong to that word: "no left"."""
     return [x.word for x in editing] in (["no"], ["nope"], ["nah"])
+
+
+def _may_approve(editing: Sequence[Lexeme], rest: Sequence[Lexeme]) -> bool:
+    """Return whether "right" may mean "correct": "no, that's right", "that should be right"."""
+    states = any(x.word in {"that", "is", "'s", "it", "be"} for x in rest) or any(x.word == "should" for x in editing)
+    return states and rest[-1].has("RIGHT")
 
 
 def _without_edges(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
