@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
+from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.instruction_tree import Step
-
-Effect = Literal["done", "corrected", "returned", "rejected", "nothing"]
-"""What came of a turn: it was carried out; it was carried out in place of the previous command; it put the camera back; it rejected
-the previous command; or nothing was done, because the planner asked a question or every call failed."""
 
 
 @dataclass(frozen=True, slots=True)

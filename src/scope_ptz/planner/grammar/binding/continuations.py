@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.binding.commands import Command, Effect, correctable_command, standing_command
+from scope_ptz.planner.grammar.binding.commands import Command, correctable_command, standing_command
 from scope_ptz.planner.grammar.binding.corrections import (
     asks_for_another_move,
     corrected_text,
@@ -16,6 +16,7 @@ from scope_ptz.planner.grammar.binding.corrections import (
     turns_the_other_way,
 )
 from scope_ptz.planner.grammar.binding.single_moves import SingleMove, single_move, towards
+from scope_ptz.planner.grammar.execution.camera_history import Effect
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme, lexemes_of
 from scope_ptz.planner.grammar.parsing.instruction_parser import parse
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
@@ -174,9 +175,9 @@ def _more(said: str, move: SingleMove | None) -> str | None:
 
 
 def _measured_by_last(said: str, last: Command, presets: tuple[str, ...]) -> str | None:
-    """Return the move of an instruction that needs the last move to be understood: "back 5", "30 the other way"."""
+    """Return the move of an instruction that needs the last move, about one axis, to be understood: "back 5"."""
     alone = parse(said, presets).steps
-    if alone is None or not any(isinstance(step, ast.Unclear) for step in alone):
+    if single_move(last.steps) is None or alone is None or not any(isinstance(step, ast.Unclear) for step in alone):
         return None
     together = parse(f"{last.text.rstrip('.!? ')}, {said}", presets).steps
     if together is None or len(together) != 2 or together[:1] != last.steps:

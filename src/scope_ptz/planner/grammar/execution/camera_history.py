@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from scope_ptz.geometry import Pose, wrap_pan_deg
 
 if TYPE_CHECKING:
     from scope_ptz.planner.base import PastTurn
-    from scope_ptz.planner.grammar.binding.commands import Effect
+
+Effect = Literal["done", "corrected", "returned", "rejected", "nothing"]
+"""What came of a turn: it was carried out; it was carried out in place of the previous command; it put the camera back; it rejected
+the previous command; or nothing was done, because the planner asked a question or every call failed."""
 
 ANGLE_TOLERANCE_DEG = 0.02
 ZOOM_TOLERANCE = 0.002
