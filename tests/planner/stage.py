@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, PastTurn, State, ToolOutcome
+from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, PastTurn, State, ToolOutcome, Viewpoints
 from scope_ptz.planner.grammar import GrammarPlanner
 
 LIMITS = Limits()
@@ -18,7 +18,8 @@ _START = Pose()
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
     that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said.
-    ``simulated``: whether the camera is simulated."""
+    ``simulated``: whether the camera is simulated. ``places``: the viewpoint and pose of each preset; the first is home's. Without
+    them, the camera has a single viewpoint, and presets and home are straight ahead."""
 
     def __init__(
         self,
@@ -27,7 +28,10 @@ class Stage:
         pose: Pose = _START,
         lands: Pose | None = None,
         simulated: bool = False,
+        places: dict[str, tuple[str, Pose]] | None = None,
     ) -> None:
+        self.places = places or {}
+        self.viewpoint = next((viewpoint for viewpoint, _ in self.places.values()), None)
         self.simulated = simulated
         self.lands = lands
         self.looks = list(looks)
@@ -74,7 +78,7 @@ class Stage:
         elif name == "zoom_to_object" and self.lands:
             self.pose = self.lands
         elif name in {"go_home", "go_to_preset"}:
-            self.pose = Pose()
+            self.viewpoint, self.pose = self.places.get(arguments.get("name", PRESETS[0]), (self.viewpoint, Pose()))
         result = {"message": "", "pose": self.pose.as_dict(), "clamped": clamped, **extra.get(name, dict)()}
         return result, None
 
@@ -84,12 +88,19 @@ class Stage:
 
     def turn(self, instruction: str, conversation: tuple[PastTurn, ...] = ()) -> PastTurn:
         """The same, as a turn to look back on."""
+        start, viewpoint = self.pose, self.viewpoint
         finish, history = asyncio.run(self._run(instruction, conversation))
-        return PastTurn(instruction=instruction, exchanges=history, reply=finish.text)
+        return PastTurn(instruction=instruction, exchanges=history, reply=finish.text, start=start, viewpoint=viewpoint)
 
     async def _run(self, instruction: str, conversation: tuple[PastTurn, ...]) -> tuple[Finish, tuple[Exchange, ...]]:
         planner = GrammarPlanner()
-        briefing = Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS, simulated=self.simulated)
+        viewpoints = None
+        if self.viewpoint is not None:
+            of_presets = {name: viewpoint for name, (viewpoint, _) in self.places.items()}
+            viewpoints = Viewpoints(current=self.viewpoint, of_presets=of_presets, home=of_presets.get(PRESETS[0]))
+        briefing = Briefing(
+            presets=PRESETS, pose=self.pose, limits=LIMITS, simulated=self.simulated, viewpoints=viewpoints
+        )  # fmt: skip
         state = State(instruction=instruction, briefing=briefing, conversation=conversation)
         for _ in range(300):
             decision = await planner.step(state)

@@ -49,7 +49,8 @@ def test_more_of_nothing_is_asked_about(before: str) -> None:
 
 
 def test_the_other_way_asks_how_far() -> None:
-    assert last_calls("pan left 20", "no, the other way") == ([], "By how many degrees shall I pan right?")
+    assert last_calls("pan left 20", "the other way") == ([], "By how many degrees shall I pan right?")
+    assert last_calls("zoom in 3x", "the other way") == ([], "By what factor shall I zoom out?")
 
 
 def test_it_is_the_thing_that_was_asked_about() -> None:

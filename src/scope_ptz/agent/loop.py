@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import platform
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 
@@ -16,7 +17,7 @@ from scope_ptz.agent.planner_views import picture_of_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, failures_of, usage_of_failures
 from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, error_text
-from scope_ptz.camera.base import Camera
+from scope_ptz.camera.base import Camera, PresetInfo
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
 from scope_ptz.geometry import Pose
@@ -31,6 +32,7 @@ from scope_ptz.planner.base import (
     Planner,
     State,
     Usage,
+    Viewpoints,
 )
 from scope_ptz.planner.limits import MAX_INSTRUCTION_CHARS
 from scope_ptz.tools.context import ImageStore
@@ -127,6 +129,7 @@ class _ActiveRun:
         self.camera = self.calls.camera
         self.history: list[Exchange] = []
         self.start = Pose()
+        self.viewpoint: str | None = None
         self.steps = 0
         self.usage = Usage()
 
@@ -147,14 +150,18 @@ class _ActiveRun:
             raise
         ended = await self._finish(end)
         start = RecordedPose.of(self.start)
-        return RunResult(instruction=self.instruction, start=start, exchanges=tuple(self.history), ended=ended)
+        return RunResult(
+            instruction=self.instruction, start=start, viewpoint=self.viewpoint, exchanges=tuple(self.history), ended=ended
+        )
 
     async def _start(self) -> Briefing:
         agent, info = self.agent, self.camera.info
-        presets = tuple(p.name for p in await self.camera.presets())
+        infos = await self.camera.presets()
+        presets = tuple(preset.name for preset in infos)
         self.start = self.calls.pose = await self.camera.pose()
         # The first frame states the scene and the viewpoint, and taking it ensures that the camera works before anything moves.
         frame = await self.camera.frame()
+        self.viewpoint = frame.origin.viewpoint if frame.origin else None
         self.emit(
             Started(
                 version=__version__,
@@ -170,7 +177,7 @@ class _ActiveRun:
                 frame_width=info.frame_width,
                 frame_height=info.frame_height,
                 scene=frame.origin.scene if frame.origin else None,
-                viewpoint=frame.origin.viewpoint if frame.origin else None,
+                viewpoint=self.viewpoint,
                 rendering=info.rendering,
                 perception_version=agent.perception.version,
                 scene_time_s=self.camera.clock.now_s(),
@@ -182,7 +189,13 @@ class _ActiveRun:
                 frame=await agent.images.save_frame(frame) if agent.snapshots else None,
             )
         )
-        return Briefing(presets=presets, pose=self.start, limits=info.limits, simulated=info.simulated)
+        return Briefing(
+            presets=presets,
+            pose=self.start,
+            limits=info.limits,
+            simulated=info.simulated,
+            viewpoints=_viewpoints(self.viewpoint, infos),
+        )
 
     async def _steps(self, briefing: Briefing) -> RunEnd:
         budgets, tools = self.agent.budgets, tuple(self.agent.tools.schemas())
@@ -272,3 +285,14 @@ def _limit_calls(decision: Decision) -> Decision:
     )
     calls = (*decision.calls[:MAX_CALLS_PER_STEP], dropped.model_copy(update={"problem": problem}))
     return decision.model_copy(update={"calls": calls})
+
+
+def _viewpoints(current: str | None, presets: Sequence[PresetInfo]) -> Viewpoints | None:
+    """Return the viewpoints of a camera's presets; None for a camera that has a single viewpoint."""
+    if current is None:
+        return None
+    return Viewpoints(
+        current=current,
+        of_presets={preset.name: preset.viewpoint for preset in presets if preset.viewpoint is not None},
+        home=next((preset.viewpoint for preset in presets if preset.is_home), None),
+    )

@@ -182,13 +182,20 @@ Listener = Callable[[Started | Decided | Called | Ended], None]
 
 
 class RunResult(_Record):
-    """A finished run as the loop returns it. ``start`` is the camera's pose at the beginning."""
+    """A finished run as the loop returns it. ``start`` and ``viewpoint`` are where the camera was at the beginning."""
 
     instruction: str
     start: RecordedPose
+    viewpoint: str | None = None
     exchanges: tuple[Exchange, ...]
     ended: Ended
 
     def past_turn(self) -> PastTurn:
         """Return the run as an earlier turn of a conversation."""
-        return PastTurn(instruction=self.instruction, exchanges=self.exchanges, reply=self.ended.text, start=self.start.pose())
+        return PastTurn(
+            instruction=self.instruction,
+            exchanges=self.exchanges,
+            reply=self.ended.text,
+            start=self.start.pose(),
+            viewpoint=self.viewpoint,
+        )

@@ -55,7 +55,10 @@ class ScenePresets:
 
     def infos(self) -> list[PresetInfo]:
         """Return the presets in a stable order."""
-        return [PresetInfo(preset.name, preset.description) for preset in self._presets.values()]
+        return [
+            PresetInfo(preset.name, preset.description, preset.viewpoint, is_home=preset == self.home)
+            for preset in self._presets.values()
+        ]
 
     def find(self, name: str) -> ScenePreset:
         """Return a preset.

@@ -122,10 +122,17 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class PresetInfo:
-    """A preset's name and its description, which may be empty."""
+    """A preset's name and its description, which may be empty.
+
+    Attributes:
+        viewpoint: The viewpoint in the simulated scene from which the preset looks; None for a camera with a single viewpoint.
+        is_home: Whether the preset is known to be the camera's home.
+    """
 
     name: str
     description: str = ""
+    viewpoint: str | None = None
+    is_home: bool = False
 
 
 @dataclass(frozen=True, slots=True)

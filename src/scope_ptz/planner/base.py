@@ -69,12 +69,28 @@ class PastTurn(_Model):
     Attributes:
         reply: The text that ended the turn: the answer, the clarifying question, or the reason why there is no answer.
         start: The camera's pose at the beginning of the turn; None if it is unknown.
+        viewpoint: The viewpoint of a simulated camera at the beginning of the turn; None if it is unknown, or for other cameras.
     """
 
     instruction: str
     exchanges: tuple[Exchange, ...]
     reply: str
     start: Pose | None = None
+    viewpoint: str | None = None
+
+
+class Viewpoints(_Model):
+    """The viewpoints between which a simulated camera switches. Poses of different viewpoints must not be compared.
+
+    Attributes:
+        current: The camera's viewpoint when the run starts.
+        of_presets: The viewpoint of each preset.
+        home: The viewpoint of the home view; None if it is unknown.
+    """
+
+    current: str
+    of_presets: dict[str, str] = {}
+    home: str | None = None
 
 
 class Briefing(_Model):
@@ -83,12 +99,14 @@ class Briefing(_Model):
     Attributes:
         simulated: Whether the camera is simulated. A planner asks before it moves a real camera for a reason that the user did not
             give.
+        viewpoints: The viewpoints of a camera in a simulated scene; None for other cameras, which have a single one.
     """
 
     presets: tuple[str, ...]
     pose: Pose
     limits: Limits
     simulated: bool = False
+    viewpoints: Viewpoints | None = None
 
 
 class State(_Model):

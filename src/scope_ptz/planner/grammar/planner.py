@@ -8,6 +8,7 @@ from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.confirmations import yes_or_no
+from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.small_talk import impossible_request
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
 from scope_ptz.planner.grammar.execution.camera_history import position_history
@@ -62,8 +63,16 @@ def decide_on(meaning: Understanding, state: State) -> Decision:
         # A plan quotes the words that were not understood; the reply says why they cannot be carried out, if that is known.
         return Finish(kind="clarification", text=impossible_request(state.instruction) or meaning.clarification)
     briefing = state.briefing
-    positions = position_history(state.conversation)
-    program = Program(briefing.limits, briefing.pose, positions=positions, may_go_closer=briefing.simulated)
+    viewpoint = briefing.viewpoints.current if briefing.viewpoints is not None else None
+    effects = [command.effect for command in commands_of(state.conversation, briefing.presets)]
+    program = Program(
+        briefing.limits,
+        briefing.pose,
+        positions=position_history(state.conversation, effects, viewpoint),
+        may_go_closer=briefing.simulated,
+        viewpoint=viewpoint,
+        viewpoints=briefing.viewpoints,
+    )
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
     call = _next_call(program, meaning, outcomes)
     if call is None:

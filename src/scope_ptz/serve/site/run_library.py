@@ -100,6 +100,7 @@ class RunLibrary:
                     exchanges=exchanges_of(trace),
                     reply=trace.ended.text,
                     start=started.pose.pose(),
+                    viewpoint=started.viewpoint,
                 )
                 turns.append(turn)
         return tuple(turns)

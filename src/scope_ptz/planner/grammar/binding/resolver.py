@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from scope_ptz.english import is_plural, listing
 from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.commands import standing_command
+from scope_ptz.planner.grammar.binding.continuations import commands_of
 from scope_ptz.planner.grammar.binding.earlier_comparison import earlier_winners
 from scope_ptz.planner.grammar.binding.embedded_questions import direct_question
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
@@ -58,6 +60,9 @@ _LOOKS = (
 """Steps that can find something, to which "if so" can refer."""
 
 
+_MOVES = (ast.Move, ast.Home, ast.GoToPreset, ast.GoThere, ast.Back, ast.ZoomTo, ast.Track, ast.AtPlaces, ast.Loop, ast.Repeat)
+
+
 class UnresolvedError(Exception):
     """A name cannot be resolved. The message is the question to ask the user."""
 
@@ -75,6 +80,7 @@ class Resolver:
         has_counted: Whether an earlier step counts something.
         whole_scene: Whether questions are about the whole scene instead of the current view.
         must_not_move: Whether the camera must not move.
+        has_moved: Whether an earlier step of the instruction moves the camera.
         has_looked: Whether an earlier step looks for something, so that "if so" refers to what it found.
         earlier_counts: The presets at which earlier turns counted objects, each with the objects' description.
     """
@@ -86,6 +92,7 @@ class Resolver:
     has_compared: bool = False
     has_counted: bool = False
     whole_scene: bool = False
+    has_moved: bool = False
     has_looked: bool = False
     must_not_move: bool = False
     earlier_counts: list[tuple[str, str]] = field(default_factory=list)
@@ -119,6 +126,7 @@ class Resolver:
         for step in steps:
             bound = self._bind(self._completed(step, out))
             self.has_looked = self.has_looked or isinstance(step, _LOOKS)
+            self.has_moved = self.has_moved or isinstance(step, _MOVES)
             again = bool(out) and [_target(s) for s in bound] == [_target(out[-1])] != [""]
             out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
@@ -214,8 +222,20 @@ class Resolver:
         method = getattr(self, f"_{type(step).__name__.lower()}", None)
         return method(step) if method else [step]
 
+    def _home(self, step: ast.Home) -> Sequence[ast.Step]:
+        return [ast.Back(to_start=True)] if step.is_start and self._can_return_to_start() else [step]
+
+    def _back(self, step: ast.Back) -> Sequence[ast.Step]:
+        return [step if not step.to_start or self._can_return_to_start() else ast.Back()]
+
+    def _can_return_to_start(self) -> bool:
+        """Return whether "the start" means the beginning of the conversation, and not that of the instruction or home."""
+        return bool(self.conversation) and not self.has_moved
+
     def _gotopreset(self, step: ast.GoToPreset) -> Sequence[ast.Step]:
         ref = step.ref
+        if ref.is_first_view and self._can_return_to_start():
+            return [ast.Back(to_start=True)]
         preset = self.find_place(ref) if self.presets is not None or step.how in {"go", "use"} or ref.explicit else None
         if step.how == "look" and not ref.explicit and "-" not in ref.name:  # a name with several words can only be the preset's
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
@@ -361,13 +381,9 @@ class Resolver:
         return []
 
     def _doagain(self, step: ast.DoAgain) -> Sequence[ast.Step]:
-        from scope_ptz.planner.grammar.binding.continuations import continued_texts
-        from scope_ptz.planner.grammar.parsing.instruction_parser import parse
-
-        for said in reversed(continued_texts(self.conversation, self.presets or ())):
-            steps = parse(said, self.presets or ()).steps
-            if steps and not any(isinstance(s, ast.DoAgain | ast.Unclear) for s in steps):
-                return self.bind(steps * (step.times or 1))
+        command = standing_command(commands_of(self.conversation, self.presets or ()))
+        if command is not None and not any(isinstance(s, ast.DoAgain | ast.Unclear) for s in command.steps):
+            return self.bind(command.steps * (step.times or 1))
         raise UnresolvedError("What shall I do again?")
 
     # Nested steps ------------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from scope_ptz.english.grammar.numbers import NUMBER_WORDS
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.answerable import answerable_questions, is_whole_question
-from scope_ptz.planner.grammar.binding.continuations import continued_text, question_about_other_way
+from scope_ptz.planner.grammar.binding.continuations import NOTHING_DONE, continuation_of
 from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_harmful
 from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
 from scope_ptz.planner.grammar.binding.small_talk import reply_to_small_talk
@@ -67,14 +67,15 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding((ast.Reply(reply),))
     preset_names = None if presets is None else tuple(presets)
     if _NO.fullmatch(instruction.strip()):
-        return Understanding(clarification="Then I do nothing. What shall I do instead?")
-    if (question := question_about_other_way(instruction, conversation, preset_names or ())) is not None:
+        return Understanding(clarification=NOTHING_DONE)
+    continuation = continuation_of(instruction, conversation, preset_names or ())
+    if (question := continuation.question or objection_to_wording(written_out(instruction))) is not None:
         return Understanding(clarification=question)
-    if (question := objection_to_wording(written_out(instruction))) is not None:
-        return Understanding(clarification=question)
-    said = continued_text(instruction, conversation, preset_names or ())
+    said = continuation.text
     understanding = _read(said, preset_names, conversation)
     if understanding.steps:
+        return Understanding((ast.Instead(understanding.steps),)) if continuation.corrects else understanding
+    if continuation.corrects:
         return understanding
     versions = (_read(shorter, preset_names, conversation) for shorter in shorter_versions(written_out(said), preset_names or ()))
     return next((version for version in versions if version.steps), understanding)
@@ -92,7 +93,7 @@ def _read(said: str, preset_names: tuple[str, ...] | None, conversation: Sequenc
     if _NO_CLOSE_UP.search(said):
         bound = tuple(replace(step, of=None) if isinstance(step, ast.Snap) else step for step in bound)
     if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
-        return Understanding(clarification="Then I do nothing. What shall I do instead?")
+        return Understanding(clarification=NOTHING_DONE)
     if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):

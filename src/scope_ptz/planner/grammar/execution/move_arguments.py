@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+from scope_ptz.planner.grammar.execution.camera_history import ANGLE_TOLERANCE_DEG, ZOOM_TOLERANCE
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, Zoom
 
 _DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0  # turns of unspecified size, and "a little"
@@ -12,7 +14,7 @@ _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
 _LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}  # turns "all the way", which reach the limit from any pose
 _LOOP_PAN_DEG = 15.0  # a loop makes 24 steps by default, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
-_TOLERANCE = 1e-6  # smaller changes count as no move
+_TOLERANCE = 1e-6  # smaller changes that the instruction asks for count as no move
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
@@ -37,14 +39,30 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
 
 
 def return_arguments(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
-    """Return the arguments of the relative move from ``pose`` back to ``to``."""
+    """Return the arguments of the relative move from ``pose`` back to ``to``.
+
+    Differences that come from the rounding of poses in tool results are left out.
+    """
     pan = to.pan_deg - pose.pan_deg
     arguments = {
         "pan_deg": wrap_pan_deg(pan) if limits.pan_endless else pan,
         "tilt_deg": to.tilt_deg - pose.tilt_deg,
         "zoom_factor": to.zoom / pose.zoom,
     }
-    return {key: without_rounding_noise(value) for key, value in arguments.items() if not _has_no_effect(key, value)}
+    return {key: without_rounding_noise(value) for key, value in arguments.items() if not _is_rounding(key, value)}
+
+
+def unlimited_pose_after(arguments: Mapping[str, Any], start: Pose, limits: Limits) -> Pose:
+    """Return the pose to which a call of ``adjust_ptz`` would lead if only zooming all the way were limited."""
+    factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
+    if limit := arguments.get("zoom_limit"):
+        factor = (limits.max_zoom if limit == "in" else limits.min_zoom) / start.zoom
+    return start.turned(arguments.get("pan_deg", 0), arguments.get("tilt_deg", 0)).zoomed(factor)
+
+
+def _is_rounding(key: str, value: float) -> bool:
+    """Return whether the difference of two poses about one axis comes from the rounding of poses in tool results."""
+    return abs(value - 1) < ZOOM_TOLERANCE if key == "zoom_factor" else abs(value) < ANGLE_TOLERANCE_DEG
 
 
 def _has_no_effect(key: str, value: float) -> bool:
@@ -86,8 +104,10 @@ def _zoom(zoom: Zoom, in_loop: bool) -> dict[str, Any]:
 
 def _aim(aim: Aim, pose: Pose, limits: Limits) -> dict[str, Any]:
     if aim.axis == "zoom":
-        return {"zoom_factor": max(aim.value, 0.01) / pose.zoom}
-    if aim.axis == "tilt":
-        return {"tilt_deg": aim.value - pose.tilt_deg}
-    turn = limits.aim_pan_deg(aim.value) - pose.pan_deg
-    return {"pan_deg": wrap_pan_deg(turn) if limits.pan_endless else turn}
+        key, change = "zoom_factor", max(aim.value, 0.01) / pose.zoom
+    elif aim.axis == "tilt":
+        key, change = "tilt_deg", aim.value - pose.tilt_deg
+    else:
+        turn = limits.aim_pan_deg(aim.value) - pose.pan_deg
+        key, change = "pan_deg", wrap_pan_deg(turn) if limits.pan_endless else turn
+    return {} if _is_rounding(key, change) else {key: change}

@@ -33,15 +33,15 @@ def _rounded(value: float) -> float:
     return round(value, 2)
 
 
-def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result: Mapping[str, Any]) -> str:
+def report_of_move(arguments: Mapping[str, Any], made: Mapping[str, Any], result: Mapping[str, Any], shortfall: str) -> str:
     """Describe a relative move: "I panned right 20 degrees", or why the camera stayed where it is.
 
     Args:
         arguments: The move that was asked for.
         made: The move that the camera made.
         result: The result of the call.
+        shortfall: Why the move ended early, as ``shortfall_text`` returns it; empty if it did not.
     """
-    shortfall = shortfall_text(result)
     done = move_text(made)
     if done != _DID_NOT_MOVE or not shortfall or result.get("held_back_by"):
         return f"I {done}{shortfall}"

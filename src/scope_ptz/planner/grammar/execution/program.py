@@ -22,7 +22,8 @@ from scope_ptz.planner.grammar.execution.camera_history import VisitedPosition
 from scope_ptz.planner.grammar.execution.closer_look import is_too_small
 from scope_ptz.planner.grammar.execution.comparisons import ComparisonSteps, stops_of_tour
 from scope_ptz.planner.grammar.execution.condition_evaluation import reading_question
-from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments
+from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, return_arguments, unlimited_pose_after
+from scope_ptz.planner.grammar.execution.returns import ReturnSteps
 from scope_ptz.planner.grammar.execution.run_state import CallGenerator, HaltedError, Offer
 
 _CAPABILITIES = (
@@ -33,14 +34,16 @@ _DEFAULT_MAX_MOVES = 24  # maximum number of moves of a loop if the instruction 
 _MAX_REQUESTED_MOVES = 100  # maximum number of moves of a loop that an instruction can request
 
 
-class Program(ComparisonSteps):
+class Program(ReturnSteps, ComparisonSteps):
     """One run of the steps of an instruction, with one method for each step type."""
 
     def run(self, steps: Sequence[ast.Step]) -> CallGenerator:
         """Run all steps. After that, ``answer()`` returns the answer."""
         self.moves_are_forbidden = any(isinstance(step, ast.Forbid) and step.any_move for step in steps)
-        start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
-        self._visited = [self.positions.before, start] if self.positions.before else [start]
+        is_home = not self.positions.earlier and self.pose == Pose()
+        self._visited = [
+            *self.positions.earlier, VisitedPosition(self.pose, self.positions.preset, is_home, self.viewpoint)
+        ]  # fmt: skip
         try:
             yield from self._run_steps(steps)
         except HaltedError as halt:
@@ -75,50 +78,13 @@ class Program(ComparisonSteps):
         start = self.pose
         result = yield from self._camera_call("adjust_ptz", **arguments)
         # Report a move that was cut short as the camera made it.
-        moved = return_arguments(self.pose, start, self.limits) if motion.shortfall_text(result) else arguments
-        report = motion.report_of_move(arguments, moved, result)
+        shortfall = self._shortfall_text(result, unlimited_pose_after(arguments, start, self.limits))
+        moved = return_arguments(self.pose, start, self.limits) if shortfall else arguments
+        report = motion.report_of_move(arguments, moved, result, shortfall)
         self._note(f"{report}; the camera is now at {phrases.pose_text(result['pose'])}")
 
-    def _back(self, step: ast.Back) -> CallGenerator:
-        place = self._visited[-1]
-        if step.zoom_only:
-            yield from self._zoom_back(place)
-        elif self._moved_to_object and (place.preset or (place.home and self._went_home)):
-            yield from self._go_to(place)
-        elif self._moved_to_object and self.assume_met:
-            self._note("The camera goes back to where it was")
-        elif return_arguments(place.pose, self.pose, self.limits):
-            yield from self._return(place.pose)
-        elif len(self._visited) > 1:
-            self._visited.pop()
-            yield from self._go_to(self._visited[-1])
-        else:
-            self._note("The camera is still where it was")
-
-    def _zoom_back(self, place: VisitedPosition) -> CallGenerator:
-        zoomed = Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom)
-        if self._moved_to_object or not return_arguments(zoomed, self.pose, self.limits):
-            yield from self._move(ast.Move((ast.Zoom("out"),)))
-        else:
-            yield from self._return(zoomed)
-
-    def _return(self, pose: Pose) -> CallGenerator:
-        arguments = return_arguments(pose, self.pose, self.limits)
-        result = yield from self._camera_call("adjust_ptz", **arguments)
-        shortfall = motion.shortfall_text(result)
-        done = motion.move_text(arguments) if set(arguments) <= {"zoom_factor"} else "went back to where the camera was before"
-        self._note(f"I {done}{shortfall}; the camera is now at {phrases.pose_text(result['pose'])}")
-
-    def _go_to(self, place: VisitedPosition) -> CallGenerator:
-        if place.preset:
-            yield from self._gotopreset(ast.GoToPreset(ast.PresetRef(place.preset)))
-        elif place.home:
-            yield from self._home(ast.Home())
-        else:
-            yield from self._return(place.pose)
-
     def _record_position(self, preset: str | None, home: bool = False) -> None:
-        self._visited.append(VisitedPosition(self.pose, preset, home))
+        self._visited.append(VisitedPosition(self.pose, preset, home, self.viewpoint))
         self._moved_to_object = False
 
     def _home(self, step: ast.Home) -> CallGenerator:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Viewpoints
 from scope_ptz.planner.grammar.execution import answer_sentences as phrases
-from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition
+from scope_ptz.planner.grammar.execution import move_sentences as motion
+from scope_ptz.planner.grammar.execution.camera_history import PositionHistory, VisitedPosition, is_same_pose
 
 _MIN_LISTED_STOPS = 3
 """Minimum number of presets in an answer with a line for each of them."""
@@ -64,6 +66,8 @@ class RunState:
     Attributes:
         pose: The camera's pose, updated after every call.
         positions: The camera's positions in earlier turns of the conversation.
+        viewpoint: The camera's viewpoint; empty if it is unknown, None for a camera that has a single one.
+        viewpoints: The viewpoints of the presets; None for a camera that has a single one.
         assume_met: Whether to treat every condition as met, for plans without a camera.
         may_go_closer: Whether the camera may zoom in by itself when something is too small. Otherwise, the answer offers to.
         moves_are_forbidden: Whether the user forbids camera moves.
@@ -77,6 +81,8 @@ class RunState:
     positions: PositionHistory = field(default_factory=PositionHistory)
     assume_met: bool = False
     may_go_closer: bool = False
+    viewpoint: str | None = None
+    viewpoints: Viewpoints | None = None
     moves_are_forbidden: bool = False
     offers: list[Offer] = field(default_factory=list)  # closer looks that the user must allow first
     notes: list[str] = field(default_factory=list)
@@ -105,9 +111,25 @@ class RunState:
         result = outcome.result
         if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
             self.pose = Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"])
+            self._note_viewpoint(tool, arguments)
         if result and (source := result.get("source")) and source not in self.sources:
             self.sources.append(source)
         return outcome
+
+    def _note_viewpoint(self, tool: str, arguments: Mapping[str, Any]) -> None:
+        """Note the viewpoint after a successful call. Only presets and home can change it."""
+        if self.viewpoints is not None and tool == "go_to_preset":
+            self.viewpoint = self.viewpoints.of_presets.get(str(arguments.get("name")), "")
+        elif self.viewpoints is not None and tool == "go_home":
+            self.viewpoint = self.viewpoints.home or ""
+
+    def _shortfall_text(self, result: Mapping[str, Any], wanted: Pose) -> str:
+        """Return the words that state why a move ended before the wanted pose; empty if it did not."""
+        return "" if is_same_pose(self.pose, wanted) else motion.shortfall_text(result)
+
+    def _here(self) -> VisitedPosition:
+        """Return the camera's current position."""
+        return VisitedPosition(self.pose, viewpoint=self.viewpoint)
 
     def _camera_call(self, tool: str, **arguments: Any) -> CallGenerator:
         """Make a camera call and return its result. A failure ends the run, because later steps depend on the pose."""

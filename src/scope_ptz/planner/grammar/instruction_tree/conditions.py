@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -22,12 +22,14 @@ class PresetRef:
         number: The position in the list of presets, if the instruction gives one: 1 is the first, -1 the last.
         explicit: Whether the wording can only refer to a preset ("preset gate"), and not to an object.
         has_article: Whether the name follows "the", "a" or "an".
+        is_first_view: Whether the words can also mean the first view of the conversation ("go back to the first view").
     """
 
     name: str = ""
     number: int | None = None
     explicit: bool = False
     has_article: bool = False
+    is_first_view: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ class Turn:
         amount: The total turn; None if the instruction does not mention it.
         step: The size of one step, if the turn is made in steps.
         steps: The number of steps, if the instruction gives it.
+        is_signed: Whether the instruction gives an angle with or without a sign instead of a direction ("tilt -17").
     """
 
     axis: Axis
@@ -41,6 +42,7 @@ class Turn:
     amount: Amount | None = None
     step: Amount | None = None
     steps: int | None = None
+    is_signed: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +95,26 @@ class Back:
     Attributes:
         amount: How far to turn back; None to return all the way.
         turn: The direction, if the instruction gives only a direction ("come back down"). It may not undo the previous turn.
+        again: Whether the wording can ask for the return trip after a return ("and back again").
+        to_start: Whether to return to where the camera was at the beginning of the conversation.
     """
 
     zoom_only: bool = False
     amount: Amount | None = None
     turn: Turn | None = None
+    again: bool = False
+    to_start: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """Go to the home view."""
+    """Go to the home view.
+
+    Attributes:
+        is_start: Whether the words can also mean where the camera was at the beginning of the conversation ("the original view").
+    """
+
+    is_start: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

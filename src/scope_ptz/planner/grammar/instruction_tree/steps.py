@@ -72,6 +72,13 @@ class DoAgain:
 
 
 @dataclass(frozen=True, slots=True)
+class Instead:
+    """Run steps in place of the previous command, as if it had not been carried out ("no, I meant 30")."""
+
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Loop:
     """Repeat steps until a condition is met."""
 
@@ -146,7 +153,7 @@ Step = (
     Move | Further | Back | Home | GoToPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat
     | DoAgain | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | FirstWith | Compare | BeforeAfter | Sweep | Forbid | Report
     | CameraState | Help | Reply | WhatAbout | Between | AtIntervals | CompareWithBefore | LookCloser | Total
-    | Difference | RankCounts | Mention | Rescope | Unclear
+    | Difference | RankCounts | Mention | Rescope | Instead | Unclear
 )  # fmt: skip
 
 

@@ -70,6 +70,8 @@ def _add_step(out: list[Step], link: str, step: Step) -> None:
             and all(isinstance(part, Zoom) and part.kind in {"in", "out"} for part in step.parts)
         ):
             return  # "out all the way, widest angle"
+    if isinstance(step, Move) and out and isinstance(out[-1], Move) and link in {",", "and"}:
+        step = _as_aims_after(out[-1], step)
     if isinstance(step, Move) and out and isinstance(out[-1], Move) and link not in {".", "then"} and _restates(out[-1], step):
         out.append(Unclear("Is that part of the same move, or another one? Please give each move its amount."))
         return
@@ -123,6 +125,20 @@ def _add_modifier(out: list[Step], link: str, step: Step) -> bool:
         case _:
             return False
     return True
+
+
+def _as_aims_after(last: Move, step: Move) -> Move:
+    """Return turns by signed angles as absolute targets after an absolute target of another axis: "pan to 34, tilt -17"."""
+    if not last.parts or not all(isinstance(part, Aim) and part.axis != "zoom" for part in last.parts):
+        return step
+    aimed = {axis_of(part) for part in last.parts}
+    aims = tuple(
+        Aim(part.axis, part.sign * part.amount.degrees)
+        if isinstance(part, Turn) and part.is_signed and part.amount and part.axis not in aimed and part.step is None
+        else part
+        for part in step.parts
+    )
+    return replace(step, parts=aims)
 
 
 def _restates(first: Move, second: Move) -> bool:

@@ -8,11 +8,31 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Back,
     CameraState,
     Help,
+    Repeat,
     Step,
     Unclear,
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+
+_LEADS_BACK = (
+    r"(CARRY|TURN|PAN|SWITCH|RESET|SHOW|TAKE|AIM|put|take|it|CAMERA|SELF|me|us|right|straight|DET CAMERA|BACK|to|at|FILLER|GLUE|"
+    r"return|revert)*"
+)
+_BEGAN = "(started|began|begun|came_in)"
+_AT_START = "(at|in|from) (the_start|DET (very)? (beginning|start|outset))"
+_START = (
+    rf"(where|how) (SELF|it|CAMERA|DET CAMERA|everything|WHOLETHING) "
+    rf"((HAVEV)? {_BEGAN}|(BE|HAVEV) ({_AT_START}|when SELF {_BEGAN}))|"
+    rf"DET (VIEWNOUN|PICTURE|position|pose|place|spot) (that|which)? SELF ({_BEGAN}|HAVEV {_BEGAN}|(BE|HAVEV|saw) {_AT_START})|"
+    rf"DET (very)? (beginning|outset)|DET very start"
+)
+"""Where the camera was at the beginning of the conversation: "where we started", "the view I started with"."""
+
+_AFTER_START = "(from|with|at|on|in|out|off|GLUE|FILLER|AGAINWORD|NOW)*"
+_SEVERAL_BACK = (
+    "(FILLER)* UNDO (DET|last|previous)* (?P<number>NUM) (moves|MOVES|TRIES|TURNNOUN|STEPNOUN|steps|commands|things) (FILLER)*"
+)
 
 
 def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
@@ -21,6 +41,10 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         r"(to|where|from|SELF|it|CAMERA|BE|HAVEV|DOV|start|started|began|begin|came|before|SWITCH-ED|CARRY-ED|"
         r"AIM-ING|BEFORE|how|DET|previous|earlier|former|original|last|old|pose|VIEWNOUN|PRESETNOUN|FILLER|AGAINWORD|GLUE|INSTEAD)*"
     )
+    if full_match(f"{_LEADS_BACK} ({_START}) {_AFTER_START}|UNDO (WHOLETHING|all of (it|that)) (FILLER)*", lexemes):
+        return Back(to_start=True)
+    if (several := full_match(_SEVERAL_BACK, lexemes)) is not None:
+        return Repeat((Back(),), max(1, round(several["number"][0].value)))
     if full_match("(TURN|TURN-ING|CARRY) (your|my|its|his|her|their) BACK _*", lexemes):
         return Unclear("Which way shall I turn, and how far?")  # "turn your back to us"
     if full_match(
@@ -34,7 +58,7 @@ def state_step(lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         lexemes,
     ) and not any(x.has("PRESET") for x in lexemes):
-        return Back()
+        return Back(again=any(x.has("AGAINWORD") for x in lexemes) and not any(x.has("UNDO") for x in lexemes))
     if full_match(
         (
             r"(FILLER)* (reverse|UNDO|undo|cancel) (DET)* (pan|tilt|turn|move|zoom|enlargement|TURNNOUN|last|ZOOMNOUN|"

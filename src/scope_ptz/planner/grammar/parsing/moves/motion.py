@@ -226,7 +226,7 @@ def _turn_without_direction(found: TurnParts, has: HasClass, has_verb: bool, lex
             or (any(x.has("TURN", "TURNNOUN", "REVERSE") for x in lexemes) and (abs(amount.degrees) >= 180 or amount.degrees < 0))
         )
     ):
-        return Move((Turn(axis, 1, amount, found.step, found.count),))
+        return Move((Turn(axis, 1, amount, found.step, found.count, is_signed=is_axis),))
     if found.step and is_axis and not amount:
         return Move((Turn(axis, 1, amount, found.step, found.count),))
     if amount and not has_verb and any(x.has("MORE") or x.word in {"another", "more"} for x in lexemes):

@@ -18,7 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
 )
 from scope_ptz.planner.grammar.lexing.lexer import Lexeme
 from scope_ptz.planner.grammar.parsing.parts.clause import DIRECTIONS, Source, text_of
-from scope_ptz.planner.grammar.parsing.parts.patterns import full_match
+from scope_ptz.planner.grammar.parsing.parts.patterns import full_match, search
 from scope_ptz.planner.grammar.parsing.parts.preset_refs import EVERY_PLACE, PLACE, place_of, places_of
 
 _GO = (
@@ -35,6 +35,11 @@ _TAIL = (
 _SUPERLATIVES = frozenset({"busiest", "quietest", "fullest", "emptiest", "most crowded", "least crowded", "calmest"})
 _HOW = {"SHOW": "show", "AIM": "look", "USE": "use"}
 
+
+_BEGINNING = frozenset({"start", "starting", "initial", "original", "beginning", "opening"})
+_RETURNING = frozenset(
+    {"return", "revert", "go_back", "come_back", "get_back", "switch_back", "turn_back", "swing_back", "move_back"}
+)
 
 _STORED = (
     "(FILLER)* ((LISTING|TELL)? (me|us)? (WHQ|DET|all|EVERY|HOWMANY)* PRESETNOUN (names)? (DOV|HAVEV|BE|MODAL|SELF|there|got|have|"
@@ -61,7 +66,7 @@ def go_step(source: Source, lexemes: Sequence[Lexeme]) -> Step | None:
         ),
         lexemes,
     ):
-        return Home()
+        return Home(is_start=any(x.has("HOME") and _is_beginning(x) for x in lexemes))
     if opened := full_match(
         rf"(FILLER)* open (up)? (DET)? (PRESETNOUN|VIEWNOUN) (of|for|CALLED)? (?P<place>{PLACE}) (FILLER)*", lexemes
     ):
@@ -160,7 +165,18 @@ def _ref(source: Source, match: Any, lexemes: Sequence[Lexeme]) -> PresetRef:
         )
         return PresetRef(name.preset, explicit=explicit)
     number = match["number"] or match["ordinal"]
-    return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True)
+    return PresetRef(text_of(source, lexemes), number=round(number[0].value), explicit=True, is_first_view=_is_first_view(lexemes))
+
+
+def _is_beginning(home: Lexeme) -> bool:
+    """Return whether words for the home view can also mean the view at the beginning of a conversation: "the original view"."""
+    return any(part in _BEGINNING for part in home.word.split("_"))
+
+
+def _is_first_view(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a clause returns to "the first view", which may be the first of the conversation and not the first preset."""
+    returns = any(x.has("BACK", "AGAINWORD") or x.word in _RETURNING for x in lexemes)
+    return returns and search("(first|very_first|FIRSTLY) (VIEWNOUN|PICTURE|position|place|spot)", lexemes) is not None
 
 
 def _verb_kind(lexemes: Sequence[Lexeme]) -> Any:

@@ -36,7 +36,7 @@ _SLIP = (
 and "no zoom" forbids zooming."""
 
 _HESITATION = "FILLER|well|oops|hang on|hold on"
-_EDITING = (
+EDITING = (
     rf"{_PAUSE}* (({_HESITATION}) {_PAUSE}*)* ((?P<retraction>{_RETRACTION})|{_SLIP}) "
     rf"((?P<retraction>{_RETRACTION})|{_SLIP}|{_HESITATION}|{_PAUSE})*"
 )
@@ -51,11 +51,11 @@ _NEW_PRESET = (
     "(WRAPPER|SELF|SHOW|AIM|use|do|try|TAKE|to|DET|go|goto|SWITCH|CARRY|DOACT|DOV|at|in|not|FILLER|PRESETNOUN)* (?P<preset>PRESET) "
     "(PRESETNOUN|FILLER|INSTEAD)*"
 )
-_NEW_AMOUNT = (
+NEW_AMOUNT = (
     rf"{_LEAD} (?P<way>{_WAY}) (by|to|DET|COMMA|DASH)* ((?P<number>NUM) {_UNIT}?)? (FILLER|INSTEAD)*|"
     rf"{_LEAD} (?P<number>NUM) {_UNIT}? ((to)? (DET)? (?P<way>{_WAY}))? (FILLER|INSTEAD)*"
 )
-_NEW_WAY = rf"{_LEAD} ((?P<number>NUM) (DEG)?)? (DET)? (?P<said>(other|opposite|wrong) (way|direction|SIDE)) (AROUND|FILLER)*"
+NEW_WAY = rf"{_LEAD} ((?P<number>NUM) (DEG)?)? (DET)? (?P<said>(other|opposite|wrong) (way|direction|SIDE)) (AROUND|FILLER)*"
 _OPPOSITE = {"LEFT": "RIGHT", "RIGHT": "LEFT", "UP": "DOWN", "DOWN": "UP", "IN": "OUT", "OUT": "IN"}
 _ALIKE = (frozenset({"SECONDS", "MINUTES", "HOURS"}), frozenset({"X", "PERCENT"}), frozenset({"DEG"}))
 """Classes of units that can replace one another."""
@@ -109,7 +109,7 @@ def without_text(said: Repaired, meant: tuple[Lexeme, ...]) -> Repaired:
 
 def _repaired_at(lexemes: tuple[Lexeme, ...], i: int) -> tuple[Lexeme, ...] | None:
     """Return the lexemes that are meant if a repair begins at a position; None if there is none, or it is unclear."""
-    editing = match_start(_EDITING, lexemes[i:])
+    editing = match_start(EDITING, lexemes[i:])
     if editing is None or match_start("i_said|SELF (said|TELL-ED)", lexemes):
         return None
     if lexemes[i].word == "wrong":
@@ -175,7 +175,7 @@ def _with_thing(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme,
 
 def _with_direction_reversed(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:
     """Return a clause with its only direction reversed: "pan right 30, no, the other way"."""
-    match = full_match(_NEW_WAY, new)
+    match = full_match(NEW_WAY, new)
     ways = [i for i, x in enumerate(old) if x.has(*_WAYS)]
     if match is None or len(ways) != 1:
         return None
@@ -188,7 +188,7 @@ def _with_direction_reversed(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> 
 
 def _with_amount(old: tuple[Lexeme, ...], new: Sequence[Lexeme]) -> tuple[Lexeme, ...] | None:
     """Return a clause with its direction, its number or both replaced: "pan left 20, sorry, right 30"."""
-    match = full_match(_NEW_AMOUNT, new)
+    match = full_match(NEW_AMOUNT, new)
     if match is None:
         return None
     if not match.has("way"):

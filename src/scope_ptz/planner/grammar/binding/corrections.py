@@ -1,0 +1,155 @@
+"""Read instructions that correct the last command ("no, I meant 30", "wrong way", "no, the red one"), or turn the other way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.commands import Command
+from scope_ptz.planner.grammar.binding.single_moves import SingleMove, axis_of_way, single_move, towards
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+from scope_ptz.planner.grammar.parsing.parts.noun_phrases import is_noun_phrase
+from scope_ptz.planner.grammar.parsing.parts.patterns import Match, full_match, match_start
+from scope_ptz.planner.grammar.parsing.rewording.repairs import EDITING, NEW_AMOUNT, NEW_WAY
+
+_PAUSE = "(COMMA|STOP|DASH)"
+_CLAIM = (
+    rf"(FILLER|no|nope|{_PAUSE})* (?P<retraction>i_said|SELF (said|TELL-ED)|(it|that) should (be|have been)|"
+    rf"should (be|have been)) {_PAUSE}*"
+)
+_CORRECTING = rf"({_CLAIM}|{EDITING})"
+_OTHER = "(in|DET)* (other|opposite) (way|direction|SIDE)|the_opposite_direction|the_other_direction|the_other_way|the_opposite_way"
+_WRONG_WAY = (
+    rf"(FILLER|no|nope|that|it|this|is|'s|was|DET|{_PAUSE})* (wrong_way|the_wrong_way|wrong (way|direction)) (FILLER|{_PAUSE})*"
+)
+_NO_OTHER_WAY = rf"(FILLER|oops|wait|{_PAUSE})* (no|nope|nah) (FILLER|wait|{_PAUSE})* ({_OTHER}) (AROUND|FILLER|{_PAUSE})*"
+_OTHER_WAY = rf"(FILLER|AND|THEN|SAMEAMOUNT|{_PAUSE})* ({_OTHER}) (FILLER|AROUND|{_PAUSE})*"
+_NEW_SIZE = "(DET|go|just|only|but|FILLER)* ((?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER)*"
+_SIZE_IN_ANSWER = (
+    r"(by|DET|AMOUNTISH|FILLER)* ((?P<number>NUM) (DEG|X|PERCENT)?|(?P<same>(SAMEAMOUNT|same (amount|angle)?|as_before) "
+    r"(as before|as last_time|amount|as (much|far))?)|(?P<little>LITTLE)|(?P<lot>LOT)|(?P<limit>LIMIT)) (FILLER|AGAINWORD|STOP)*"
+)
+_OTHER_NUMBER = "DET? (?P<which>ORDINAL) (one|PRESETNOUN)?"
+_SIZES = {"little": "a bit", "lot": "a lot", "limit": "all the way"}
+_UNITS = {"DEG": "degrees", "X": "times", "PERCENT": "percent"}
+_VERBS = ("PAN", "TILT", "TURN", "ZOOM", "AIM", "SWITCH", "SHOW", "FIND", "COUNT", "TRACK", "SNAP", "READ")
+
+
+def corrected_text(lexemes: Sequence[Lexeme], text: str, last: Command, *, was_rejected: bool = False) -> str | None:
+    """Return the instruction that the user meant instead of the last command; None if the text does not correct it.
+
+    Args:
+        lexemes: The lexemes of the text.
+        text: The user's text.
+        last: The command that it may correct.
+        was_rejected: Whether the user has rejected the command, and now says what to do instead, without "no" or "I meant".
+    """
+    move = single_move(last.steps)
+    if full_match(_WRONG_WAY, lexemes) or full_match(_NO_OTHER_WAY, lexemes):
+        return move.reversed().text if move is not None else None
+    editing = match_start(_CORRECTING, lexemes)
+    size = editing.size if editing is not None else 0
+    if size == 0 and not was_rejected:
+        return None
+    rest = _without_edges(lexemes[size:])
+    if not rest or any(x.has("NOT", "OR") for x in rest):
+        return None
+    if _is_bare_no(lexemes[:size]) or _may_approve(lexemes[:size], rest):
+        return None  # "no left" may forbid a turn
+    if len(last.steps) == 1 and isinstance(last.steps[0], ast.GoToPreset):
+        return f"go to the {number['which'][0].word} preset" if (number := full_match(_OTHER_NUMBER, rest)) else None
+    if isinstance(last.steps[0] if len(last.steps) == 1 else None, ast.ZoomTo | ast.Track | ast.Count):
+        return _with_other_thing(last.steps[0], text[rest[0].start : rest[-1].end], rest)
+    if any(x.has(*_VERBS) for x in rest):
+        command = text[rest[0].start : rest[-1].end]
+        is_retracted = editing is not None and editing.has("retraction")
+        is_move = move is not None and is_retracted and single_move(parse(command).steps or ()) is not None
+        return command if is_move else None  # "sorry, pan left" may be another command
+    changed = _changed_move(move, rest) if move is not None else None
+    return changed.text if changed is not None else None
+
+
+def turns_the_other_way(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether a text only asks for the other direction: "the other way", "and now the other way"."""
+    return full_match(_OTHER_WAY, lexemes) is not None
+
+
+def asks_for_another_move(lexemes: Sequence[Lexeme]) -> bool:
+    """Return whether "the other way" is asked for as a further move by the same amount: "now the other way"."""
+    return any(x.word in {"now", "and", "then", "next"} or x.has("SAMEAMOUNT") for x in lexemes)
+
+
+def size_in_answer(lexemes: Sequence[Lexeme], asked: SingleMove, last: SingleMove | None) -> SingleMove | None:
+    """Return the move that was asked about, with the amount of the answer: "20", "by 20 degrees", "the same", "a bit".
+
+    Args:
+        lexemes: The lexemes of the answer.
+        asked: The move whose amount was asked for.
+        last: The move of the last command, which has "the same" amount.
+    """
+    match = full_match(_SIZE_IN_ANSWER, lexemes)
+    if match is None:
+        return None
+    if match.has("same"):
+        return SingleMove(asked.axis, asked.way, last.size) if last is not None and last.axis == asked.axis else None
+    return _sized(asked, match, lexemes)
+
+
+def _changed_move(move: SingleMove, rest: Sequence[Lexeme]) -> SingleMove | None:
+    """Return a move with another direction, another amount or both."""
+    if any(x.word in {"one", "ones"} for x in rest):
+        return None  # "no, the left one"
+    if (match := full_match(NEW_WAY, rest)) is not None:
+        return _sized(move.reversed(), match, rest) if match.has("number") else move.reversed()
+    if (match := full_match(_NEW_SIZE, rest)) is not None:
+        return _sized(move, match, rest)
+    if (match := full_match(NEW_AMOUNT, rest)) is None:
+        return None
+    changed: SingleMove | None = move
+    if match.has("way"):
+        way = next(name for name in ("left", "right", "up", "down", "in", "out") if match["way"][0].has(name.upper()))
+        is_same_axis = axis_of_way(way) == move.axis
+        if not is_same_axis and not match.has("number"):
+            return None  # "no, up" after "pan right 20" does not say how far
+        changed = SingleMove(move.axis, way, move.size) if is_same_axis else towards(way)
+    return _sized(changed, match, rest) if changed is not None and match.has("number") else changed
+
+
+def _sized(move: SingleMove, match: Match, lexemes: Sequence[Lexeme]) -> SingleMove | None:
+    """Return a move with the amount in a match."""
+    if match.has("number"):
+        unit = next((name for kind, name in _UNITS.items() if any(x.has(kind) for x in lexemes)), "")
+        is_time = any(x.has("SECONDS", "MINUTES", "HOURS") for x in lexemes)
+        return None if is_time else move.sized(match["number"][0].value, unit)
+    size = next((words for name, words in _SIZES.items() if match.has(name)), None)
+    return SingleMove(move.axis, move.way, size) if size is not None else None
+
+
+def _with_other_thing(step: ast.Step, thing: str, lexemes: Sequence[Lexeme]) -> str | None:
+    """Return the command for another thing: "zoom in on the red one"."""
+    if not (lexemes[0].has("DET") and len(lexemes) > 1 and is_noun_phrase(lexemes)):
+        return None
+    if isinstance(step, ast.ZoomTo):
+        return f"zoom in on {thing}"
+    if isinstance(step, ast.Track):
+        return f"follow {thing} for {step.seconds:g} seconds"
+    return f"count {thing}"
+
+
+def _is_bare_no(editing: Sequence[Lexeme]) -> bool:
+    """Return whether "no" stands directly before a word, so that it may belong to that word: "no left"."""
+    return [x.word for x in editing] in (["no"], ["nope"], ["nah"])
+
+
+def _may_approve(editing: Sequence[Lexeme], rest: Sequence[Lexeme]) -> bool:
+    """Return whether "right" may mean "correct": "no, that's right", "that should be right"."""
+    states = any(x.word in {"that", "is", "'s", "it", "be"} for x in rest) or any(x.word == "should" for x in editing)
+    return states and rest[-1].has("RIGHT")
+
+
+def _without_edges(lexemes: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return lexemes without courtesy and punctuation at their ends."""
+    edge = ("STOP", "COMMA", "FILLER", "DASH")
+    kept = [i for i, x in enumerate(lexemes) if not x.has(*edge)]
+    return lexemes[kept[0] : kept[-1] + 1] if kept else ()

@@ -1,0 +1,270 @@
+"""Turns that take back, correct or repeat earlier turns: where the camera ends, and what the planner says."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import PastTurn
+from tests.planner.stage import Stage
+
+FOUNTAIN = Pose(42, -6, 4)
+PLACES = {"gate": ("mast", Pose(5, 0, 1)), "highway": ("bridge", Pose(-30, -5, 2))}
+
+
+def talk(stage: Stage, *instructions: str) -> tuple[PastTurn, ...]:
+    """Return the turns of a conversation. Afterwards, ``stage.calls`` holds the calls of the last turn."""
+    turns: tuple[PastTurn, ...] = ()
+    for instruction in instructions:
+        stage.calls.clear()
+        turns = (*turns, stage.turn(instruction, turns))
+    return turns
+
+
+# Undo -----------------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("move", ["zoom in on the fountain", "go to the highway", "go home", "pan left 20 and tilt up 5"])
+@pytest.mark.parametrize("undo", ["undo", "go back", "take me back"])
+def test_the_first_move_of_a_conversation_is_undone(move: str, undo: str) -> None:
+    stage = Stage([True], pose=Pose(10, -3, 1.5), lands=FOUNTAIN)
+    talk(stage, move, undo)
+    assert stage.pose == Pose(10, -3, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("instructions", "pan_deg"),
+    [
+        (("pan right 20", "undo", "undo"), 0),
+        (("pan right 20", "pan left 5", "go back", "go back"), 0),
+        (("pan right 20", "pan left 5", "go back twice"), 0),
+        (("pan right 20", "pan left 5", "tilt up 5", "undo the last two moves"), 20),
+        (("pan right 20", "pan right 10", "undo", "pan left 5", "undo"), 20),
+        (("pan right 20", "pan right 10", "undo", "pan left 5", "undo", "undo"), 0),
+        (("pan right 20", "count the cones", "undo"), 0),
+        (("pan right 20", "pan sideways", "undo"), 0),
+        (("pan right 20", "go back", "back again"), 20),
+        (("pan right 20", "go back", "and back again", "undo"), 0),
+        (("pan right 20", "and back again"), 0),
+    ],
+)
+def test_undo_walks_back_through_the_moves(instructions: tuple[str, ...], pan_deg: float) -> None:
+    stage = Stage([2])
+    talk(stage, *instructions)
+    assert stage.pose == Pose(pan_deg, 0, 1)
+
+
+def test_a_close_look_that_was_put_back_is_no_move() -> None:
+    small = {"answer": "It is too small to read.", "known": False}
+    stage = Stage([small, True, {"answer": 'The sign reads "STOP".', "known": True}, True], lands=FOUNTAIN, simulated=True)
+    turns = talk(stage, "pan right 20", "what does the sign say?")
+    assert len(turns[-1].exchanges) == 4
+    stage.turn("go back", turns)
+    assert stage.pose == Pose(0, 0, 1)
+
+
+def test_nothing_is_left_to_undo() -> None:
+    stage = Stage([2])
+    reply = talk(stage, "pan right 20", "undo", "undo")[-1].reply
+    assert not stage.calls
+    assert reply == "There is no earlier position to go back to: the camera is still where it started."
+
+
+def test_rounding_is_no_move() -> None:
+    stage = Stage([True], pose=Pose(10.004, 0.0, 1.5004))
+    turns = talk(stage, "pan right 20", "undo", "undo")
+    assert not stage.calls
+    assert "0 degrees" not in " ".join(turn.reply for turn in turns).replace("20 degrees", "")
+    assert "did not move" in talk(Stage(pose=Pose(179, 0, 1)), "pan right 5")[-1].reply
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "the view I started with", "back to the start", "where we started", "go back to the first view", "go to the original view",
+        "take me back to where we began", "back to the very beginning", "undo everything",
+    ],
+)  # fmt: skip
+def test_the_start_is_that_of_the_conversation(start: str) -> None:
+    stage = Stage([2], pose=Pose(30, -5, 2))
+    talk(stage, "go to the gate", "pan left 7", start)
+    assert stage.pose == Pose(30, -5, 2)
+    reply = talk(stage, "count the cones", start)[-1].reply
+    assert not stage.calls
+    assert reply == "The camera is already where we started: pan 30.0, tilt -5.0, zoom 2.0x."
+
+
+def test_the_start_within_an_instruction_is_that_of_the_instruction() -> None:
+    stage = Stage([2])
+    talk(stage, "pan right 20", "tilt up 5, count the cones, then go back to where you started")
+    assert stage.pose == Pose(20, 0, 1)
+
+
+# Viewpoints ------------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("undo", ["undo", "back to the start"])
+def test_the_camera_returns_to_the_viewpoint_that_it_left(undo: str) -> None:
+    stage = Stage(places=PLACES, pose=Pose(12, 0, 1))
+    reply = talk(stage, "pan right 3", "undo", "go to the highway", "tilt up 5", undo, "undo" if undo == "undo" else "go back")[
+        -1
+    ].reply
+    if undo == "undo":
+        assert (stage.viewpoint, stage.pose) == ("mast", Pose(12, 0, 1))
+        assert stage.calls == [("go_to_preset", {"name": "gate"}), ("adjust_ptz", {"pan_deg": 7})]
+        assert reply.startswith("I went back to where the camera was, by way of preset gate")
+    else:
+        assert (stage.viewpoint, stage.pose) == ("bridge", Pose(-30, 0, 2))
+
+
+def test_a_viewpoint_without_a_preset_cannot_be_returned_to() -> None:
+    stage = Stage(places=PLACES, pose=Pose(12, 0, 1))
+    stage.viewpoint = "roof"
+    reply = talk(stage, "go to the highway", "undo")[-1].reply
+    assert not stage.calls
+    assert reply == "I cannot go back there: that was another viewpoint, and no preset leads to it."
+
+
+# Corrections -----------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("instructions", "pose"),
+    [
+        (("pan 20 degrees to the right", "sorry, I meant 30"), Pose(30)),
+        (("pan right 20", "no, I meant 30"), Pose(30)),
+        (("pan right 20", "no wait, 10"), Pose(10)),
+        (("pan right 20", "make it 15"), Pose(15)),
+        (("pan right 20", "no, just a bit"), Pose(5)),
+        (("pan right 20", "I said left"), Pose(-20)),
+        (("pan right 20", "no, left"), Pose(-20)),
+        (("pan right 20", "sorry, left 30"), Pose(-30)),
+        (("pan right 20", "I meant tilt up 5"), Pose(0, 5)),
+        (("pan right 20", "no, I meant 30", "no, 25"), Pose(25)),
+        (("pan right 20", "no, I meant 30", "undo"), Pose(0)),
+        (("pan right 20", "no, I meant 30", "again"), Pose(60)),
+        (("pan right 20", "no", "30"), Pose(30)),
+        (("pan left 20", "no, the other way"), Pose(20)),
+        (("pan left 20", "wrong way"), Pose(20)),
+        (("pan left 20", "that's the wrong way"), Pose(20)),
+        (("pan left 20", "now the other way"), Pose(0)),
+        (("pan left 20", "and the other way"), Pose(0)),
+        (("pan left 20", "the other way", "by 25 degrees"), Pose(5)),
+        (("pan left 20", "the other way", "the same"), Pose(0)),
+        (("tilt up 50", "no, 10"), Pose(0, 10)),
+        (("tilt up 50", "wrong way"), Pose(0, -50)),
+        (("zoom in 3x", "no, 2x"), Pose(0, 0, 2)),
+        (("zoom in 4x", "zoom out a bit", "the other way", "2"), Pose(0, 0, 5)),
+        (("zoom in 2x", "zoom out a bit", "no, the other way"), Pose(0, 0, 2.5)),
+    ],
+)
+def test_a_correction_starts_from_where_the_corrected_command_started(instructions: tuple[str, ...], pose: Pose) -> None:
+    stage = Stage([1])
+    talk(stage, *instructions)
+    assert stage.pose.as_dict() == pose.as_dict()
+
+
+def test_a_correction_says_what_the_camera_did_in_all() -> None:
+    reply = talk(Stage(), "pan right 20", "sorry, I meant 30")[-1].reply
+    pose = "pan 30.0, tilt 0.0, zoom 1.0x"
+    assert reply == f"I panned right 10 degrees, so the camera has panned right 30 degrees in all; it is now at {pose}."
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "no, up",
+        "no, not left",
+        "no, 10 seconds",
+        "no left",
+        "make it 15 or 20",
+        "no, 2x",
+        "no, pan left 5",
+        "no, that's right",
+        "that should be right",
+    ],
+)
+def test_an_unclear_correction_moves_nothing(said: str) -> None:
+    stage = Stage()
+    talk(stage, "pan right 20", said)
+    assert not stage.calls
+
+
+@pytest.mark.parametrize("before", ["pan right 20 and tilt up 5", "count the cones", "pan right 5 or 10"])
+def test_what_is_no_single_move_is_not_corrected(before: str) -> None:
+    stage = Stage([3])
+    talk(stage, before, "no, I meant 30")
+    assert not stage.calls
+
+
+@pytest.mark.parametrize(
+    ("command", "tool"), [("zoom in on the van", "zoom_to_object"), ("follow the van for 20 seconds", "track_object")]
+)
+def test_another_thing_is_looked_for_from_the_start_of_the_command(command: str, tool: str) -> None:
+    stage = Stage([True], lands=FOUNTAIN)
+    talk(stage, command, "no, the red one")
+    assert stage.calls[-1][0] == tool
+    assert stage.calls[-1][1]["description"] == "red van"
+    if tool == "zoom_to_object":
+        assert stage.calls[0] == ("adjust_ptz", {"pan_deg": -42, "tilt_deg": 6, "zoom_factor": 0.25})
+
+
+def test_another_number_of_a_preset_is_gone_to() -> None:
+    stage = Stage()
+    talk(stage, "go to the first preset", "no, the second one")
+    assert stage.calls == [("go_to_preset", {"name": "highway"})]
+
+
+def test_other_things_are_counted() -> None:
+    stage = Stage([3])
+    talk(stage, "count the vans", "no, the red ones")
+    assert stage.calls == [("count_objects", {"description": "red vans", "view": "current"})]
+
+
+# Again -----------------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("between", [("undo",), ("no",), ("never mind",)])
+@pytest.mark.parametrize("again", ["again", "do it again", "a bit more"])
+def test_what_was_taken_back_is_not_repeated(between: tuple[str, ...], again: str) -> None:
+    stage = Stage()
+    reply = talk(stage, "pan left 20", *between, again)[-1].reply
+    assert not stage.calls
+    assert reply.endswith("?")
+
+
+@pytest.mark.parametrize("asked", ["tilt", "pan right 10 or 20", "the other way"])
+def test_again_refers_to_the_last_command_that_was_carried_out(asked: str) -> None:
+    stage = Stage()
+    talk(stage, "pan left 20", asked, "again")
+    assert stage.calls == [("adjust_ptz", {"pan_deg": -20})]
+
+
+@pytest.mark.parametrize(
+    ("instructions", "pose"),
+    [
+        (("zoom in 3x", "zoom out again"), Pose(0, 0, 1)),
+        (("zoom in 3x", "pan right 10", "zoom back out"), Pose(10, 0, 1)),
+        (("zoom in on the fountain", "zoom back out"), Pose(42, -6, 1)),
+        (("zoom in 1.5x", "zoom in again"), Pose(0, 0, 2.25)),
+        (("zoom in 3x", "double the zoom", "half of that"), Pose(0, 0, 3)),
+        (("zoom in 2x", "double that"), Pose(0, 0, 4)),
+        (("pan right 25", "pan right again"), Pose(50)),
+        (("pan right 25", "pan left again"), Pose(0)),
+        (("pan right 25", "back 5"), Pose(20)),
+        (("pan right 25", "too far, back 10"), Pose(15)),
+        (("pan right 20", "half of that back"), Pose(10)),
+        (("pan right 20", "30 the other way"), Pose(-10)),
+    ],
+)
+def test_a_move_about_the_same_axis_takes_its_amount(instructions: tuple[str, ...], pose: Pose) -> None:
+    stage = Stage([True], lands=FOUNTAIN)
+    replies = [turn.reply for turn in talk(stage, *instructions)]
+    assert stage.pose.as_dict() == pose.as_dict()
+    assert "limit" not in replies[-1]
+
+
+# Absolute targets -------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("said", ["pan to 34 degrees, tilt -17", "pan to 34 and tilt -17", "pan to 34, tilt to -17"])
+def test_both_angles_of_a_target_are_absolute(said: str) -> None:
+    stage = Stage(pose=Pose(10, 5, 1))
+    talk(stage, said)
+    assert stage.pose == Pose(34, -17, 1)
+
+
+def test_a_direction_after_a_target_is_relative() -> None:
+    stage = Stage(pose=Pose(10, 5, 1))
+    talk(stage, "pan to 34 and tilt down 7")
+    assert stage.pose == Pose(34, -2, 1)
