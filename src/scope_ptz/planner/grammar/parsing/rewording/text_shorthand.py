@@ -127,7 +127,7 @@ SHORTHAND = (
     (r"\bquik(?=ly)?", "quick"),
     (r"\bim\b", "I'm"),
     (r"\bcant\b", "can't"),
-    (r"\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all )", "it's "),
+    (r"(?<!are )(?<!is )\bits (?=\w+ing\b|an? |the |not |too |so |been |just |only |all )", "it's "),
     (r"^(?:tc|test|case|step|job|req|task)[- ]?[\d.]+ ?[:.] ", ""),
     (r",? (?:oh,? )?i beg your pardon,? ", ", sorry, "),
     (
