@@ -47,6 +47,8 @@ ZOOM, COUNT, ASK, TRACK = "zoom_to_object", "count_objects", "query_answer", "tr
         ("what is the nearest car?", "nearest car"),
         ("which sign is furthest?", "furthest sign"),
         ("which of the cars is the biggest?", "biggest car"),
+        ("which of the people is nearest to the camera?", "nearest person"),
+        ("which car is furthest to the left?", "car furthest to the left"),
         ("who is standing at the kiosk?", "person standing at the kiosk"),
         ("is there anybody in the shelter?", "person in the shelter"),
         ("which worker has an umbrella?", "worker with an umbrella"),

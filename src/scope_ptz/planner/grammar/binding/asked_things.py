@@ -162,9 +162,8 @@ def _with_predicate(text: str, tests: Sequence[tree.Test]) -> AskedThing | None:
     if noun.split(" ")[-1].lower() in _PRONOUNS:
         return None
     if order is not None:
-        rank = re.sub(r"^the ", "", rest, flags=re.IGNORECASE)
-        noun = singular(noun)
-        return AskedThing(f"{rank} {noun}", start, start) if " " not in rank else None
+        rank = re.sub(r"^the | to (?:the camera|us|you)$", "", rest, flags=re.IGNORECASE)
+        return AskedThing(f"{singular(noun)} {rank}" if " " in rank else f"{rank} {singular(noun)}", start, start)
     first, _, tail = rest.partition(" ")
     verb = {"doesn't": "without", "don't": "without"}.get(verb, verb)
     if first.lower() in {"wears", "wear", "carries", "carry", "holds", "hold", "has", "have"}:
